@@ -15,7 +15,7 @@ static void *arena_more(struct arena *arena, size_t bytes)
     return (char *)block + 64;
 }
 
-static inline void *arena_take(struct arena *arena, int64_t count)
+static inline void *arena_empty(struct arena *arena, int64_t count)
 {
     const size_t bytes = (8 * (size_t)count + 15) & ~(size_t)15;
     arena->used += bytes;

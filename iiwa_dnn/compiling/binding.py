@@ -5,12 +5,16 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from .kinds import BOOL, FLOAT, INT, VOID, Kind
+from .kinds import FLOAT, VOID, Kind
 from .sources import ENTRY
-from .translator import Made, Translator
+from .translator import Function, Translator
 
-_READERS = {FLOAT: "read_double", INT: "read_int", BOOL: "read_bool"}
-_MAKERS = {FLOAT: "PyFloat_FromDouble", INT: "PyLong_FromLongLong", BOOL: "PyBool_FromLong"}
+_READERS = {"double": "read_double", "int64_t": "read_int", "bool": "read_bool"}
+_MAKERS = {
+    "double": "PyFloat_FromDouble",
+    "int64_t": "PyLong_FromLongLong",
+    "bool": "PyBool_FromLong",
+}
 
 
 def prelude(name: str) -> str:
@@ -20,13 +24,9 @@ def prelude(name: str) -> str:
 
 def extension(translator: Translator) -> str:
     """Write the extension module of all kernels that a translator has translated."""
-    made = list(translator.made.values())
+    functions = list(translator.functions.values())
     # Arrays are no results for Python: they are given back.
-    called = [own for own in made if not (own.result.axes or own.result.is_named)]
-    table = []
-    for own in made:
-        address = "NULL" if own.decoration == ENTRY else f"(void *){own.name}"
-        table.append(f'    {{"{own.name}", {address}, "{own.code}"}},')
+    called = [own for own in functions if not (own.result.axes or own.result.is_named)]
     parts = [
         *map(prelude, ("binding.h", "kernels.h", "arena.h")),
         translator.text(),
@@ -34,62 +34,65 @@ def extension(translator: Translator) -> str:
         *map(_wrapper, called),
         "static PyMethodDef methods[] = {",
         '    {"scratch_peak", scratch_peak, METH_NOARGS, NULL},',
-        *map(_row, called),
+        *map(_method, called),
         "    {NULL, NULL, 0, NULL}\n};",
         "static const struct kernel kernels[] = {",
-        *table,
+        *map(_kernel, functions),
         "    {NULL, NULL, NULL}\n};",
         prelude("module.c"),
     ]
     return "\n".join(parts) + "\n"
 
 
-def _row(made: Made) -> str:
+def _kernel(own: Function) -> str:
+    """Write a kernel's row in the table of addresses and types."""
+    address = "NULL" if own.decoration == ENTRY else f"(void *){own.name}"
+    return f'    {{"{own.name}", {address}, "{own.code}"}},'
+
+
+def _method(own: Function) -> str:
     """Write a kernel's row in the table of methods."""
-    about = made.about.partition("\n")[0]
-    text = json.dumps(f"{made.name}({', '.join(made.parameters)})\n--\n\n{about}")
-    called = f"(PyCFunction)(void (*)(void))py_{made.name}"
-    return f'    {{"{made.name}", {called}, METH_FASTCALL, {text}}},'
+    about = own.about.partition("\n")[0]
+    text = json.dumps(f"{own.name}({', '.join(own.parameters)})\n--\n\n{about}")
+    called = f"(PyCFunction)(void (*)(void))py_{own.name}"
+    return f'    {{"{own.name}", {called}, METH_FASTCALL, {text}}},'
 
 
-def _wrapper(made: Made) -> str:
+def _wrapper(own: Function) -> str:
     """Write the function that Python calls in place of a kernel."""
-    kinds = made.parameters
-    own = ", ".join(["arena_here()", *(f"{'&' * kinds[k].is_named}a_{k}" for k in kinds)])
-    lines = [
-        f"static PyObject *py_{made.name}(",
-        "    PyObject *self, PyObject *const *given, Py_ssize_t count)\n{",
-        *(f"    {kind.tag} a_{name};" for name, kind in kinds.items()),
-        f'    if (!counted("{made.name}", count, {len(kinds)})',
-    ]
+    kinds = own.parameters
+    given = ["arena_here()", *("&" * kinds[name].is_named + f"a_{name}" for name in kinds)]
+    call = f"{own.name}({', '.join(given)});"
+    read = [f'!counted("{own.name}", count, {len(kinds)})']
     for i, (name, kind) in enumerate(kinds.items()):
-        lines += _read(kind, name, f"given[{i}]", made.written)
-    lines.append("    ) return NULL;")
-    call = f"{made.name}({own});"
-    if made.result is not VOID:
-        lines.append(f"    {made.result.tag} result;")
+        read += _read(kind, name, f"given[{i}]", own.written)
+    if own.result is not VOID:
         call = f"result = {call}"
-    if made.decoration == "released":
+    if own.decoration == "released":
         call = f"Py_BEGIN_ALLOW_THREADS {call} Py_END_ALLOW_THREADS"
-    lines += [
+    parameters = "PyObject *self, PyObject *const *given, Py_ssize_t count"
+    lines = [
+        f"static PyObject *py_{own.name}({parameters})\n{{",
+        *(f"    {kind.tag} a_{name};" for name, kind in kinds.items()),
+        f"    if ({' || '.join(read)}) return NULL;",
+        f"    {own.result.tag} result;" * (own.result is not VOID),
         f"    {call}",
         "    if (failed && raise_failure()) return NULL;",
-        f"    return {_object(made.result, 'result')};",
-        "}",
+        f"    return {_object(own.result, 'result')};\n}}",
     ]
     return "\n".join(lines)
 
 
 def _read(kind: Kind, place: str, source: str, written: set[str]) -> list[str]:
     """Return the conditions that fail unless an argument is read."""
-    if kind in _READERS:
-        return [f"        || !{_READERS[kind]}({source}, &a_{place})"]
     if kind.axes:
         word = "read_doubles" if kind.element is FLOAT else "read_ints"
         rest = f"{kind.axes}, &a_{place}.size0, {str(place in written).lower()}"
-        return [f"        || !((a_{place}.data = {word}({source}, {rest})))"]
-    lines = [f"        || !is_tuple({source}, {len(kind.members)})"]
-    for i, (name, own) in enumerate(kind.members):
+        return [f"!((a_{place}.data = {word}({source}, {rest})))"]
+    if not kind.members:
+        return [f"!{_READERS[kind.tag]}({source}, &a_{place})"]
+    lines = [f"!is_tuple({source}, {len(kind.members)})"]
+    for i, (name, own) in enumerate(kind.members.items()):
         lines += _read(own, f"{place}.{name}", f"PyTuple_GET_ITEM({source}, {i})", written)
     return lines
 
@@ -98,7 +101,7 @@ def _object(kind: Kind, place: str) -> str:
     """Return the object of Python for a result."""
     if kind is VOID:
         return "Py_NewRef(Py_None)"
-    if kind in _MAKERS:
-        return f"{_MAKERS[kind]}({place})"
-    items = [_object(own, f"{place}.{name}") for name, own in kind.members]
+    if not kind.members:
+        return f"{_MAKERS[kind.tag]}({place})"
+    items = [_object(own, f"{place}.{name}") for name, own in kind.members.items()]
     return f'Py_BuildValue("({"N" * len(items)})", {", ".join(items)})'

@@ -9,13 +9,17 @@ import subprocess
 import sys
 import sysconfig
 import tempfile
+from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
 from .binding import extension
 from .translator import Translator
 
-FLAGS = ("-std=gnu11", "-O3", "-ffp-contract=off", "-fno-strict-aliasing", "-shared", "-fPIC")
+FLAGS = (
+    *("-std=gnu11", "-O3", "-ffp-contract=off", "-fno-strict-aliasing", "-shared", "-fPIC"),
+    *("-Werror=float-conversion", "-Werror=implicit-function-declaration"),
+)
 """Without contraction a result is that of Python's own arithmetic, to the last bit."""
 
 
@@ -41,7 +45,8 @@ def build(package: Path) -> Path:
 
     Raises:
         TranslationError: A kernel leaves the subset of Python that is translated.
-        RuntimeError: There is no compiler, or it refuses the code.
+        RuntimeError: The compiler refuses a kernel, by file and line.
+        LookupError: There is no compiler.
     """
     made = library(package)
     stamp = made.with_suffix(".digest")
@@ -51,7 +56,12 @@ def build(package: Path) -> Path:
     text = extension(translator)
     own = hashlib.sha256(" ".join([text, *FLAGS]).encode()).hexdigest()
     if not (made.is_file() and stamp.is_file() and own in stamp.read_text()):
-        _compile(text, made)
+        with tempfile.TemporaryDirectory(dir=made.parent) as place:
+            source = Path(place) / "_kernels.c"
+            source.write_text(text, encoding="utf-8")
+            output = source.with_suffix(".so")
+            run_compiler(_flags(), [source], output)
+            output.replace(made)
     stamp.write_text(f"{now} {own}\n")
     return made
 
@@ -64,23 +74,22 @@ def compiler() -> list[str]:
             return name.split()
     if find_spec("ziglang"):
         return [sys.executable, "-m", "ziglang", "cc", "-fno-sanitize=undefined"]
-    raise RuntimeError("no C compiler: on Debian and Ubuntu apt-get install gcc libc6-dev")
+    raise LookupError("on Debian and Ubuntu: apt-get install gcc libc6-dev")
 
 
-def _compile(text: str, made: Path) -> None:
+def run_compiler(flags: Sequence[str], sources: Sequence[Path], output: Path) -> None:
+    """Compile files of C; raises what `build` does."""
+    words = [*compiler(), *flags, *map(str, sources), "-o", str(output), "-lm"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(f"{words[0]} does not compile {sources[-1].name}: {done.stderr[:2000]}")
+
+
+def _flags() -> list[str]:
+    """Return the compiler's flags for an extension module, and those of the environment."""
     import numpy as np
 
     paths = [sysconfig.get_paths()["include"], np.get_include()]
     folders = [word for path in paths for word in ("-I", path)]
-    extra = os.environ.get("CFLAGS", "").split()
-    if sys.platform == "darwin":
-        extra += ["-undefined", "dynamic_lookup"]
-    with tempfile.TemporaryDirectory(dir=made.parent) as place:
-        source = Path(place) / "_kernels.c"
-        source.write_text(text, encoding="utf-8")
-        output = source.with_suffix(".so")
-        words = [*compiler(), *FLAGS, "-w", *folders, str(source), "-o", str(output), "-lm", *extra]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise RuntimeError(f"{words[0]} refuses the kernels: {done.stderr[:2000]}")
-        output.replace(made)
+    system = ["-undefined", "dynamic_lookup"] if sys.platform == "darwin" else []
+    return [*FLAGS, *folders, *system, *os.environ.get("CFLAGS", "").split()]

@@ -3,40 +3,30 @@
 from __future__ import annotations
 
 import ast
-import builtins
-import re
-from types import ModuleType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
-from .kinds import ARRAYS, BOOL, FLOAT, INT, NUMBERS, VOID, Kind
-from .sources import Module, decoration, fail
+from .kinds import ARRAYS, BOOL, FLOAT, INT, Kind
+from .sources import ENTRY, Module, decoration, fail
 
 if TYPE_CHECKING:
-    from .translator import Made, Translator
+    from .translator import Translator
 
-SIGNS: dict[type, str] = {ast.Mult: "*", ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
+SIGNS: dict[type, str] = {ast.Mult: "*", ast.Add: "+", ast.Sub: "-"}
+_ROUNDED: dict[type, str] = {ast.FloorDiv: "quotient", ast.Mod: "remainder"}
 _COMPARISONS: dict[type, str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 _COMPARISONS |= {ast.Eq: "==", ast.NotEq: "!="}
-_ROUNDED: dict[type, str] = {ast.FloorDiv: "quotient", ast.Mod: "remainder"}
 
 _EXACT = ("sqrt", "ceil", "floor", "copysign")
-_LIBRARY = {f"math.{name}" for name in (*_EXACT, "sin", "cos", "atan2", "tanh", "exp", "log")}
-_LIBRARY |= {f"np.{name}" for name in _EXACT}
-"""Functions that C has by the same name. Numpy's others may differ in the last digit."""
-
-_C_WORDS = re.findall(
-    r"\w+",
-    """
-    auto case char const default do double else enum extern float for goto inline int long register
-    restrict short signed sizeof static struct switch typedef union unsigned void volatile arena
-    vector matrix cube sqrt sin cos tan tanh exp log pow floor ceil round fabs fmod fmin fmax atan2
-    copysign isfinite failed
-    """,
-)
-"""Words of C and of kernels.h that no variable is called."""
-
-_PLACE = re.compile(r"(\(\*\w+\)|\w+)(\.\w+)*")
-"""Text of a variable or of a member of one."""
+_FUNCTIONS = {
+    f"math.{name}": (FLOAT, name) for name in ("sin", "cos", "atan2", "tanh", "exp", "log")
+}
+_FUNCTIONS |= {f"{home}.{name}": (FLOAT, name) for home in ("math", "np") for name in _EXACT}
+_FUNCTIONS |= {"math.ceil": (INT, "(int64_t)ceil"), "math.floor": (INT, "(int64_t)floor")}
+_FUNCTIONS |= {"int": (INT, "(int64_t)"), "float": (FLOAT, "(double)"), "abs": (FLOAT, "fabs")}
+_FUNCTIONS |= {"math.isfinite": (BOOL, "isfinite")}
+"""Type of the result and name in C of Python's functions. Numpy's others may differ in the last
+digit."""
 
 
 class Value(NamedTuple):
@@ -45,19 +35,20 @@ class Value(NamedTuple):
     Attributes:
         kind: Its type.
         text: The expression.
-        known: Its value, if it is a constant.
-        items: The values that a plain tuple was made of.
     """
 
     kind: Kind
     text: str
-    known: Any = None
-    items: tuple[Value, ...] = ()
 
     @property
-    def sizes(self) -> list[Value]:
+    def sizes(self) -> list[str]:
         """Sizes of an array."""
-        return [Value(INT, f"{self.text}.size{i}") for i in range(self.kind.axes)]
+        return [f"{self.text}.size{i}" for i in range(self.kind.axes)]
+
+    @property
+    def size(self) -> str:
+        """Number of elements of an array."""
+        return " * ".join(self.sizes)
 
 
 def number_text(value: float) -> str:
@@ -66,14 +57,16 @@ def number_text(value: float) -> str:
     return text.lower() if isinstance(value, bool) else text
 
 
-def literal(kind: Kind, *members: str) -> str:
+def literal(kind: Kind, members: Sequence[str]) -> str:
     """Return a value of a struct of C."""
-    return f"(({kind.tag}){{{', '.join(members)}}})"
+    inner = ", ".join(members)
+    return f"(({kind.tag}){{{inner if kind.is_named or kind.axes else f'{{{inner}}}'}}})"
 
 
-def product(sizes: list[Value]) -> str:
-    """Return the number of elements of an array."""
-    return " * ".join(own.text for own in sizes)
+def _array(kind: Kind | None, data: str, sizes: Sequence[str]) -> Value:
+    """Return an array of elements of a type."""
+    own = ARRAYS[kind, len(sizes)]
+    return Value(own, literal(own, [data, *sizes]))
 
 
 class Expressions:
@@ -82,283 +75,180 @@ class Expressions:
     Attributes:
         translator: The translation that the function belongs to.
         module: The function's module.
-        kinds: Types of its parameters and variables.
         parameters: Types of its parameters.
+        kinds: Types of its parameters and variables.
         written: Arrays that are written into, as Python names them.
-        lines: Lines of C.
-        depth: Number of blocks that are open.
     """
 
     def __init__(self, translator: Translator, module: Module, parameters: dict[str, Kind]) -> None:
         """Begin the translation of a function."""
         self.translator = translator
         self.module = module
-        self.kinds = dict(parameters)
         self.parameters = parameters
+        self.kinds = dict(parameters)
         self.written: set[str] = set()
-        self.lines: list[str] = []
-        self.depth = 1
-        self._count = 0
 
-    def require(self, holds: object, node: ast.AST, problem: str = "has no translation") -> None:
+    def require(self, holds: bool, node: ast.AST, problem: str) -> None:
         """Refuse a node unless something holds."""
         if not holds:
             fail(self.module, node, problem)
 
-    def add(self, text: str) -> None:
-        """Add a line."""
-        self.lines.append("    " * self.depth + text)
-
-    def kept(self, value: Value) -> Value:
-        """Keep a value in a variable of C."""
-        if value.known is not None:
-            return value
-        self._count += 1
-        own = Value(value.kind, f"own_{self._count}")
-        self.add(f"const {own.kind.tag} {own.text} = {value.text};")
-        return own
-
-    def number(self, node: ast.expr) -> Value:
-        """Translate an expression that is a number."""
-        value = self.value(node)
-        self.require(value.kind in NUMBERS, node, "is no number")
-        return value
-
     def condition(self, node: ast.expr) -> str:
         """Translate a condition, in parentheses."""
-        value = self.number(node)
-        self.require(value.kind is not FLOAT, node, "is no condition")
-        return f"({value.text})" if _PLACE.match(value.text) else value.text
+        text = self.value(node).text
+        return text if isinstance(node, ast.Compare | ast.BoolOp | ast.UnaryOp) else f"({text})"
 
     def value(self, node: ast.expr) -> Value:
         """Translate an expression."""
         match node:
-            case ast.Constant(value=found):
-                return self.constant(found, "", node)
-            case ast.Name():
-                return self._variable(node)
+            case ast.Name(id=name) if name in self.kinds:
+                kind = self.kinds[name]
+                is_address = kind.is_named and name in self.parameters
+                return Value(kind, f"(*{name})" if is_address else name)
+            case ast.Constant() | ast.Name() | ast.Attribute(value=ast.Name(id="math" | "np")):
+                return self._constant(node)
             case ast.Attribute():
                 return self._attribute(node)
             case ast.Tuple(elts=items):
-                return self.tuple_of([self.value(item) for item in items])
+                values = [self.value(item) for item in items]
+                kind = self.translator.kinds.tuple(self._wider(values), len(values))
+                return Value(kind, literal(kind, [own.text for own in values]))
             case ast.UnaryOp(op=ast.Not(), operand=operand):
-                return Value(BOOL, f"(!{self.condition(operand)})")
+                return Value(BOOL, f"(!{self.value(operand).text})")
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                value = self.number(operand)
-                known = None if value.known is None else -value.known
-                return Value(value.kind, f"(-{value.text})", known)
-            case ast.BinOp():
-                return self._arithmetic(node)
-            case ast.Compare():
-                return self._comparison(node)
-            case ast.BoolOp(op=op, values=values):
+                own = self.value(operand)
+                return Value(own.kind, f"(-{own.text})")
+            case ast.BinOp(left=left, op=op, right=right):
+                return self._arithmetic(type(op), self.value(left), self.value(right))
+            case ast.Compare(left=left, ops=ops, comparators=others):
+                texts = [self.value(item).text for item in (left, *others)]
+                signs = [_COMPARISONS[type(op)] for op in ops]
+                parts = [
+                    f"{a} {sign} {b}" for a, sign, b in zip(texts, signs, texts[1:], strict=False)
+                ]
+                return Value(BOOL, f"({' && '.join(parts)})")
+            case ast.BoolOp(op=op, values=items):
                 sign = " && " if isinstance(op, ast.And) else " || "
-                return Value(BOOL, f"({sign.join(map(self.condition, values))})")
+                return Value(BOOL, f"({sign.join(map(self.condition, items))})")
             case ast.IfExp(test=test, body=body, orelse=orelse):
-                first = self.value(body)
-                second = self.value(orelse)
-                kind = self.joined(first.kind, second.kind, node)
-                return Value(kind, f"({self.condition(test)} ? {first.text} : {second.text})")
-            case ast.Subscript():
-                return self._subscript(node)
+                both = [self.value(body), self.value(orelse)]
+                text = f"({self.condition(test)} ? {both[0].text} : {both[1].text})"
+                return Value(self._wider(both), text)
+            case ast.Subscript(value=owner, slice=ast.Tuple(elts=parts)):
+                return self._part(self.value(owner), parts)
+            case ast.Subscript(value=ast.Attribute(value=owner, attr="shape"), slice=axis):
+                return Value(INT, self.value(owner).sizes[self.module.value(axis)])
+            case ast.Subscript(value=owner, slice=part):
+                return self._part(self.value(owner), [part])
             case ast.Call():
                 return self._call(node)
         fail(self.module, node, "has no translation")
 
-    def joined(self, first: Kind, second: Kind, node: ast.AST) -> Kind:
-        """Return the type that takes values of two types."""
-        same = first == second or {first, second} <= set(NUMBERS)
-        self.require(same, node, "changes a variable's type")
-        return first if first == second else max(first, second, key=NUMBERS.index)
+    def _wider(self, values: list[Value]) -> Kind:
+        """Return the type that takes all of some values; the compiler refuses what it does not."""
+        return next((own.kind for own in values if own.kind is FLOAT), values[0].kind)
 
-    def constant(self, found: Any, name: str, node: ast.AST) -> Value:
-        """Translate a value of Python."""
-        if getattr(found, "shape", None) == ():
-            found = found.item()
+    def _constant(self, node: ast.expr) -> Value:
+        """Translate a constant, or a table of numbers, of a module."""
+        found = self.module.value(node)
         for python, kind in ((bool, BOOL), (int, INT), (float, FLOAT)):
             if isinstance(found, python):
-                return Value(kind, number_text(python(found)), python(found))
-        if isinstance(found, ModuleType) or callable(found):
-            return Value(VOID, name, found)
-        self.require(hasattr(found, "__len__"), node)
-        return self.translator.table(self.module, name, found)
-
-    def name(self, own: str) -> str:
-        """Return a variable's name in C."""
-        return f"{own}_" if own in _C_WORDS else own
-
-    def _variable(self, node: ast.Name) -> Value:
-        """Translate a variable, or a constant of the module."""
-        if node.id in self.kinds:
-            own = self.name(node.id)
-            behind = node.id in self.parameters and self.kinds[node.id].is_named
-            return Value(self.kinds[node.id], f"(*{own})" if behind else own)
-        package = self.translator.package
-        self.require(
-            node.id in self.module.names or node.id in dir(builtins), node, "is not known here"
-        )
-        _, found = package.find(self.module, node.id)
-        self.require(not isinstance(found, ast.FunctionDef), node, "is a function, not a number")
-        return self.constant(package.value(self.module, node.id), node.id, node)
+                return Value(kind, number_text(python(found)))
+        return self.translator.table(self.module, ast.unparse(node), found)
 
     def _attribute(self, node: ast.Attribute) -> Value:
-        """Translate a member of a tuple, an array's size, or a constant of another module."""
+        """Translate a member of a named tuple, or an array's size."""
         owner = self.value(node.value)
-        if owner.kind is VOID:
-            return self.constant(getattr(owner.known, node.attr), node.attr, node)
-        if owner.kind.axes and node.attr == "shape":
-            return self.tuple_of(owner.sizes)
         if owner.kind.axes and node.attr == "size":
-            return Value(INT, f"({product(owner.sizes)})")
-        members = dict(owner.kind.members)
-        self.require(node.attr in members, node, "is no member")
-        return Value(members[node.attr], f"{owner.text}.{node.attr}")
+            return Value(INT, f"({owner.size})")
+        kind = owner.kind.members[node.attr]
+        known = self.translator.constants.get(owner.kind.tag, {}).get(node.attr)
+        if known is None:
+            return Value(kind, f"{owner.text}.{node.attr}")
+        return Value(kind, f"(({kind.tag}){known})")
 
-    def tuple_of(self, items: list[Value], kind: Kind | None = None) -> Value:
-        """Join values to a plain tuple, of a type that is stated or of their own."""
-        own = kind or self.translator.kinds.tuple([item.kind for item in items])
-        inner = [item.text for item in items]
-        if own.members[0][0] == "at[0]":
-            inner = [f"{{{', '.join(inner)}}}"]
-        return Value(own, literal(own, *inner), items=tuple(items))
-
-    def _arithmetic(self, node: ast.BinOp) -> Value:
-        left = self.number(node.left)
-        right = self.number(node.right)
+    def _arithmetic(self, op: type, left: Value, right: Value) -> Value:
         kind = FLOAT if FLOAT in (left.kind, right.kind) else INT
-        own = type(node.op)
-        if own in _ROUNDED and (kind is INT or own is ast.Mod):
-            name = f"{kind.tag.removesuffix('64_t')}_{_ROUNDED[own]}"
-            return Value(kind, f"{name}({left.text}, {right.text})")
-        self.require(own in SIGNS, node)
-        if own is ast.Div:
+        if op is ast.Div:
             return Value(FLOAT, f"((double){left.text} / {right.text})")
-        return Value(kind, f"({left.text} {SIGNS[own]} {right.text})")
+        if op in _ROUNDED:
+            return Value(kind, f"{kind.word}_{_ROUNDED[op]}({left.text}, {right.text})")
+        return Value(kind, f"({left.text} {SIGNS[op]} {right.text})")
 
-    def _comparison(self, node: ast.Compare) -> Value:
-        """Translate comparisons; the middle of a chain is read twice."""
-        for each in node.comparators[:-1]:
-            self.require(isinstance(each, ast.Name | ast.Constant), node, "computes in a chain")
-        values = [self.number(item).text for item in (node.left, *node.comparators)]
-        parts = []
-        for op, left, right in zip(node.ops, values, values[1:], strict=False):
-            self.require(type(op) in _COMPARISONS, node)
-            parts.append(f"({left} {_COMPARISONS[type(op)]} {right})")
-        return Value(BOOL, parts[0] if len(parts) == 1 else f"({' && '.join(parts)})")
-
-    def _subscript(self, node: ast.Subscript) -> Value:
-        """Translate an element or a part of an array, or a member of a tuple."""
-        owner = self.value(node.value)
-        parts = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
-        if owner.kind.axes:
-            return self._part(owner, parts, node)
-        self.require(owner.kind.members, node)
-        at = self.number(parts[0])
-        name, kind = owner.kind.members[at.known or 0]
-        if at.known is None:
-            self.require(name == "at[0]", node, "is no known index of a tuple of several types")
-            name = f"at[{at.text}]"
-        return Value(kind, f"{owner.text}.{name}")
-
-    def _part(self, owner: Value, parts: list[ast.expr], node: ast.AST) -> Value:
-        """Translate an element of an array, or a part without gaps."""
+    def _part(self, owner: Value, parts: list[ast.expr]) -> Value:
+        """Translate an element of an array, or a part without gaps, or an item of a tuple."""
+        element = owner.kind.element
+        assert element
+        if owner.kind.members:
+            return Value(element, f"{owner.text}.at[{self.value(parts[0]).text}]")
         sizes = owner.sizes
-        offset = []
-        shape = [own.text for own in sizes[len(parts) :]]
+        shape = sizes[len(parts) :]
+        place = [f"{owner.text}.data"]
         for axis, part in enumerate(parts):
             start = part
             if isinstance(part, ast.Slice):
-                last = axis + 1 == len(parts)
-                self.require(last and part.step is None, node, "has gaps between its rows")
+                ends = axis + 1 == len(parts) and part.step is None
+                self.require(ends, part, "has gaps between its rows")
                 start = part.lower or ast.Constant(0)
-                stop = self.number(part.upper) if part.upper else sizes[axis]
-                shape.insert(0, f"{stop.text} - {self.number(start).text}")
-            at = self.number(start)
-            self.require((at.known or 0) >= 0, node, "counts from the end")
-            if at.known != 0:
-                offset.append(product([at, *sizes[axis + 1 :]]))
-        if not shape:
-            assert owner.kind.element
-            return Value(owner.kind.element, f"{owner.text}.data[{' + '.join(offset) or 0}]")
-        kind = ARRAYS[owner.kind.element, len(shape)]
-        return Value(kind, literal(kind, " + ".join([f"{owner.text}.data", *offset]), *shape))
+                stop = self.value(part.upper).text if part.upper else sizes[axis]
+                shape.insert(0, f"{stop} - {self.value(start).text}")
+            self.require(not isinstance(start, ast.UnaryOp), part, "counts from the end")
+            at = self.value(start).text
+            if at != "0":
+                place.append(" * ".join([at, *sizes[axis + 1 :]]))
+        if shape:
+            return _array(element, " + ".join(place), shape)
+        return Value(element, f"{place[0]}[{' + '.join(place[1:]) or 0}]")
 
     def _call(self, node: ast.Call) -> Value:
         """Translate a call."""
+        self.require(not node.keywords, node, "has no translation")
         name = ast.unparse(node.func)
-        self.require(not node.keywords, node)
         match node.func:
-            case ast.Attribute(value=owner, attr="reshape"):
-                return self._array(self.value(owner), "", node.args, node)
             case ast.Attribute(value=owner, attr="copy"):
-                own = self.kept(self.value(owner))
-                data = f"arena_copy(arena, {own.text}.data, {product(own.sizes)})"
-                return Value(own.kind, literal(own.kind, data, *(s.text for s in own.sizes)))
-            case ast.Name(id=called):
-                home, found = self.translator.package.find(self.module, called)
-                if isinstance(found, ast.FunctionDef) and decoration(found):
-                    return self._kernel(node, self.translator.function(home, found))
-                if isinstance(found, ast.ClassDef):
-                    kind = self.translator.kinds.of(home, ast.Name(found.name))
-                    values = [self.value(each).text for each in node.args]
-                    self.require(len(values) == len(kind.members), node, "leaves members out")
-                    return Value(kind, literal(kind, *values))
-        if name in ("np.empty", "np.zeros"):
-            take = "arena_take" if name == "np.empty" else "arena_zeros"
-            shape = node.args[0]
-            parts = shape.elts if isinstance(shape, ast.Tuple) else [shape]
-            return self._array(Value(ARRAYS[FLOAT, 1], ""), take, parts, node)
-        return self._standard(node, name)
+                own = self.value(owner)
+                data = f"arena_copy(arena, {own.text}.data, {own.size})"
+                return _array(own.kind.element, data, own.sizes)
+            case ast.Attribute(value=owner, attr="reshape"):
+                own = self.value(owner)
+                return _array(own.kind.element, f"{own.text}.data", self._texts(node.args))
+            case ast.Attribute(value=ast.Name(id="np"), attr="empty" | "zeros" as word):
+                shape = self._texts(getattr(node.args[0], "elts", node.args))
+                return _array(FLOAT, f"arena_{word}(arena, {' * '.join(shape)})", shape)
+        home, found = self.translator.package.find(self.module, name)
+        if isinstance(found, ast.FunctionDef) and decoration(found):
+            return self._kernel(node, home, found)
+        if isinstance(found, ast.ClassDef):
+            kind = self.translator.kinds.of(home, found)
+            return Value(kind, literal(kind, self._texts(node.args)))
+        return self._standard(name, [self.value(each) for each in node.args])
 
-    def _array(self, owner: Value, take: str, shape: list[ast.expr], node: ast.AST) -> Value:
-        """Translate an array of a shape, that is taken from the arena, or has another's data."""
-        sizes = [self.kept(self.number(each)) for each in shape]
-        kind = ARRAYS.get((owner.kind.element, len(sizes)))
-        self.require(kind and all(own.kind is INT for own in sizes), node)
-        assert kind
-        data = f"{take}(arena, {product(sizes)})" if take else f"{owner.text}.data"
-        return Value(kind, literal(kind, data, *(own.text for own in sizes)))
+    def _texts(self, nodes: list[ast.expr]) -> list[str]:
+        return [self.value(each).text for each in nodes]
 
-    def _kernel(self, node: ast.Call, made: Made) -> Value:
+    def _kernel(self, node: ast.Call, home: Module, found: ast.FunctionDef) -> Value:
         """Translate the call of another kernel."""
-        self.require(made.done, node, "calls itself")
-        self.require(len(node.args) == len(made.parameters), node, "leaves arguments out")
+        own = self.translator.function(home, found)
+        self.require(own.text != "" or own.decoration == ENTRY, node, "calls itself")
+        complete = len(node.args) == len(own.parameters)
+        self.require(complete, node, "leaves arguments out")
         texts = ["arena"]
-        for each, (name, kind) in zip(node.args, made.parameters.items(), strict=True):
+        for each, name in zip(node.args, own.parameters, strict=True):
             value = self.value(each)
-            problem = f"is a {value.kind.tag}, where a {kind.tag} is expected"
-            self.require(value.kind == kind or {value.kind, kind} <= set(NUMBERS), each, problem)
-            place = f"&{value.text}"
-            if not _PLACE.fullmatch(value.text):
-                place = f"({kind.tag}[1]){{{value.text}}}"
-            texts.append(place if kind.is_named else value.text)
+            text = f"&{value.text}" if value.kind.is_named else value.text
+            if value.kind.is_named and isinstance(each, ast.Call):
+                text = f"({value.kind.tag}[1]){{{value.text}}}"
+            texts.append(text)
             given = ast.unparse(each)
-            own = [text for text in made.written if text.partition(".")[0] == name]
-            self.written |= {given + text.removeprefix(name) for text in own}
-        return Value(made.result, f"{made.name}({', '.join(texts)})")
+            places = [place for place in own.written if place.partition(".")[0] == name]
+            self.written |= {given + place.removeprefix(name) for place in places}
+        return Value(own.result, f"{own.name}({', '.join(texts)})")
 
-    def _standard(self, node: ast.Call, name: str) -> Value:
+    def _standard(self, name: str, values: list[Value]) -> Value:
         """Translate a function of Python, of its module math or of numpy."""
+        kind = self._wider(values)
         if name == "len":
-            return self.value(node.args[0]).sizes[0]
-        values = [self.number(each) for each in node.args]
-        kind = FLOAT if FLOAT in [value.kind for value in values] else INT
-        text = values[0].text
-        match name:
-            case "min" | "max":
-                for other in values[1:]:
-                    text = f"{kind.tag.removesuffix('64_t')}_{name}({text}, {other.text})"
-                return Value(kind, text)
-            case "abs":
-                return Value(kind, f"{'fabs' if kind is FLOAT else 'llabs'}({text})")
-            case "int":
-                return Value(INT, f"((int64_t){text})")
-            case "float":
-                return Value(FLOAT, f"((double){text})")
-            case "math.isfinite":
-                return Value(BOOL, f"isfinite({text})")
-        self.require(name in _LIBRARY, node)
-        text = f"{name.partition('.')[2]}({', '.join(value.text for value in values)})"
-        if name in ("math.ceil", "math.floor"):  # integers in Python
-            return Value(INT, f"((int64_t){text})")
-        return Value(FLOAT, text)
+            return Value(INT, values[0].sizes[0])
+        own = (kind, f"{kind.word}_{name}")
+        kind, word = own if name in ("min", "max") else _FUNCTIONS[name]
+        return Value(kind, f"{word}({', '.join(own.text for own in values)})")

@@ -5,11 +5,11 @@
 #include <stdint.h>
 #include <string.h>
 
-typedef struct { double *data; int64_t size0; } vector;
-typedef struct { double *data; int64_t size0, size1; } matrix;
-typedef struct { double *data; int64_t size0, size1, size2; } cube;
-typedef struct { int64_t *data; int64_t size0; } int_vector;
-typedef struct { int64_t *data; int64_t size0, size1; } int_matrix;
+typedef struct { double *data; int64_t size0; } Vector;
+typedef struct { double *data; int64_t size0, size1; } Matrix;
+typedef struct { double *data; int64_t size0, size1, size2; } Cube;
+typedef struct { int64_t *data; int64_t size0; } IntVector;
+typedef struct { int64_t *data; int64_t size0, size1; } IntMatrix;
 
 /* min and max return the first of equal numbers, and the first beside a NaN, as Python's do.
  * Quotient and remainder are rounded down. */
@@ -40,14 +40,14 @@ static inline double double_remainder(double a, double b)
 }
 
 struct arena;
-static inline void *arena_take(struct arena *arena, int64_t count);
+static inline void *arena_empty(struct arena *arena, int64_t count);
 
 static inline void *arena_zeros(struct arena *arena, int64_t count)
 {
-    return memset(arena_take(arena, count), 0, 8 * (size_t)count);
+    return memset(arena_empty(arena, count), 0, 8 * (size_t)count);
 }
 
 static inline void *arena_copy(struct arena *arena, const void *from, int64_t count)
 {
-    return memcpy(arena_take(arena, count), from, 8 * (size_t)count);
+    return memcpy(arena_empty(arena, count), from, 8 * (size_t)count);
 }

@@ -2,7 +2,7 @@
 
 It reads source text alone. An array is a pointer and its sizes; what a kernel makes for itself
 comes from an arena, and is given back where the kernel returns. What it does not know it refuses by
-file and line.
+file and line; types that do not fit are refused by the compiler, which is told file and line too.
 """
 
 from __future__ import annotations
@@ -10,61 +10,13 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from .expressions import SIGNS, Expressions, Value, literal, number_text, product
-from .kinds import ARRAYS, FLOAT, INT, NUMBERS, VOID, Kind, Kinds
-from .sources import ENTRY, Module, Package, decoration
-
-
-@dataclass
-class Made:
-    """A function of C.
-
-    Attributes:
-        name: Its name.
-        about: Its docstring.
-        parameters: Types of its parameters by their names in Python.
-        result: Type of its result.
-        decoration: The decorator that it has in Python.
-        text: The function.
-        written: Parameters, and members of parameters, that are arrays it writes into.
-        done: Whether it is translated.
-    """
-
-    name: str
-    about: str
-    parameters: dict[str, Kind]
-    result: Kind
-    decoration: str
-    text: str = ""
-    written: set[str] = field(default_factory=set)
-    done: bool = False
-
-    @property
-    def code(self) -> str:
-        """Types of parameters and result as a text, one letter each."""
-        own = "".join(kind.code for kind in self.parameters.values())
-        return f"{own}:{self.result.code}"
-
-    def head(self) -> str:
-        """Return the declaration in C."""
-        own = ["struct arena *arena"]
-        for name, kind in self.parameters.items():
-            own.append(f"const {kind.tag} *{name}" if kind.is_named else f"{kind.tag} {name}")
-        inline = "inline " * (self.decoration == "inlined")
-        return f"static {inline}{self.result.tag} {self.name}({', '.join(own)})"
-
-    def written_out(self, about: str, lines: list[str]) -> str:
-        """Return the function with a body; parameters that it does not read are said to be idle."""
-        names = ["arena", *self.parameters]
-        text = "\n".join(lines)
-        idle = [own for own in names if not re.search(rf"(?<![.>\w]){own}\b", text)]
-        idle = [f"    (void){name};" for name in idle]
-        comment = about.replace("\n", "\n * ").replace(" \n", "\n")
-        return "\n".join([f"/* {comment} */", self.head(), "{", *idle, *lines, "}", ""])
+from .expressions import SIGNS, Expressions, Value, literal, number_text
+from .kinds import ARRAYS, FLOAT, INT, VOID, Kinds
+from .sources import ENTRY, Module, Package, decoration, fail, stored_names
 
 
 class Translator:
@@ -73,7 +25,9 @@ class Translator:
     Attributes:
         package: The package that they are in.
         kinds: Types of their variables.
-        made: The functions, by module and name.
+        functions: The functions, by module and name.
+        tables: Tables of numbers, by their names in C.
+        constants: Values of members of a named tuple that an exported text has one of, by its type.
         parts: Functions that entries call by their numbers, from 1; None: by any address.
     """
 
@@ -81,9 +35,10 @@ class Translator:
         """Take the folder of a package."""
         self.package = Package(folder)
         self.kinds = Kinds(self.package)
-        self.made: dict[tuple[str, str], Made] = {}
-        self.parts: list[Made] | None = None
-        self._tables: dict[str, str] = {}
+        self.functions: dict[tuple[str, str], Function] = {}
+        self.parts: list[Function] | None = None
+        self.tables: dict[str, str] = {}
+        self.constants: dict[str, dict[str, str]] = {}
 
     def all(self) -> None:
         """Translate all kernels of the package."""
@@ -93,42 +48,28 @@ class Translator:
 
     def text(self) -> str:
         """Return structs, tables and functions as one text."""
-        own = self.parts
-        functions = [
-            each.text or (_entry(each) if own is None else _numbered(each, own))
-            for each in self.made.values()
-        ]
-        heads = [f"{own.head()};" for own in self.made.values()]
-        parts = (self.kinds.structs.values(), self._tables.values(), heads, functions)
-        return "\n".join(text for part in parts for text in part) + "\n"
+        heads = [f"{own.head};" for own in self.functions.values()]
+        enter = _entry if self.parts is None else partial(_numbered, parts=self.parts)
+        bodies = [own.text or enter(own) for own in self.functions.values()]
+        return "\n".join([*self.kinds.structs.values(), *self.tables.values(), *heads, *bodies])
 
     def table(self, module: Module, name: str, found: Any) -> Value:
         """Return a table of numbers of a module."""
-        values = getattr(found, "tolist", lambda: list(found))()
-        element = INT if isinstance(values[0], int) else FLOAT
+        kind = ARRAYS[INT if isinstance(found[0], int) else FLOAT, 1]
+        assert kind.element
         tag = f"{module.name.rpartition('.')[2]}_{name}"
-        numbers = ", ".join(map(number_text, values))
-        self._tables[tag] = f"static const {element.tag} {tag}[] = {{{numbers}}};"
-        kind = ARRAYS[element, 1]
-        return Value(kind, literal(kind, f"({element.tag} *){tag}", str(len(values))))
+        numbers = ", ".join(map(number_text, found))
+        self.tables[tag] = f"static const {kind.element.tag} {tag}[] = {{{numbers}}};"
+        return Value(kind, literal(kind, [f"({kind.element.tag} *){tag}", str(len(found))]))
 
-    def function(self, module: Module, node: ast.FunctionDef) -> Made:
+    def function(self, module: Module, node: ast.FunctionDef) -> Function:
         """Return the translation of a function."""
         key = (module.name, node.name)
-        if key not in self.made:
-            kinds: dict[str, Kind] = {}
-            own = Function(self, module, kinds)
-            own.read_parameters(node)
-            result = self.kinds.of(module, node.returns or ast.Constant(None))
-            given = {own.name(name): kind for name, kind in kinds.items()}
-            about = ast.get_docstring(node) or ""
-            made = Made(c_name(*key), about, given, result, decoration(node))
-            self.made[key] = made
-            if made.decoration != ENTRY:
-                own.translate(made, node)
-            made.done = True
-            self.made[key] = self.made.pop(key)  # after all that it calls
-        return self.made[key]
+        if key not in self.functions:
+            own = self.functions[key] = Function(self, module, node)
+            if own.decoration != ENTRY:
+                own.translate()
+        return self.functions[key]
 
 
 def c_name(module: str, name: str) -> str:
@@ -137,200 +78,195 @@ def c_name(module: str, name: str) -> str:
 
 
 class Function(Expressions):
-    """Translation of one function; a variable has the type of what is first assigned to it."""
+    """Translation of one function; a variable has the type of what is first assigned to it.
 
-    def read_parameters(self, node: ast.FunctionDef) -> None:
-        """Read the types of the parameters."""
-        arguments = node.args
-        plain = not (arguments.vararg or arguments.kwonlyargs or arguments.defaults)
-        self.require(plain, node, "has other parameters than plain ones")
-        for each in arguments.args:
-            self.require(each.annotation, each, "has no annotation")
-            assert each.annotation
-            self.parameters[each.arg] = self.translator.kinds.of(self.module, each.annotation)
-        self.kinds = dict(self.parameters)
+    Attributes:
+        name: Its name in C.
+        about: Its docstring.
+        decoration: The decorator that it has in Python.
+        types: Types in C of its parameters.
+        result: Type of its result.
+        head: Its declaration in C.
+        text: The function in C.
+    """
 
-    def translate(self, made: Made, node: ast.FunctionDef) -> None:
+    def __init__(self, translator: Translator, module: Module, node: ast.FunctionDef) -> None:
+        """Read name and types of a function."""
+        of = translator.kinds.of
+        kinds = {own.arg: of(module, own.annotation or own) for own in node.args.args}
+        super().__init__(translator, module, kinds)
+        self.name = c_name(module.name, node.name)
+        self.about = ast.get_docstring(node) or ""
+        self.decoration = decoration(node)
+        self.result = of(module, node.returns or ast.Constant(None))
+        self.types = [f"const {k.tag} *" if k.is_named else f"{k.tag} " for k in kinds.values()]
+        own = ["struct arena *arena", *map("".join, zip(self.types, kinds, strict=True))]
+        inline = "inline " * (self.decoration == "inlined")
+        self.head = f"static {inline}{self.result.tag} {self.name}({', '.join(own)})"
+        self.text = ""
+        self._node = node
+        self._lines: list[str] = []
+
+    @property
+    def code(self) -> str:
+        """Types of parameters and result as a text, one letter each."""
+        return f"{''.join(kind.code for kind in self.parameters.values())}:{self.result.code}"
+
+    def translate(self) -> None:
         """Translate the body."""
-        self._result = made.result
-        self._loops: list[str] = []
-        self._takes = re.search(r"\bnp\.(empty|zeros)\(|\.copy\(\)", ast.unparse(node))
-        self.block(node.body)
-        if not isinstance(node.body[-1], ast.Return):
-            self._leave()
+        self._takes = re.search(r"\bnp\.(empty|zeros)\(|\.copy\(\)", ast.unparse(self._node))
+        self._block(self._node.body)
+        if self.result is VOID:
+            self._return(None)
         variables = {own: kind for own, kind in self.kinds.items() if own not in self.parameters}
-        lines = [f"    {kind.tag} {self.name(own)};" for own, kind in variables.items()]
-        lines += ["    const struct arena mark = *arena;"] if self._takes else []
-        made.written = self.written
-        place = f"{made.about}\n\n{self.module.path}: {node.name}"
-        made.text = made.written_out(place, [*lines, *self.lines])
+        declared = [f"{kind.tag} {own};" for own, kind in variables.items()]
+        mark = ["const struct arena mark = *arena;"] if self._takes else []
+        about = f"{self.about}\n\n{self.module.path}: {self._node.name}"
+        self.text = self.written_out(about, [*declared, *mark, *self._lines])
 
-    def _leave(self) -> None:
-        """Give back what the function has taken."""
-        if self._takes:
-            self.add("arena_leave(arena, &mark);")
+    def written_out(self, about: str, lines: list[str]) -> str:
+        """Return the function with a body; parameters that it does not read are said to be idle."""
+        body = "\n    ".join(lines)
+        names = ["arena", *self.parameters]
+        idle = [own for own in names if not re.search(rf"(?<![.>\w]){own}\b", body)]
+        body = "\n    ".join([*(f"(void){own};" for own in idle), body])
+        comment = about.replace("\n", "\n * ").replace(" \n", "\n")
+        return f"/* {comment} */\n{self.head}\n{{\n    {body}\n}}\n"
 
-    def block(self, statements: list[ast.stmt]) -> None:
+    def _block(self, statements: list[ast.stmt]) -> None:
         """Translate statements of a block."""
         for node in statements:
-            self._statement(node)
+            if self.translator.parts is None:  # of a library, which nobody reads
+                self._lines.append(f'#line {node.lineno} "{self.module.path}"')
+            try:
+                self._statement(node)
+            except (AttributeError, LookupError, NameError, TypeError) as error:
+                fail(self.module, node, f"has no translation: {error}")
 
     def _statement(self, node: ast.stmt) -> None:
         match node:
             case ast.Pass() | ast.Expr(value=ast.Constant()):
                 pass
-            case ast.Break():
-                self.add("break;")
-            case ast.Continue():
-                self.add("continue;")
+            case ast.Break() | ast.Continue():
+                self._lines.append(f"{ast.unparse(node)};")
             case ast.Expr(value=called):
-                self.add(f"{self.value(called).text};")
-            case ast.Return():
-                self._return(node)
+                self._lines.append(f"{self.value(called).text};")
+            case ast.Return(value=value):
+                self._return(value)
             case ast.If(test=test, body=body, orelse=orelse):
                 self._nested(f"if {self.condition(test)}", body)
                 if orelse:
                     self._nested("else", orelse)
             case ast.While(test=test, body=body, orelse=[]):
                 self._nested(f"while {self.condition(test)}", body)
-            case ast.For(orelse=[]):
-                self._for(node)
-            case ast.Assign(targets=[target], value=value):
-                self._store(target, self.value(value))
-            case ast.AnnAssign(target=target, value=ast.expr() as value):
-                self._store(target, self.value(value))
+            case ast.For(iter=ast.Call(func=ast.Name(id="range"), args=args), orelse=[]):
+                self._for(node, [self.value(each).text for each in args])
+            case (
+                ast.Assign(targets=[target], value=value)
+                | ast.AnnAssign(target=target, value=ast.expr() as value)
+            ):
+                self._store(target, "=", self.value(value))
             case ast.AugAssign(target=target, op=op, value=value):
-                self.require(type(op) in SIGNS, node)
-                place = self._place(target)
-                number = self.number(value)
-                kind = self.joined(place.kind, number.kind, node)
-                self.require(kind == place.kind, node, "changes a variable's type")
-                self.add(f"{place.text} {SIGNS[type(op)]}= {number.text};")
+                self._store(target, f"{SIGNS[type(op)]}=", self.value(value))
             case _:
-                self.require(False, node)
+                fail(self.module, node, "has no translation")
 
     def _nested(self, head: str, body: list[ast.stmt]) -> None:
         """Translate a block under a head."""
-        self.add(f"{head} {{")
-        self.depth += 1
-        self.block(body)
-        self.depth -= 1
-        self.add("}")
+        before = len(self._lines)
+        self._block(body)
+        self._lines[before:] = [f"{head} {{", *(f"    {own}" for own in self._lines[before:]), "}"]
 
-    def _return(self, node: ast.Return) -> None:
-        if node.value is None:
-            self._leave()
-            self.add("return;")
-            return
-        value = self.value(node.value)
-        if value.items and self._result.members:
-            value = self.tuple_of(list(value.items), self._result)
-        numbers = {value.kind, self._result} <= set(NUMBERS)
-        self.require(value.kind == self._result or numbers, node.value, "is not what is annotated")
+    def _return(self, node: ast.expr | None) -> None:
+        """Return a value, and give back what the function has taken."""
+        text = f" {self.value(node).text}" if node else ""
+        if self._takes and text:
+            self._lines.append(f"const {self.result.tag} own_result ={text};")
+            text = " own_result"
         if self._takes:
-            value = self.kept(Value(self._result, value.text))
-        self._leave()
-        self.add(f"return {value.text};")
+            self._lines.append("arena_leave(arena, &mark);")
+        self._lines.append(f"return{text};")
 
-    def _for(self, node: ast.For) -> None:
+    def _for(self, node: ast.For, ends: list[str]) -> None:
         """Translate a loop over a range; its variable is known inside of it alone."""
-        called = node.iter
-        self.require(isinstance(called, ast.Call) and ast.unparse(called.func) == "range", node)
-        assert isinstance(called, ast.Call)
-        *first, last = [self.number(each).text for each in called.args]
-        own = ast.unparse(node.target)
-        self.require(own == "_" or own not in self.kinds, node, "has a variable of that name")
-        self.require(len(first) < 2, node, "has a step")
-        self.kinds[own] = INT
-        self._loops.append(own)
-        i = self.name(own)
-        start = f"int64_t {i} = {first[0] if first else 0}, end_{i} = {last}"
-        self._nested(f"for ({start}; {i} < end_{i}; {i}++)", node.body)
-        self.kinds.pop(own, None)
-        self._loops.pop()
+        name = ast.unparse(node.target)
+        self.require(len(ends) < 3, node, "has a step")
+        if name != "_":
+            self.require(name not in self.kinds, node, "has a variable of that name")
+            stored = stored_names(ast.Module(node.body, []))
+            self.require(name not in stored, node, "writes its own variable")
+        self.kinds[name] = INT
+        start = f"int64_t {name} = {ends[0] if len(ends) > 1 else 0}, end_{name} = {ends[-1]}"
+        self._nested(f"for ({start}; {name} < end_{name}; {name}++)", node.body)
+        self.kinds.pop(name, None)
 
-    def _place(self, target: ast.expr) -> Value:
-        """Translate a variable, or an element or a part of an array, that is written."""
-        if isinstance(target, ast.Subscript):
-            self.written.add(ast.unparse(target.value))
-        return self.value(target)
-
-    def _store(self, target: ast.expr, value: Value) -> None:
+    def _store(self, target: ast.expr, sign: str, value: Value) -> None:
         """Translate the writing of a value."""
         match target:
             case ast.Tuple(elts=targets):
-                own = self.kept(value)
-                members = own.kind.members
+                own = f"own_{len(self._lines)}"
+                self._lines.append(f"const {value.kind.tag} {own} = {value.text};")
+                assert value.kind.element
                 for i, each in enumerate(targets):
                     if ast.unparse(each) != "_":
-                        self._store(each, Value(members[i][1], f"{own.text}.{members[i][0]}"))
+                        self._store(each, "=", Value(value.kind.element, f"{own}.at[{i}]"))
+                return
             case ast.Name(id=name):
-                self.require(name not in self._loops, target, "is written in its own loop")
-                kind = self.kinds.setdefault(name, value.kind)
-                wider = self.joined(kind, value.kind, target)
-                self.require(wider == kind, target, "changes a variable's type")
-                self.add(f"{self.name(name)} = {value.text};")
-            case _:
-                self.require(value.kind in NUMBERS, target, "is written with an array")
-                place = self._place(target)
-                if place.kind.axes:  # all of it
-                    own = self.kept(place)
-                    self.add(f"for (int64_t k = 0, end = {product(own.sizes)}; k < end; k++)")
-                    place = Value(FLOAT, f"    {own.text}.data[k]")
-                self.add(f"{place.text} = {value.text};")
+                self.kinds.setdefault(name, value.kind)
+                place = name
+            case ast.Subscript(value=owner):
+                self.written.add(ast.unparse(owner))
+                whole = self.value(target)
+                place = whole.text
+                if whole.kind.axes:
+                    self._lines.append(f"for (int64_t at = 0, end = {whole.size}; at < end; at++)")
+                    place = f"    {whole.text}.data[at]"
+        self._lines.append(f"{place} {sign} {value.text};")
 
 
-def _numbered(made: Made, parts: list[Made]) -> str:
+def _numbered(own: Function, parts: list[Function]) -> str:
     """Write the function that enters one of an exported text's parts by its number."""
-    address, *names = made.parameters
+    address, *names = own.parameters
     given = ", ".join(["arena", *names])
-    back = "return " * (made.result is not VOID)
-    own = [(n, part.name) for n, part in enumerate(parts, 1) if part.code == made.code[1:]]
-    lines = [f"    if ({address} == {n}) {{ {back}{name}({given}); }}" for n, name in own]
+    back = "return " * (own.result is not VOID)
+    fitting = [(n, part) for n, part in enumerate(parts, 1) if part.code == own.code[1:]]
+    lines = [f"if ({address} == {n}) {back}{part.name}({given});" for n, part in fitting]
     if back:
-        lines += [f"    const {made.result.tag} none = {{0}};", "    return none;"]
-    return made.written_out(made.about, lines)
+        lines += [f"const {own.result.tag} none = {{0}};", "return none;"]
+    return own.written_out(own.about, lines)
 
 
-def _entry(made: Made) -> str:
+def _entry(own: Function) -> str:
     """Write the function that enters one of several functions of its types by its address.
 
     A function of a user's has a negative one: it takes numbers as they are, an array as its pointer
     and its sizes, and a named tuple as its members; a tuple's numbers go to a last pointer.
     """
-    address, *names = made.parameters
-    given = ", ".join(["arena", *names])
-    back = "return " * (made.result is not VOID)
-    kinds = list(made.parameters.values())[1:]
-    types = [f"const {kind.tag} *" if kind.is_named else kind.tag for kind in kinds]
-    kernel = f"({made.result.tag} (*)({', '.join(['struct arena *', *types])}))(intptr_t){address}"
-    flat: list[tuple[str, str]] = []
-    for name, kind in zip(names, kinds, strict=True):
-        flat += _flat(Value(kind, f"(*{name})" if kind.is_named else name))
-    members = made.result.members
-    flat += [("double *", "numbers")] if members else []
-    answer = "double" if made.result is FLOAT else "void"
-    called = f"(({answer} (*)({', '.join(kind for kind, _ in flat)}))(intptr_t)-{address})"
-    values = ", ".join(text for _, text in flat)
-    lines = [
-        f"    if ({address} > 0) {{ {back}(({kernel})({given})); {'' if back else 'return;'} }}"
-    ]
-    call = f"    {'return ' * (answer == 'double')}{called}({values});"
-    lines.append(call)
-    if members:
-        lines[-1:] = [f"    double numbers[{len(members)}] = {{0.0}};", call]
-        numbers = [f"({kind.tag})numbers[{i}]" for i, (_, kind) in enumerate(members)]
-        lines.append(f"    return {literal(made.result, *numbers)};")
-    return made.written_out(made.about, lines)
+    address, *names = own.parameters
+    tag = own.result.tag
+    flat = [each for name in names for each in _flat(own.value(ast.Name(name)))]
+    answer = tag
+    if own.result.members:
+        flat.append(("double *", "numbers.at"))
+        answer = "void"
+    types = ", ".join(["struct arena *", *own.types[1:]])
+    kernel = f"(({tag} (*)({types}))(intptr_t){address})({', '.join(['arena', *names])})"
+    types = ", ".join(kind for kind, _ in flat)
+    other = f"(({answer} (*)({types}))(intptr_t)-{address})({', '.join(text for _, text in flat)})"
+    lines = [f"if ({address} > 0) return {kernel};", f"return {other};"]
+    if own.result.members:
+        lines[1:] = [f"{tag} numbers = {{{{0.0}}}};", f"{other};", "return numbers;"]
+    return own.written_out(own.about, lines)
 
 
 def _flat(value: Value) -> Iterator[tuple[str, str]]:
     """Return the types and texts of the flat arguments for one argument."""
-    if value.kind.element:
-        yield f"{value.kind.element.tag} *", f"{value.text}.data"
-        yield from (("int64_t", own.text) for own in value.sizes)
-    elif value.kind.members:
-        for name, kind in value.kind.members:
-            yield from _flat(Value(kind, f"{value.text}.{name}"))
+    kind = value.kind
+    if kind.element and kind.axes:
+        yield f"{kind.element.tag} *", f"{value.text}.data"
+        yield from (("int64_t", size) for size in value.sizes)
+    elif kind.members:
+        for name, own in kind.members.items():
+            yield from _flat(Value(own, f"{value.text}.{name}"))
     else:
-        yield value.kind.tag, value.text
+        yield kind.tag, value.text

@@ -140,7 +140,8 @@ def yield_step(
     rest = 0.0
     if action != BRAKE:
         _widen_bounds(qp, yielding.limits, past[Q])
-        kind, factor = _answer_relaxed(views, qp, yielding, state, relaxed, action)
+        found, factor = _answer_relaxed(views, qp, yielding, state, relaxed, action)
+        kind = int(found)
     x = views.point[: qp.q.size].copy()
     limits = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, own.lb, own.ub)
     if kind != STOPPED:
@@ -233,7 +234,7 @@ def _answer_relaxed(
     state: Vector,
     relaxed: Vector,
     action: int,
-) -> tuple[int, float]:
+) -> tuple[float, float]:
     """Turn a step's program into the first relaxed one that has a solution, and answer it.
 
     Returns:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import inspect
 import re
 from ast import FunctionDef
@@ -15,36 +16,35 @@ import numpy as np
 
 from iiwa_dnn.compiling.binding import prelude
 from iiwa_dnn.compiling.expressions import number_text
-from iiwa_dnn.compiling.library import Entry, source_of
+from iiwa_dnn.compiling.library import Entry, scratch_peak, source_of
 from iiwa_dnn.compiling.sources import KERNELS, TranslationError, decoration
-from iiwa_dnn.compiling.translator import Made, Translator
+from iiwa_dnn.compiling.translator import Function, Translator
+from iiwa_dnn.control import shield as shields
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.relaxed import BUDGET
-from iiwa_dnn.control.shield import (
-    HALTED,
-    NO_WISH,
-    REASON,
-    Shield,
-    approach,
-    take_positions,
-    take_wish,
-)
+from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.control.state import DELAY, ROWS, YIELDS
-from iiwa_dnn.control.step import ControlStep, sample_targets, take_step
+from iiwa_dnn.control.step import StepPlan, sample_targets, take_step
 from iiwa_dnn.control.yielding import ATTEMPTS
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.export.kernels import move_centers
-from iiwa_dnn.export.scratch import scratch_size
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET, enter_answer
 from iiwa_dnn.networks.integrators.implicit import settle
-from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp import Matrix
 from iiwa_dnn.qp.layout import IntMatrix
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
+from iiwa_dnn.references import Target
+from iiwa_dnn.robot.kinematics_kernel import ModelTables, model_tables, write_kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.scene import move_centers
 from iiwa_dnn.schemes.step import TARGET_SIZE
+
+HOSTILE = 200
+"""Steps in which the need of memory is measured."""
+
+MARGIN = 2
+"""Factor by which a controller has more."""
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -64,38 +64,43 @@ def code_of(controller: Controller, shield: Shield | None = None) -> dict[str, A
     Raises:
         InvalidInputError: A part of it is no kernel, or has no translation; it is named.
     """
+    _check(controller)
     step = controller.control_step
-    _check(controller, step)
     robot = controller.robot
     program = step.program
-    code = _Code(step)
     model = model_tables(robot, program.kinematics.frame_ids, program.needs_inertia)
-    texts = {
-        "plan": code.value("plan", code.plan),
+    code = _Code()
+    centers = _centers(controller)
+    if len(centers):
+        code.fields["constants"] = "c->constants"
+    if program.needs_inertia:
+        code.fields["inertia"] = "c->inertia"
+    lengths = _lengths(controller, model)
+    texts: dict[str, Any] = {
+        "plan": code.value("plan", code.numbered(step.plan)),
         "model": code.value("model", model),
         "take_step": code.kernel(take_step),
         "kinematics": code.kernel(write_kinematics),
         "start": "",
         "move": "",
         "target_function": "",
-        "shield_function": "" if shield is None else _shield_function(code, shield),
+        "shield_function": "",
+        "shield_declaration": "",
     }
     if step.samples:
-        texts["target_function"] = filled(
-            "target.c", {"sample": code.kernel(sample_targets), "delay": DELAY}
-        )
-    lengths = _lengths(controller)
-    if len(code.centers):
+        sample = {"sample": code.kernel(sample_targets), "delay": DELAY}
+        texts["target_function"] = filled("target.c", sample)
+    if len(centers):
         lengths["constants"] = step.plan.arrays.constants.size
         start = code.table("start", step.plan.arrays.constants)
         texts["start"] = f"    memcpy(c->constants, {start}, sizeof c->constants);\n"
-        call = f"{code.kernel(move_centers)}(&arena, plan.arrays.constants, centers, t);"
-        centers = code.value("centers", code.centers)
-        texts["move"] = f"    const matrix centers = {centers};\n    {call}\n"
+        moving = {"centers": code.value("centers", centers), "move": code.kernel(move_centers)}
+        texts["move"] = filled("move.c", moving)
     if shield is not None:
         lengths |= {"positions": robot.dof, "wish": robot.dof, "flags": 4, "aim": TARGET_SIZE}
-        texts["start"] += f"    c->flags[{REASON}] = {NO_WISH}.0;\n"
-    lengths["scratch"] = scratch_size(controller, model)
+        texts["start"] += f"    c->flags[{shields.REASON}] = {shields.NO_WISH}.0;\n"
+        texts["shield_function"] = filled("shield.c", _shield_texts(code, shield))
+        texts["shield_declaration"] = filled("shield.h", {"timeout": shield.settings[1]})
     return {
         **texts,
         **dict(zip("nmp", program.sizes, strict=True)),
@@ -120,29 +125,28 @@ def code_of(controller: Controller, shield: Shield | None = None) -> dict[str, A
     }
 
 
-def _shield_function(code: _Code, shield: Shield) -> str:
-    """Return the text of a shield's own step."""
-    values = {
+def _shield_texts(code: _Code, shield: Shield) -> dict[str, object]:
+    """Return the texts of a shield's own step."""
+    return {
         "settings": code.value("of_shield", shield.settings),
         "limits": code.value("motion", shield.motion),
-        "take_positions": code.kernel(take_positions),
-        "take_wish": code.kernel(take_wish),
-        "approach": code.kernel(approach),
+        "take_positions": code.kernel(shields.take_positions),
+        "take_wish": code.kernel(shields.take_wish),
+        "approach": code.kernel(shields.approach),
         "rows": ROWS,
         "yields": YIELDS,
-        "reason": REASON,
-        "halted": f"{HALTED}.0",
+        "reason": shields.REASON,
+        "halted": f"{shields.HALTED}.0",
     }
-    return filled("shield.c", values)
 
 
-def _lengths(controller: Controller) -> dict[str, int]:
+def _lengths(controller: Controller, model: ModelTables) -> dict[str, int]:
     """Count the numbers of each field of the struct."""
     step = controller.control_step
     program = step.program
     dof = controller.robot.dof
     qp = QP.from_data(np.zeros(program.data_size), program.sizes)
-    lengths = {
+    return {
         "row": step.layout.width,
         "past": ROWS * dof,
         "following": ROWS * dof,
@@ -150,44 +154,67 @@ def _lengths(controller: Controller) -> dict[str, int]:
         "relaxed": step.relaxed_size,
         "jacobian": 6 * dof,
         "placements": 12 * controller.robot.model.nframes,
+        "inertia": max(1, dof * dof * program.needs_inertia),
         "steps": 1,
+        "scratch": MARGIN * _scratch(controller, model) // 8,
     }
-    if program.needs_inertia:
-        lengths["inertia"] = dof * dof
-    return lengths
 
 
-def _check(controller: Controller, step: ControlStep) -> None:
+def _scratch(controller: Controller, model: ModelTables) -> int:
+    """Measure the bytes that kernels take for themselves in steps of all kinds.
+
+    What a kernel takes depends on sizes alone. So steps are taken in random postures towards random
+    targets, near and out of reach, at which every kernel of a step without a solution is entered.
+    """
+    twin = copy.copy(controller)
+    own = twin.program.kinematics
+    random = np.random.default_rng(0)
+    scratch_peak()
+    for k, q in enumerate(twin.robot.draw(random, HOSTILE)):
+        write_kinematics(model, q, own.jacobian, own.placements, own.inertia)
+        here = twin.program.placement[9:]
+        goal = here + random.choice([0.1, 2.0]) * random.uniform(-1.0, 1.0, 3)
+        target = Target(goal, linear_velocity=random.uniform(-1.0, 1.0, 3))
+        twin.step(q, k * twin.dt, dict.fromkeys(twin.program.target_frames, target))
+    return scratch_peak()
+
+
+def _check(controller: Controller) -> None:
     """Raise an InvalidInputError that names what of a controller is not compiled."""
-    for block in step.program.refreshed:
-        if block.part.copies or not isinstance(block.part, CollisionAvoidance):
-            problem = f"{type(block.part).__name__} is written with numpy, which is not exported"
-            raise InvalidInputError("scheme", problem, block.part)
     network = controller.solver.network
-    if type(network).initial_state is not Network.initial_state:
-        problem = f"{type(network).__name__} starts from a state of its own, which is not exported"
-        raise InvalidInputError("network", problem, network)
-    if not step.has_network:
-        problem = "has no compiled answer: take the projection network with the default integrators"
-        problem += ", or in continuous mode a compiled network and ExplicitEuler with substeps"
-        raise InvalidInputError("solver", problem, controller.solver)
+    for block in controller.program.refreshed:
+        moves = isinstance(block.part, CollisionAvoidance) and not block.part.copies
+        _require(moves, "scheme", block.part, "is written with numpy, which is not exported")
+    own_start = type(network).initial_state is not Network.initial_state
+    problem = "starts from a state of its own, which is not exported"
+    _require(not own_start, "network", network, problem)
+    problem = "has no compiled answer: take the projection network with the default integrators"
+    problem += ", or in continuous mode a compiled network and ExplicitEuler with substeps"
+    _require(controller.control_step.has_network, "solver", controller.solver, problem)
+
+
+def _require(holds: bool, argument: str, part: object, problem: str) -> None:
+    if not holds:
+        raise InvalidInputError(argument, f"{type(part).__name__} {problem}", part)
 
 
 class _Code:
     """Translation of the kernels that a controller reaches, and its tables.
 
     Attributes:
-        plan: The plan of its step, with the numbers of parts in place of their addresses.
-        centers: Obstacles that move, `move_centers`, (k, 7).
+        fields: Arrays of the plan that live in the struct, by their names.
     """
 
-    def __init__(self, step: ControlStep) -> None:
-        """Translate the parts that a step enters by their addresses."""
+    def __init__(self) -> None:
+        """Begin with nothing."""
+        self.fields = {"jacobian": "c->jacobian", "placements": "c->placements"}
         self._translator = Translator(_PACKAGE)
         self._translator.parts = []
-        self._tables: list[str] = []
         self._numbers = {0: 0}
-        arrays = step.plan.arrays
+
+    def numbered(self, plan: StepPlan) -> StepPlan:
+        """Return a plan with the numbers of parts in place of their addresses."""
+        arrays = plan.arrays
         table: IntMatrix = arrays.table.copy()
         network = table[1 + table[0, 4]]
         # `settle` does not enter the rates of a network.
@@ -195,16 +222,9 @@ class _Code:
         network[2] = 0 if settles else self._part(int(network[2]))
         for row in table[1:]:
             row[1] = self._part(int(row[1]))
-        yielding = step.plan.yielding
-        self.plan = step.plan._replace(
-            arrays=arrays._replace(table=table),
-            yielding=yielding._replace(stop=self._part(yielding.stop)),
-        )
-        self.centers = _centers(step)
-        self._fields = {"jacobian": "c->jacobian", "placements": "c->placements"}
-        self._fields["inertia"] = "c->inertia" if step.program.needs_inertia else "NULL"
-        if len(self.centers):
-            self._fields["constants"] = "c->constants"
+        yielding = plan.yielding
+        yielding = yielding._replace(stop=self._part(yielding.stop))
+        return plan._replace(arrays=arrays._replace(table=table), yielding=yielding)
 
     def _part(self, address: int) -> int:
         """Translate the function at an address, once; return its number."""
@@ -219,7 +239,7 @@ class _Code:
         """Translate a kernel; return its name in C."""
         return self._translated(source_of(kernel)).name
 
-    def _translated(self, function: Any) -> Made:
+    def _translated(self, function: Any) -> Function:
         """Translate a function of the package or of a user's, or raise an InvalidInputError."""
         name = getattr(function, "__name__", repr(function))
         try:
@@ -234,24 +254,30 @@ class _Code:
             raise InvalidInputError("controller", f"{name} cannot be exported: {error}") from error
 
     def value(self, name: str, own: Any) -> str:
-        """Return the initializer of a named tuple, a number, or an array, which becomes a table."""
-        if isinstance(own, np.ndarray):
-            data = self._fields.get(name) or self.table(name, own)
-            shape = own.shape if data != "NULL" or own.ndim == 1 else (0, 0)
-            return f"{{{', '.join([data, *map(str, shape)])}}}"
-        if isinstance(own, tuple):
-            members = zip(own._fields, own, strict=True)  # type: ignore[attr-defined]
-            return f"{{{', '.join(self.value(*each) for each in members)}}}"
-        return number_text(own)
+        """Return the initializer of a named tuple, a number, or an array, which becomes a table.
 
-    def table(self, name: str, values: Vector | IntMatrix) -> str:
+        Members of named tuples that do not live in the struct are constants of the kernels.
+        """
+        if isinstance(own, np.ndarray):
+            data = self.fields.get(name) or self.table(name, own)
+            return f"{{{', '.join([data, *map(str, own.shape)])}}}"
+        if not isinstance(own, tuple):
+            return number_text(own)
+        items: dict[str, Any] = own._asdict()  # type: ignore[attr-defined]
+        values = {each: self.value(each, item) for each, item in items.items()}
+        plain = [each for each in items if "c->" not in values[each]]
+        tag = f"{type(own).__module__.rpartition('.')[2]}_{type(own).__name__}"
+        self._translator.constants[tag] = {each: values[each] for each in plain}
+        return f"{{{', '.join(values.values())}}}"
+
+    def table(self, name: str, values: Any) -> str:
         """Write a table of constants; return its place."""
         if not values.size:
             return "NULL"
-        kind = "ptrdiff_t" if values.dtype.kind == "i" else "double"
+        kind = "int64_t" if values.dtype.kind == "i" else "double"
         numbers = ", ".join(map(number_text, values.ravel().tolist()))
         tag = f"table_{name}"
-        self._tables.append(f"static const {kind} {tag}[] = {{{numbers}}};")
+        self._translator.tables[tag] = f"static const {kind} {tag}[] = {{{numbers}}};"
         return f"({kind} *){tag}"
 
     def text(self) -> str:
@@ -260,20 +286,17 @@ class _Code:
         shared = prelude("kernels.h").split("\n\n")
         found = [re.match(r"static inline \S+ \*?(\w+)\(", each) for each in shared]
         used = [e for e, own in zip(shared, found, strict=True) if not own or own[1] in text]
-        whole = "\n\n".join([*used, filled("arena.c", {}), text, *self._tables])
+        whole = "\n\n".join([*used, filled("arena.c", {}), text])
         return re.sub(r"\bint64_t\b", "ptrdiff_t", whole)  # half as long on a microcontroller
 
 
-def _centers(step: ControlStep) -> Matrix:
+def _centers(controller: Controller) -> Matrix:
     """Return the obstacles that move as `move_centers` takes them, (k, 7)."""
-    rows: list[Vector] = []
-    for block in step.program.blocks:
+    rows: list[Matrix] = [np.zeros((0, 7))]
+    for block in controller.program.blocks:
         if isinstance(block.part, CollisionAvoidance):
-            scene = block.part.scene(step.program.robot)
-            for obstacle, part in scene.moving:
-                first = block.start + part.start
-                rows.append(np.array([first, *scene.constants[part], *obstacle.velocity]))
-    return np.reshape(rows, (-1, 7))
+            rows.append(block.part.scene(controller.robot).centers + block.start * np.eye(1, 7))
+    return np.concatenate(rows)
 
 
 def _systems(controller: Controller) -> int:

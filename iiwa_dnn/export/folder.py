@@ -5,7 +5,7 @@ import json
 import os
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,13 +13,14 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.control.command import PLACEMENT
 from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.paths import by_frame
 from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.errors import MissingDependencyError
 from iiwa_dnn.export.code import code_of, filled
 from iiwa_dnn.export.load import tested
 from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.references import Lissajous, Reference
+from iiwa_dnn.references import Lissajous
 from iiwa_dnn.robot import Configuration
 
 STEPS = 500
@@ -34,29 +35,6 @@ _FILES = (
     "example_fri.cpp",
     "README.md",
 )
-
-
-class Vectors(NamedTuple):
-    """A run of a controller in closed loop with an arm that follows every command.
-
-    Attributes:
-        t: Times [s], (k,).
-        q: Joint positions [rad], (k, n).
-        targets: Targets of all frames, (k, 18 frames).
-        dq: Commands [rad/s], (k, n).
-        actions: Actions, (k,).
-    """
-
-    t: Vector
-    q: Matrix
-    targets: Matrix
-    dq: Matrix
-    actions: Vector
-
-    @property
-    def table(self) -> Matrix:
-        """All columns, (k, 2 n + 18 frames + 2)."""
-        return np.column_stack(list(self))
 
 
 def c99(
@@ -88,20 +66,16 @@ def c99(
     own = controller.controller() if isinstance(controller, Shield) else controller
     twin, start = _anchored(own, q0)
     texts = code_of(twin, shield)
-    texts["shield_declaration"] = ""
-    if shield is not None:
-        texts["shield_declaration"] = filled("shield.h", {"timeout": shield.settings[1]})
-    vectors = run(twin, start.q, STEPS)
+    rows = run(twin, start.q, STEPS)
     folder = prepare_folder(folder)
-    texts |= _texts(twin, start, vectors, texts["has_reference"])
-    write_csv(folder / "vectors.csv", _head(twin), vectors.table)
+    texts |= _texts(twin, start, texts["has_reference"])
+    write_csv(folder / "vectors.csv", _head(twin), rows)
     for name in _FILES:
-        write_text(folder / name, filled(name, texts | {"verified": "not yet: `make test`"}))
+        write_text(folder / name, filled(name, texts))
     with suppress(MissingDependencyError):
         if verify:
-            write_text(
-                folder / "README.md", filled("README.md", texts | {"verified": tested(folder)})
-            )
+            texts["verified"] = tested(folder)
+            write_text(folder / "README.md", filled("README.md", texts))
     return folder
 
 
@@ -118,62 +92,62 @@ def _anchored(controller: Controller, q0: ArrayLike | None) -> tuple[Controller,
     return twin, start
 
 
-def run(controller: Controller, q0: Vector, steps: int) -> Vectors:
-    """Run a controller from joint positions q0 (n,) [rad] for a number of steps.
+def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
+    """Run a controller from joint positions q0 (n,) [rad], with an arm that follows every command.
 
     Without a reference its frames follow a small figure of eight.
+
+    Returns:
+        Rows of the time [s], joint positions, targets of all frames, the command and the action.
     """
     twin = copy.copy(controller)
-    dt = twin.dt
     if twin.reference is None:
         start = Configuration(twin.robot, q0)
         figure = Lissajous((0.01, 0.01, 0.0))
-        names = twin.program.target_frames
-        paths: dict[str, Reference] = {name: figure.anchored(start.frame(name)) for name in names}
-        twin.reference = paths
+        frames = twin.program.target_frames
+        twin.reference = {name: figure.anchored(start.frame(name)) for name in frames}
     q = q0.copy()
     rows = []
     for k in range(steps):
-        targets = twin.targets(k * dt - twin.delay)
-        command = twin.step(q, k * dt)
-        rows.append((k * dt, q, targets.ravel(), command.dq, float(command.action)))
-        q = q + dt * command.dq
-    return Vectors(*(np.array(column) for column in zip(*rows, strict=True)))
+        t = k * twin.dt
+        targets = twin.targets(t - twin.delay)
+        command = twin.step(q, t)
+        rows.append(np.concatenate([[t], q, targets.ravel(), command.dq, [float(command.action)]]))
+        q = q + twin.dt * command.dq
+    return np.array(rows)
 
 
 def _head(controller: Controller) -> list[str]:
+    """Return the names of the columns of a run."""
     dof = controller.robot.dof
-    numbers = 18 * len(controller.program.target_frames)
-    joints = [f"q{i + 1}" for i in range(dof)]
-    rates = [f"dq{i + 1}" for i in range(dof)]
-    return ["t", *joints, *(f"target{k + 1}" for k in range(numbers)), *rates, "action"]
+    counts = {"q": dof, "target": 18 * len(controller.program.target_frames), "dq": dof}
+    names = [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
+    return ["t", *names, "action"]
 
 
-def _texts(
-    controller: Controller, start: Configuration, vectors: Vectors, has_reference: bool
-) -> dict[str, Any]:
+def _texts(controller: Controller, start: Configuration, has_reference: bool) -> dict[str, Any]:
     """Return the texts of the templates that are about the run and the settings."""
     robot = controller.robot
     tip = controller.program.target_frames[0]
     limits = np.where(robot.dq_max < np.inf, robot.dq_max, 1.0)
-    settings = plain(settings_of(controller))
-    sample = "        controller_target(&c, k * CONTROLLER_DT, target);\n"
-    sample_of_fri = "        controller_target(&controller_, t_, target);\n"
-    reference = {"reference": json.dumps(settings["reference"])}
+    settings = _settings(controller, tip)
+    declared = filled("target.h", {"reference": json.dumps(settings["reference"])})
+    targets = run(controller, start.q, 1)[0, 1 + robot.dof :]
     return {
-        "steps": len(vectors.t),
+        "steps": STEPS,
         "velocity_limits": _numbers(limits),
         "tolerance": f"{10.0 * controller.solver.tol:g}",
         "q0": _numbers(start.q),
-        "target": _numbers(vectors.targets[0]),
+        "target": _numbers(targets[: 18 * len(controller.program.target_frames)]),
         "tip": PLACEMENT * robot.frame_id(tip) + 9,
         "tip_name": tip,
-        "sample": sample * has_reference,
-        "fri_sample": sample_of_fri * has_reference,
+        "sample": "        controller_target(&c, k * CONTROLLER_DT, target);\n" * has_reference,
+        "fri_sample": "        controller_target(&controller_, t_, target);\n" * has_reference,
         "usage": "controller_target(&c, t, target);  /* the reference */\n" * has_reference,
-        "target_declaration": filled("target.h", reference) * has_reference,
+        "target_declaration": declared * has_reference,
         "settings": json.dumps(settings, indent=2),
         "what_systems": "linear systems" if controller.mode == "converged" else "sub-steps",
+        "verified": "not yet: `make test`",
     }
 
 
@@ -181,16 +155,11 @@ def _numbers(values: Vector) -> str:
     return ", ".join(map(repr, values.tolist()))
 
 
-def settings_of(controller: Controller) -> dict[str, Any]:
+def _settings(controller: Controller, tip: str) -> Any:
     """Return the settings of a controller, as values that JSON can hold."""
     robot = controller.robot
-    reference: Any = controller.reference
-    solver = controller.solver
-    if isinstance(reference, Reference):
-        reference = reference.settings()
-    elif reference is not None:
-        reference = {name: path.settings() for name, path in reference.items()}
-    return {
+    paths = by_frame(controller.reference, tip)
+    settings = {
         "robot": robot.name,
         "tip": robot.tip,
         "locked": robot.locked,
@@ -200,8 +169,9 @@ def settings_of(controller: Controller) -> dict[str, Any]:
         "dt": controller.dt,
         "mode": controller.mode,
         "policy": controller.policy,
-        "tolerance": solver.tol,
-        "network": solver.network.settings(),
-        "reference": reference,
+        "tolerance": controller.solver.tol,
+        "network": controller.solver.network.settings(),
+        "reference": {name: path.settings() for name, path in paths.items()},
         "scheme": controller.scheme.settings(),
     }
+    return plain(settings)

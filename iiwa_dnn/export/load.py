@@ -5,17 +5,17 @@ from __future__ import annotations
 import ctypes
 import os
 import re
-import shutil
 import subprocess
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
+from iiwa_dnn.compiling.build import run_compiler
 from iiwa_dnn.errors import FileError, MissingDependencyError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.qp import Vector
@@ -44,19 +44,15 @@ class ExportedController:
         frames: Number of tracked frames.
         dt: Control period [s].
         size: Bytes of the controller's memory.
-        systems: Largest number of linear systems of a step.
-        has_reference: Whether the controller has a reference of its own.
     """
 
-    def __init__(self, library: ctypes.CDLL, header: str) -> None:
+    def __init__(self, library: Any, header: str) -> None:
         """Take a compiled controller and its header, and begin at rest."""
         macros = dict(re.findall(r"#define CONTROLLER_(\w+) (\S+)", header))
         self.dof = int(macros["DOF"])
         self.frames = int(macros["FRAMES"])
         self.dt = float(macros["DT"])
         self.size = int(macros["SIZE"])
-        self.systems = int(macros["SYSTEMS"])
-        self.has_reference = "controller_target" in header
         self._library = library
         self._memory = (ctypes.c_double * (self.size // 8))()
         self.reset()
@@ -75,12 +71,8 @@ class ExportedController:
         Raises:
             InvalidInputError: `q` or `target` has a wrong shape or is not finite.
         """
-        joints = checks.finite_array("q", q, (self.dof,))
         wanted = checks.finite_array("target", np.ravel(target), (18 * self.frames,))
-        dq = np.empty(self.dof)
-        step = self._library.controller_step
-        action = step(self._memory, _pointer(joints), _pointer(wanted), _pointer(dq))
-        return ExportedCommand(dq, int(action))
+        return self._command(self._library.controller_step, q, wanted)
 
     def shield_step(self, q: ArrayLike, wish: ArrayLike | None = None) -> ExportedCommand:
         """Compute the command of a shield for a joint velocity wished for [rad/s], (n,), or none.
@@ -88,11 +80,8 @@ class ExportedController:
         Raises:
             InvalidInputError: `q` or the wish has a wrong shape, or `q` is not finite.
         """
-        joints = checks.finite_array("q", q, (self.dof,))
-        asked = None if wish is None else _pointer(checks.array("wish", wish, (self.dof,)))
-        dq = np.empty(self.dof)
-        action = self._library.shield_step(self._memory, _pointer(joints), asked, _pointer(dq))
-        return ExportedCommand(dq, int(action))
+        asked = None if wish is None else checks.array("wish", wish, (self.dof,))
+        return self._command(self._library.shield_step, q, asked)
 
     def shield_halt(self) -> None:
         """Brake from now on, whatever is wished for."""
@@ -101,21 +90,19 @@ class ExportedController:
     def target(self, t: float) -> Vector:
         """Compute the targets of the controller's reference at a time [s], (18 frames,)."""
         target = np.empty(18 * self.frames)
-        sample = self._library.controller_target
-        sample(self._memory, ctypes.c_double(checks.finite("t", t)), _pointer(target))
+        time = ctypes.c_double(checks.finite("t", t))
+        self._library.controller_target(self._memory, time, _pointer(target))
         return target
 
+    def _command(self, step: Any, q: ArrayLike, asked: Vector | None) -> ExportedCommand:
+        joints = checks.finite_array("q", q, (self.dof,))
+        dq = np.empty(self.dof)
+        given = None if asked is None else _pointer(asked)
+        return ExportedCommand(dq, step(self._memory, _pointer(joints), given, _pointer(dq)))
 
-def load(
-    folder: str | os.PathLike[str], flags: Sequence[str] = FLAGS, compiler: str | None = None
-) -> ExportedController:
-    """Compile an exported controller and return it.
 
-    Args:
-        folder: Folder that `c99` wrote.
-        flags: Flags of the compiler.
-        compiler: Its command; None: that of the environment's ``CC``, or else ``cc``, ``gcc`` or
-            ``clang``.
+def load(folder: str | os.PathLike[str], flags: Sequence[str] = FLAGS) -> ExportedController:
+    """Compile an exported controller, by the environment's ``CC`` or what there is; return it.
 
     Raises:
         FileError: The folder holds no controller, or it does not compile.
@@ -128,7 +115,7 @@ def load(
         raise FileError(folder / "controller.h", one_line(error)) from error
     with tempfile.TemporaryDirectory() as place:
         library = Path(place) / "controller.so"
-        _compile(folder, library, (*flags, "-shared", "-fPIC"), ["controller.c"], compiler)
+        _compile((*flags, "-shared", "-fPIC"), folder, ["controller.c"], library)
         # The system keeps the file as long as it is loaded.
         return ExportedController(ctypes.CDLL(str(library)), header)
 
@@ -142,40 +129,19 @@ def tested(folder: Path) -> str:
     """
     with tempfile.TemporaryDirectory() as place:
         program = Path(place) / "test_controller"
-        _compile(folder, program, FLAGS, ["test_controller.c", "controller.c"])
+        _compile(FLAGS, folder, ["test_controller.c", "controller.c"], program)
         words = [str(program), str(folder / "vectors.csv")]
         said = subprocess.run(words, capture_output=True, text=True, check=False).stdout
         return f"{said.strip()} ({' '.join(FLAGS)})"
 
 
-def _compile(
-    folder: Path,
-    output: Path,
-    flags: Sequence[str],
-    names: Sequence[str],
-    compiler: str | None = None,
-) -> None:
-    """Compile files of a folder; raises what `load` does."""
-    sources = [str(folder / name) for name in names]
-    words = [find_compiler(compiler), *flags, "-o", str(output), *sources, "-lm"]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise FileError(sources[-1], f"does not compile: {done.stderr.strip()[:500]}")
-
-
-def find_compiler(name: str | None = None) -> str:
-    """Return the path of a C compiler.
-
-    Raises:
-        MissingDependencyError: There is none.
-    """
-    names = [name] if name else [*filter(None, [os.environ.get("CC")]), "cc", "gcc", "clang"]
-    for each in names:
-        found = shutil.which(each)
-        if found:
-            return found
-    problem = f"a C compiler ({', '.join(names)})"
-    raise MissingDependencyError(problem, "on Debian and Ubuntu: apt-get install gcc")
+def _compile(flags: Sequence[str], folder: Path, names: Sequence[str], output: Path) -> None:
+    try:
+        run_compiler(flags, [folder / name for name in names], output)
+    except LookupError as error:
+        raise MissingDependencyError("a C compiler", str(error.args[0])) from error
+    except RuntimeError as error:
+        raise FileError(folder / names[-1], str(error)) from error
 
 
 def _pointer(array: Vector) -> ctypes.c_void_p:

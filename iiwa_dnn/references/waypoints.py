@@ -39,7 +39,7 @@ _ROUNDS = 6
 
 
 @compiled
-def _piece(t: float, constants: Array) -> tuple[int, float, float]:
+def _piece(t: float, constants: Array) -> tuple[float, float, float]:
     """Find the piece at a time, the time since it began, and 0.0 if the path is at rest, or 1.0."""
     closed = constants[0] != 0.0
     pieces = int(constants[1])
@@ -80,7 +80,7 @@ def _slope(constants: Array, at: int, x: float) -> Vector3:
 def waypoints_path(t: float, constants: Array, target: Array) -> None:
     """Move a target along `Waypoints`, see the comment above for the constants (c,)."""
     piece, x, moves = _piece(t, constants)
-    at = 3 + int(constants[1]) + 24 * piece
+    at = 3 + int(constants[1]) + 24 * int(piece)
     moved = added(_cubic(constants, at, x), _triple(constants, at + 9))
     velocity = _slope(constants, at, x)
     for i in range(3):

@@ -111,20 +111,19 @@ class Scene(NamedTuple):
         robot: The robot, n joints.
         pairs: The pairs.
         frames: Links whose placements are needed.
-        moving: Obstacles that move, each with the part of `constants` that its centre takes.
+        centers: Obstacles that move, as `move_centers` takes them, (obstacles, 7).
         constants: Numbers that compiled code sees through `scene_views`, (k,).
     """
 
     robot: Robot
     pairs: list[Pair]
     frames: tuple[str, ...]
-    moving: list[tuple[Obstacle, slice]]
+    centers: Matrix
     constants: Vector
 
     def move(self, constants: Vector, t: float) -> None:
         """Bring the moving obstacles in a copy of `constants`, (k,), to a time [s]."""
-        for obstacle, part in self.moving:
-            constants[part] = self.constants[part] + obstacle.shift(t)
+        move_centers(constants, self.centers, t)
 
     def nearest(self, q: Matrix, t: Vector) -> tuple[Vector, NDArray[np.int64]]:
         """Compute the least distance [m] of all pairs, (k,), and the index of its pair, (k,).
@@ -189,13 +188,16 @@ def make_scene(
         raise InvalidInputError("obstacles", problem, obstacles)
     # The last three numbers of a body are its centre.
     first = HEAD + robot.dof + PER_BODY * (links + 1) - 3
-    centers = [slice(at, at + 3) for at in first + PER_BODY * np.arange(len(obstacles))]
-    moving = [pair for pair in zip(obstacles, centers, strict=True) if pair[0].moves]
+    moving = [
+        np.concatenate([[first + PER_BODY * k], each.box.center, each.velocity])
+        for k, each in enumerate(obstacles)
+        if each.moves
+    ]
     frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
     names = [Pair(bodies[i].name, bodies[k].name) for i, k in pairs]
     head = np.array([least, gain, len(bodies), len(pairs)])
     constants = np.concatenate([head, robot.dq_max, _layout(robot, bodies, pairs)])
-    return Scene(robot, names, frames, moving, constants)
+    return Scene(robot, names, frames, np.reshape(moving, (-1, 7)), constants)
 
 
 def _layout(robot: Robot, bodies: list[_Body], pairs: list[tuple[int, int]]) -> Vector:
@@ -298,6 +300,19 @@ def scene_views(constants: Vector, dof: int) -> SceneViews:
 
 
 @compiled
+def move_centers(constants: Vector, centers: Matrix, t: float) -> None:
+    """Write the centres of moving obstacles at time t [s] into the constants (k,).
+
+    Each row of the centers (obstacles, 7) has the first of a centre's indices, the centre at time 0
+    [m], and its velocity [m/s].
+    """
+    for k in range(len(centers)):
+        first = int(centers[k, 0])
+        for i in range(3):
+            constants[first + i] = centers[k, 1 + i] + t * centers[k, 4 + i]
+
+
+@compiled
 def place_bodies(scene: SceneViews, placements: Matrix, placed: Matrix) -> None:
     """Write the placements of all bodies in the world, (b, 12), for those of frames (k, 12)."""
     for k in range(len(scene.bodies)):
@@ -335,7 +350,8 @@ def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
     if core > _MET:
         normal = (side[0] / core, side[1] / core, side[2] / core)
     else:
-        core, normal = depth(nearest, half)
+        core, x, y, z = depth(nearest, half)
+        normal = (x, y, z)
     outward = axis_at(base, normal)
     point = combined(1.0, a, s, way)
     other = combined(1.0, point, -core, outward)
@@ -425,17 +441,18 @@ def nearest_parameter(a: Triple, u: Triple, half: Triple) -> float:
 
 
 @compiled
-def depth(x: Triple, half: Triple) -> tuple[float, Triple]:
+def depth(x: Triple, half: Triple) -> tuple[float, float, float, float]:
     """Compute how far a point is from leaving a box by its nearest face, negative inside.
 
     Returns:
-        The distance from the face, and the normal out of it, (3,).
+        The distance from the face, and the three components of the normal out of it.
     """
     found = -1e300
-    normal = (0.0, 0.0, 1.0)
+    axis = 2
+    sign = 1.0
     for i in range(3):
         if abs(x[i]) - half[i] > found:
             found = abs(x[i]) - half[i]
             sign = 1.0 if x[i] >= 0.0 else -1.0
-            normal = (sign * (i == 0), sign * (i == 1), sign * (i == 2))
-    return found, normal
+            axis = i
+    return found, sign * (axis == 0), sign * (axis == 1), sign * (axis == 2)

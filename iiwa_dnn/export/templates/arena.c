@@ -2,7 +2,7 @@
  * but this would be written, and the step would be refused. */
 struct arena { char *top, *start, *end; bool *full; };
 
-static inline void *arena_take(struct arena *arena, int64_t count)
+static inline void *arena_empty(struct arena *arena, int64_t count)
 {
     const int64_t bytes = 8 * count;
     char *taken = arena->top;

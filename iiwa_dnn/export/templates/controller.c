@@ -25,12 +25,12 @@ int controller_step(struct controller *c, const double *q, const double *target,
     struct arena arena = controller_arena(c, &full);
     const step_StepPlan plan = controller_plan(c);
     const kinematics_kernel_ModelTables model = @model@;
-    const vector row = {c->row, @width@};
-    const matrix past = {c->past, @rows@, CONTROLLER_DOF};
-    const matrix following = {c->following, @rows@, CONTROLLER_DOF};
-    const vector state = {c->state, @state@};
-    const vector relaxed = {c->relaxed, @relaxed@};
-    const vector joints = {c->past, CONTROLLER_DOF};
+    const Vector row = {c->row, @width@};
+    const Matrix past = {c->past, @rows@, CONTROLLER_DOF};
+    const Matrix following = {c->following, @rows@, CONTROLLER_DOF};
+    const Vector state = {c->state, @state@};
+    const Vector relaxed = {c->relaxed, @relaxed@};
+    const Vector joints = {c->past, CONTROLLER_DOF};
     const double t = c->steps[0] * CONTROLLER_DT;
     memcpy(c->past, q, sizeof(double) * CONTROLLER_DOF);
     memcpy(c->row + @at_targets@, target, sizeof(double) * 18 * CONTROLLER_FRAMES);

@@ -3,12 +3,12 @@ int shield_step(struct controller *c, const double *q, const double *wish, doubl
 {
     bool full = false;
     struct arena arena = controller_arena(c, &full);
-    const vector settings = @settings@;
-    const vector limits = @limits@;
-    const vector joints = {(double *)q, CONTROLLER_DOF};
-    const vector asked = {wish ? (double *)wish : c->wish, CONTROLLER_DOF};
-    const vector aim = {c->aim, CONTROLLER_DOF};
-    const matrix past = {c->past, @rows@, CONTROLLER_DOF};
+    const Vector settings = @settings@;
+    const Vector limits = @limits@;
+    const Vector joints = {(double *)q, CONTROLLER_DOF};
+    const Vector asked = {wish ? (double *)wish : c->wish, CONTROLLER_DOF};
+    const Vector aim = {c->aim, CONTROLLER_DOF};
+    const Matrix past = {c->past, @rows@, CONTROLLER_DOF};
     const shield_ShieldState kept = {
         {c->positions, CONTROLLER_DOF}, {c->wish, CONTROLLER_DOF}, {c->flags, 4}
     };

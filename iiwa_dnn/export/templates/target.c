@@ -4,6 +4,6 @@ void controller_target(struct controller *c, double t, double *target)
     bool full = false;
     struct arena arena = controller_arena(c, &full);
     const step_StepPlan plan = controller_plan(c);
-    const matrix targets = {target, CONTROLLER_FRAMES, 18};
+    const Matrix targets = {target, CONTROLLER_FRAMES, 18};
     @sample@(&arena, &plan.arrays, t - c->past[@delay@ * CONTROLLER_DOF], targets);
 }

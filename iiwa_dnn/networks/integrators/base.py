@@ -15,6 +15,9 @@ Settled = tuple[int, float, float, float, float]
 since a control loop asks for it at every step.
 """
 
+Answered = tuple[float, float, float, float, float]
+"""What `Settled` holds, as compiled code returns it."""
+
 TOLERANCE = 0
 """Index, in a compiled answer's constants, of the tolerance of the residuals;"""
 BUDGET = 1
@@ -30,11 +33,11 @@ NETWORK = 4
 @entry
 def enter_answer(
     address: int, qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vector
-) -> Settled:
+) -> Answered:
     """Enter a compiled answer at an address.
 
     It advances the state (size,), by a time or until it has settled, writes the point
-    (2n + m + p,) that it stands for, and returns what `Settled` holds. `rates` is the address of
+    (2n + m + p,) that it stands for, and returns what `Answered` holds. `rates` is the address of
     the network's function, and the constants are (k,).
     """
     raise NotImplementedError
@@ -63,7 +66,7 @@ def answer_program(
     constants: Vector,
     state: Vector,
     point: Vector,
-) -> Settled:
+) -> Answered:
     """Enter the compiled answer at an address.
 
     The program is `QP.data` with its sizes (n, m, p); constants (k,), state (size,) and point
@@ -72,7 +75,7 @@ def answer_program(
     """
     n, m, p = sizes
     qp = qp_views(data, n, m, p)
-    settled: Settled = enter_answer(address, qp, rates, constants, state, point)
+    settled: Answered = enter_answer(address, qp, rates, constants, state, point)
     return settled
 
 

@@ -9,7 +9,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network, enter_rates
-from iiwa_dnn.networks.integrators.base import DURATION, NETWORK, SUBSTEPS, Integrator, Settled
+from iiwa_dnn.networks.integrators.base import DURATION, NETWORK, SUBSTEPS, Answered, Integrator
 from iiwa_dnn.networks.projection import mark_active, stable_step
 from iiwa_dnn.qp.layout import QPViews, Vector, check_size
 from iiwa_dnn.qp.program import QP
@@ -65,7 +65,7 @@ class ExplicitEuler(Integrator):
 
 
 @compiled
-def follow(qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vector) -> Settled:
+def follow(qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vector) -> Answered:
     """Advance the network by its time with explicit steps; a compiled answer (`enter_answer`).
 
     It reads constants (k,), advances the state (size,) and writes the point (2n + m + p,).

@@ -30,6 +30,7 @@ from iiwa_dnn.networks.integrators import pseudo_transient
 from iiwa_dnn.networks.integrators.base import (
     BUDGET,
     TOLERANCE,
+    Answered,
     Integrator,
     Settled,
     answer_program,
@@ -130,7 +131,7 @@ def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -
 
 
 @compiled
-def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector) -> Settled:
+def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector) -> Answered:
     """Advance `s` (size,) in place until the residuals of `point` (size,) are small enough.
 
     A compiled answer (`enter_answer`), of the projection network alone: `rates` is not used.
@@ -199,4 +200,5 @@ def settle_program(qp: QP, state: Vector, point: Vector, tol: float, max_systems
     check_size("point", point, 2 * n + m + p)
     constants = np.array([tol, max_systems])
     address = enter_answer.address(settle)
-    return answer_program(qp.data, qp.sizes, address, 0, constants, state, point)
+    answered = answer_program(qp.data, qp.sizes, address, 0, constants, state, point)
+    return int(answered[0]), *answered[1:]

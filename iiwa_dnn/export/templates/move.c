@@ -1,0 +1,2 @@
+    const Matrix centers = @centers@;
+    @move@(&arena, plan.arrays.constants, centers, t);
