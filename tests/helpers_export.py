@@ -27,7 +27,7 @@ def needs(*programs: str) -> Any:
 def compile_quickly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the package compile what it exports without optimization, and run its test once."""
     monkeypatch.setattr(sys.modules["iiwa_dnn.export.load"], "FLAGS", (*QUICK, "-DROUNDS=1"))
-    monkeypatch.setattr(load, "__defaults__", (QUICK, None))
+    monkeypatch.setattr(load, "__defaults__", (QUICK,))
 
 
 def run(*words: str | Path, cwd: Path | None = None) -> str:

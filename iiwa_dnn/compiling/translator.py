@@ -219,8 +219,10 @@ class Function(Expressions):
                 whole = self.value(target)
                 place = whole.text
                 if whole.kind.axes:
-                    self._lines.append(f"for (int64_t at = 0, end = {whole.size}; at < end; at++)")
-                    place = f"    {whole.text}.data[at]"
+                    loop = (
+                        f"for (int64_t own_k = 0, own_end = {whole.size}; own_k < own_end; own_k++)"
+                    )
+                    place = f"{loop} {whole.text}.data[own_k]"
         self._lines.append(f"{place} {sign} {value.text};")
 
 

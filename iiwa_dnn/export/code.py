@@ -118,7 +118,7 @@ def code_of(controller: Controller, shield: Shield | None = None) -> dict[str, A
         "dt": repr(controller.dt),
         "systems": _systems(controller),
         "code": code.text(),
-        "fields": "\n".join(f"    double {name}[{size}];" for name, size in lengths.items()),
+        "fields": "\n".join(f"    double {name}[{k}];" for name, k in lengths.items() if k),
         "size": 8 * sum(lengths.values()),
         "actions": "\n".join(f"#define CONTROLLER_{each.name} {each.value}" for each in Action),
         "has_reference": step.samples,
@@ -154,7 +154,7 @@ def _lengths(controller: Controller, model: ModelTables) -> dict[str, int]:
         "relaxed": step.relaxed_size,
         "jacobian": 6 * dof,
         "placements": 12 * controller.robot.model.nframes,
-        "inertia": max(1, dof * dof * program.needs_inertia),
+        "inertia": dof * dof * program.needs_inertia,
         "steps": 1,
         "scratch": MARGIN * _scratch(controller, model) // 8,
     }
@@ -208,6 +208,7 @@ class _Code:
     def __init__(self) -> None:
         """Begin with nothing."""
         self.fields = {"jacobian": "c->jacobian", "placements": "c->placements"}
+        self.fields["inertia"] = "NULL"
         self._translator = Translator(_PACKAGE)
         self._translator.parts = []
         self._numbers = {0: 0}
@@ -274,7 +275,7 @@ class _Code:
         """Write a table of constants; return its place."""
         if not values.size:
             return "NULL"
-        kind = "int64_t" if values.dtype.kind == "i" else "double"
+        kind = "ptrdiff_t" if values.dtype.kind == "i" else "double"
         numbers = ", ".join(map(number_text, values.ravel().tolist()))
         tag = f"table_{name}"
         self._translator.tables[tag] = f"static const {kind} {tag}[] = {{{numbers}}};"

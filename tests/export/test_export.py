@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import re
-import shutil
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import iiwa_dnn
 from export_settings import SETTINGS, drawing, with_parts
 from helpers_export import QUICK, WARNINGS, needs, run
 from iiwa_dnn import Controller, DoubleIndicator
+from iiwa_dnn.compiling import build
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError
 from iiwa_dnn.export import ExportedController, c99, load
 from iiwa_dnn.export.folder import run as run_controller
@@ -29,12 +29,8 @@ def heart(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return c99(controller, tmp_path_factory.mktemp("heart"), q0)
 
 
-QUICKEST = "clang" if shutil.which("clang") else "gcc"
-"""Compiler that takes half of gcc's time without optimization; the heart is compiled by gcc."""
-
-
-def loaded(folder: Path, compiler: str = "gcc") -> ExportedController:
-    return load(folder, (*WARNINGS, *QUICK), compiler)
+def loaded(folder: Path) -> ExportedController:
+    return load(folder, (*WARNINGS, *QUICK))
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +76,7 @@ def take_kernels_kinematics(controller: Controller) -> None:
 def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) -> None:
     """Pinocchio's own kinematics have other last digits: tests/robot/test_kinematics_kernel.py."""
     controller, q0 = SETTINGS[name]()
-    exported = loaded(c99(controller, tmp_path, q0, verify=False), QUICKEST)
+    exported = loaded(c99(controller, tmp_path, q0, verify=False))
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
     take_kernels_kinematics(controller)
     layout = controller.layout
@@ -148,11 +144,11 @@ def test_make_and_the_example_run_as_the_readme_says(heart: Path, tmp_path: Path
     run("make", "example", "CFLAGS=-O0", cwd=tmp_path)
     controller, q0 = drawing()
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
-    vectors = run_controller(controller, q0, 1001)
+    rows = run_controller(controller, q0, 1001)
     said = run(tmp_path / "example")
     shown = [float(value) for value in re.findall(r"= (\S+) rad", said)]
-    np.testing.assert_allclose(shown, vectors.q[-1], rtol=0, atol=1e-6)
-    last = controller.placement(vectors.q[999])[9:] - vectors.targets[999, :3]
+    np.testing.assert_allclose(shown, rows[-1, 1:8], rtol=0, atol=1e-6)
+    last = controller.placement(rows[999, 1:8])[9:] - rows[999, 8:11]
     (far,) = re.findall(r"distance of \S+ from its target: (\S+) m", said)
     assert float(far) == pytest.approx(np.linalg.norm(last), rel=1e-2)
 
@@ -174,7 +170,7 @@ def test_the_code_is_plain_c_without_global_state(heart: Path) -> None:
     assert variables
     assert all(line.startswith("static const") for line in variables)
     for words in (
-        "static ptrdiff_t control_step_take_step(struct arena *arena, vector row,",
+        "static ptrdiff_t control_step_take_step(struct arena *arena, Vector row,",
         "/* Tighten the bounds to those of `JointLimits`, whose constants these are.",
         " * iiwa_dnn/schemes/limits.py: joint_limits */",
     ):
@@ -195,14 +191,14 @@ def test_two_controllers_in_two_threads(
 ) -> None:
     controllers = [ExportedController(library, (heart / "controller.h").read_text()), exported]
     controller, q0 = drawing()
-    vectors = run_controller(controller, q0, 400)
+    rows = run_controller(controller, q0, 400)
     shifts = (0.0, 0.01)
 
     def commands(number: int) -> list[np.ndarray]:
         controllers[number].reset()
         return [
             controllers[number].step(q + shifts[number], target).dq
-            for q, target in zip(vectors.q, vectors.targets, strict=True)
+            for q, target in zip(rows[:, 1:8], rows[:, 8:26], strict=True)
         ]
 
     alone = [commands(0), commands(1)]
@@ -292,7 +288,10 @@ class _Eager(iiwa_dnn.ProjectionNetwork):
     [
         (_with_own_part, "Manipulability is written with numpy"),
         (lambda: drawing(with_parts(limits=(_Closing(),)))[0], "_Closing is written with numpy"),
-        (lambda: _with_network(iiwa_dnn.PrimalDualNetwork()), "solver: has no compiled answer"),
+        (
+            lambda: _with_network(iiwa_dnn.PrimalDualNetwork()),
+            "solver: DNNSolver has no compiled answer",
+        ),
         (lambda: _with_network(_Eager()), "network: _Eager starts from a state of its own"),
     ],
 )
@@ -312,9 +311,8 @@ class _Plain(iiwa_dnn.Heart):
 def test_a_reference_without_compiled_form_leaves_the_targets_to_the_caller(tmp_path: Path) -> None:
     controller, q0 = drawing(path=_Plain())
     folder = c99(controller, tmp_path, q0, verify=False)
-    exported = loaded(folder, QUICKEST)
-    assert not exported.has_reference
-    assert "controller_target" not in (folder / "README.md").read_text(encoding="utf-8")
+    for name in ("controller.h", "README.md"):
+        assert "controller_target" not in (folder / name).read_text(encoding="utf-8")
     run("gcc", *WARNINGS, "-fsyntax-only", folder / "example.c")
 
 
@@ -323,8 +321,7 @@ def test_a_reference_without_compiled_form_leaves_the_targets_to_the_caller(tmp_
 )
 def test_a_tilting_path_is_exported(path: iiwa_dnn.Reference, tmp_path: Path) -> None:
     controller, q0 = drawing(path=path)
-    exported = loaded(c99(controller, tmp_path, q0, verify=False), QUICKEST)
-    assert exported.has_reference
+    exported = loaded(c99(controller, tmp_path, q0, verify=False))
     for t in (0.0, 0.3, 0.9):
         ours = controller.targets(t)[0]
         np.testing.assert_allclose(exported.target(t).ravel(), ours, rtol=0, atol=1e-12)
@@ -346,7 +343,7 @@ def test_without_a_reference_the_vectors_follow_a_figure(tmp_path: Path) -> None
     controller.reference = None
     folder = c99(controller, tmp_path, q0, verify=False)
     rows = np.loadtxt(folder / "vectors.csv", delimiter=",", skiprows=1)
-    exported = loaded(folder, QUICKEST)
+    exported = loaded(folder)
     worst = 0.0
     for row in rows:
         dq, action = exported.step(row[1:8], row[8:26])
@@ -356,11 +353,19 @@ def test_without_a_reference_the_vectors_follow_a_figure(tmp_path: Path) -> None
     assert np.ptp(rows[:, 8]) > 1e-3
 
 
-def test_errors_of_loading(heart: Path, exported: ExportedController, tmp_path: Path) -> None:
+def _no_compiler() -> list[str]:
+    raise LookupError("apt-get install gcc")
+
+
+def test_errors_of_loading(
+    heart: Path, exported: ExportedController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with pytest.raises(FileError, match=r"controller\.h"):
         load(tmp_path)
-    with pytest.raises(MissingDependencyError, match="no-such-compiler"):
-        load(heart, compiler="no-such-compiler")
+    monkeypatch.setattr(build, "compiler", _no_compiler)
+    with pytest.raises(MissingDependencyError, match="gcc"):
+        load(heart)
+    monkeypatch.undo()
     for name in ("controller.h", "controller.c"):
         (tmp_path / name).write_bytes((heart / name).read_bytes())
     (tmp_path / "controller.c").write_text("int broken(", encoding="utf-8")
@@ -370,7 +375,3 @@ def test_errors_of_loading(heart: Path, exported: ExportedController, tmp_path: 
         exported.step([1.0], np.zeros(18))
     with pytest.raises(InvalidInputError, match="target"):
         exported.step(np.zeros(7), [np.nan] * 18)
-
-
-FUSED = ("-O1", "-fexpensive-optimizations", "-mfma", "-ffp-contract=fast")
-"""Flags with which gcc rounds a product and its sum at once; it does not without optimization."""
