@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from benchmarks.report import show
+from iiwa_dnn.compiling.build import run_compiler
 from iiwa_dnn.export import c99, load
-from iiwa_dnn.export.load import find_compiler
 from iiwa_dnn.robot import Configuration
 from tests.export_settings import SETTINGS, Made
 
@@ -67,8 +67,7 @@ def compare(made: Made, folder: Path, steps: int) -> dict[str, Any]:
 
 def compiled(folder: Path, output: Path, flags: Sequence[str], *sources: Path) -> Path:
     """Compile C files beside a controller's header."""
-    words = [find_compiler(), *flags, f"-I{folder}", "-o", output, *sources, "-lm"]
-    subprocess.run(words, check=True)
+    run_compiler([*flags, f"-I{folder}"], sources, output)
     return output
 
 

@@ -31,7 +31,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET, enter_answer
 from iiwa_dnn.networks.integrators.implicit import settle
-from iiwa_dnn.qp import Matrix
+from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import IntMatrix
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.references import Target
@@ -293,11 +293,14 @@ class _Code:
 
 def _centers(controller: Controller) -> Matrix:
     """Return the obstacles that move as `move_centers` takes them, (k, 7)."""
-    rows: list[Matrix] = [np.zeros((0, 7))]
+    rows: list[Vector] = []
     for block in controller.program.blocks:
         if isinstance(block.part, CollisionAvoidance):
-            rows.append(block.part.scene(controller.robot).centers + block.start * np.eye(1, 7))
-    return np.concatenate(rows)
+            scene = block.part.scene(controller.robot)
+            for obstacle, part in scene.moving:
+                first = block.start + part.start
+                rows.append(np.array([first, *scene.constants[part], *obstacle.velocity]))
+    return np.reshape(rows, (-1, 7))
 
 
 def _systems(controller: Controller) -> int:

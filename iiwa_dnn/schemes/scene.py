@@ -111,19 +111,20 @@ class Scene(NamedTuple):
         robot: The robot, n joints.
         pairs: The pairs.
         frames: Links whose placements are needed.
-        centers: Obstacles that move, as `move_centers` takes them, (obstacles, 7).
+        moving: Obstacles that move, each with the part of `constants` that its centre takes.
         constants: Numbers that compiled code sees through `scene_views`, (k,).
     """
 
     robot: Robot
     pairs: list[Pair]
     frames: tuple[str, ...]
-    centers: Matrix
+    moving: list[tuple[Obstacle, slice]]
     constants: Vector
 
     def move(self, constants: Vector, t: float) -> None:
         """Bring the moving obstacles in a copy of `constants`, (k,), to a time [s]."""
-        move_centers(constants, self.centers, t)
+        for obstacle, part in self.moving:
+            constants[part] = self.constants[part] + obstacle.shift(t)
 
     def nearest(self, q: Matrix, t: Vector) -> tuple[Vector, NDArray[np.int64]]:
         """Compute the least distance [m] of all pairs, (k,), and the index of its pair, (k,).
@@ -188,16 +189,13 @@ def make_scene(
         raise InvalidInputError("obstacles", problem, obstacles)
     # The last three numbers of a body are its centre.
     first = HEAD + robot.dof + PER_BODY * (links + 1) - 3
-    moving = [
-        np.concatenate([[first + PER_BODY * k], each.box.center, each.velocity])
-        for k, each in enumerate(obstacles)
-        if each.moves
-    ]
+    centers = [slice(at, at + 3) for at in first + PER_BODY * np.arange(len(obstacles))]
+    moving = [pair for pair in zip(obstacles, centers, strict=True) if pair[0].moves]
     frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
     names = [Pair(bodies[i].name, bodies[k].name) for i, k in pairs]
     head = np.array([least, gain, len(bodies), len(pairs)])
     constants = np.concatenate([head, robot.dq_max, _layout(robot, bodies, pairs)])
-    return Scene(robot, names, frames, np.reshape(moving, (-1, 7)), constants)
+    return Scene(robot, names, frames, moving, constants)
 
 
 def _layout(robot: Robot, bodies: list[_Body], pairs: list[tuple[int, int]]) -> Vector:
