@@ -7,9 +7,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
-from iiwa_dnn import InvalidInputError
-from iiwa_dnn.simulation.disturbances import Disturbances, Encoder, Push
-from iiwa_dnn.simulation.plants.torque_control import TorqueGains
+from iiwa_dnn.simulation.disturbances import Disturbances, Encoder
 
 
 def test_the_default_is_none_and_typical_is_all_but_the_push():
@@ -55,25 +53,3 @@ def test_encoder_noise_and_rounding():
     assert readings.std() == pytest.approx(1e-3, rel=0.03)
     assert abs(readings.mean()) < 3e-5
     np.testing.assert_array_equal(Encoder(1e-3, 18, 5)(q), Encoder(1e-3, 18, 5)(q))
-
-
-@pytest.mark.parametrize(
-    ("make", "options", "name"),
-    [
-        (Disturbances, {"mass_error": 1.0}, "mass_error"),
-        (Disturbances, {"mass_error": -0.1}, "mass_error"),
-        (Disturbances, {"friction": -1.0}, "friction"),
-        (Disturbances, {"encoder_noise": np.inf}, "encoder_noise"),
-        (Disturbances, {"encoder_bits": 60}, "encoder_bits"),
-        (Disturbances, {"delay": -1}, "delay"),
-        (Push, {"force": (1.0, np.nan, 0.0)}, "push"),
-        (Push, {"start": -1.0}, "push_at"),
-        (Push, {"duration": np.inf}, "push_for"),
-        (TorqueGains, {"bandwidth": 0.0}, "bandwidth"),
-        (TorqueGains, {"observer_bandwidth": -1.0}, "observer_bandwidth"),
-        (TorqueGains, {"leash": np.inf}, "leash"),
-    ],
-)
-def test_refusals(make, options, name):
-    with pytest.raises(InvalidInputError, match=name):
-        make(**options)

@@ -10,8 +10,7 @@ import pinocchio as pin
 import pytest
 
 from helpers_simulation import paper_robot, paper_start
-from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references import Circle, Line, Reference
+from iiwa_dnn.references import Circle, Line
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
@@ -19,22 +18,6 @@ from iiwa_dnn.schemes import CyclicMotion, JointLimits, PositionTask, Scheme
 from iiwa_dnn.simulation import simulate
 
 ELBOW = "iiwa7_link_4"
-
-
-def scheme(*frames: str | None) -> Scheme:
-    tasks = [PositionTask(frame=name) for name in frames]
-    return Scheme([CyclicMotion()], tasks, [JointLimits()])
-
-
-def references(*frames: str) -> dict[str, Reference]:
-    start = paper_start()
-    paths: list[Reference] = [
-        Circle(radius=0.02, period=1.0),
-        Line(np.array([0.0, 0.01, 0.0]), 1.0),
-    ]
-    return {
-        name: path.anchored(start.frame(name)) for name, path in zip(frames, paths, strict=False)
-    }
 
 
 def poses(record: Record, frame: str) -> np.ndarray:
@@ -51,7 +34,10 @@ def poses(record: Record, frame: str) -> np.ndarray:
 def test_every_tracked_frame_follows_its_reference_and_is_recorded(tmp_path: Path) -> None:
     robot, start = paper_robot(), paper_start()
     # The elbow has three coordinates but two joints to move it sideways; the tip takes the rest.
-    paths = references(robot.tip, ELBOW)
+    paths = {
+        robot.tip: Circle(radius=0.02, period=1.0).anchored(start),
+        ELBOW: Line((0.0, 0.01, 0.0), 1.0).anchored(start.frame(ELBOW)),
+    }
     both = Scheme(
         [CyclicMotion()],
         [PositionTask(), PositionTask(frame=ELBOW, weight=0.5)],
@@ -86,12 +72,3 @@ def test_a_run_without_a_task_of_the_tip_records_the_frame_that_it_tracks() -> N
     np.testing.assert_allclose(record.position, poses(record, ELBOW)[:, :3, 3], atol=1e-14)
     np.testing.assert_array_equal(record.position_desired, path.sample(record.t).position)
     assert not len(record.frame_position)
-
-
-def test_a_frame_without_a_reference_is_refused() -> None:
-    robot, start = paper_robot(), paper_start()
-    paths = references(robot.tip, ELBOW)
-    with pytest.raises(InvalidInputError, match=rf"^reference.*{ELBOW}"):
-        simulate(robot, scheme(None, ELBOW), {robot.tip: paths[robot.tip]}, start.q)
-    with pytest.raises(InvalidInputError, match=rf"^reference.*no task tracks.*{ELBOW}"):
-        simulate(robot, scheme(None), paths, start.q)

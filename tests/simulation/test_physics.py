@@ -8,7 +8,6 @@ import pytest
 from helpers_physics import distance, heart_in_physics, papers_robot
 from iiwa_dnn import (
     Configuration,
-    InvalidInputError,
     Record,
     compute_metrics,
     failures,
@@ -93,19 +92,6 @@ def test_back_within_a_second_after_the_push(robot, disturbed):
     assert limits_are_kept(record)
 
 
-def test_the_same_seed_gives_the_same_bytes(robot, tmp_path):
-    files = []
-    for name in "ab":
-        record = heart_in_physics(
-            robot, disturbances=Disturbances.typical(Push(start=0.05)), seed=7, duration=0.2
-        )
-        record.save(tmp_path / name)
-        files.append((tmp_path / name).read_bytes())
-    assert files[0] == files[1]
-    other = heart_in_physics(robot, disturbances=Disturbances.typical(), seed=8, duration=0.2)
-    assert not np.array_equal(other.q, record.q)
-
-
 def test_a_state_that_is_not_a_number_ends_the_run(robot, monkeypatch):
     step = MujocoPlant._step
 
@@ -119,21 +105,3 @@ def test_a_state_that_is_not_a_number_ends_the_run(robot, monkeypatch):
     assert record.settings["status"] == "stopped at step 100 (t = 0.1 s): the physics diverged"
     assert record.steps == 101
     assert np.isfinite(record.q).all()
-
-
-@pytest.mark.parametrize(
-    ("options", "name"),
-    [
-        ({"dt": 0.0}, "dt"),
-        ({"dt": np.nan}, "dt"),
-        ({"duration": -1.0}, "duration"),
-        ({"timestep": 0.0}, "physics_dt"),
-        ({"timestep": 2e-3, "dt": 2e-3}, "at most 0.001 s"),
-        ({"timestep": 3e-4}, "must divide"),
-        ({"timestep": 1e-3, "dt": 1e-4}, "must divide"),
-        ({"seed": -1}, "seed"),
-    ],
-)
-def test_wrong_arguments(robot, options, name):
-    with pytest.raises(InvalidInputError, match=name):
-        heart_in_physics(robot, **options)
