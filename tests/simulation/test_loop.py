@@ -85,8 +85,9 @@ def test_every_step_was_checked_by_every_reference(record: Record) -> None:
 @pytest.mark.parametrize("motion", ["euler", "midpoint"])
 def test_a_run_of_several_blocks_has_no_seams(motion: str) -> None:
     reference = heart(period=2.0)
-    record = run(reference=reference, duration=1.1, motion=motion, noise=1e-3, filter_window=5)
-    noisy = record.dq_solver + gaussian_noise(1e-3, 1100, 7, seed=0)
+    options = {"noise": 1e-3, "filter_window": 5, "seed": 7}
+    record = run(reference=reference, duration=1.1, motion=motion, **options)
+    noisy = record.dq_solver + gaussian_noise(1e-3, 1100, 7, seed=7)
     filtered = [noisy[max(0, k - 4) : k + 1].mean(axis=0) for k in range(1100)]
     np.testing.assert_allclose(record.dq, filtered, rtol=0, atol=1e-14)
     np.testing.assert_array_equal(record.q[1:], record.q[:-1] + 1e-3 * record.dq)

@@ -14,10 +14,10 @@ from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import NOISE_ENTRIES, gaussian_noise
 
 
-def test_a_longer_run_begins_with_the_shorter_ones_noise() -> None:
-    np.testing.assert_array_equal(
-        gaussian_noise(0.01, 500, 7, seed=3), gaussian_noise(0.01, 1000, 7, seed=3)[:500]
-    )
+def test_a_longer_run_begins_with_the_shorter_ones_noise_and_a_seed_has_its_own() -> None:
+    noise = gaussian_noise(0.01, 500, 7, seed=3)
+    np.testing.assert_array_equal(noise, gaussian_noise(0.01, 1000, 7, seed=3)[:500])
+    assert (noise != gaussian_noise(0.01, 500, 7, seed=4)).all()
 
 
 def test_it_is_white_and_normal() -> None:
