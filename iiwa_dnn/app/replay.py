@@ -25,7 +25,6 @@ from iiwa_dnn.results.plots import envelope
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.obstacles import outline
-from iiwa_dnn.robot.robot import source_of
 from iiwa_dnn.robot.shapes import read_shapes
 
 PIECES = 300
@@ -103,7 +102,7 @@ def show_robot(server: Any, robot: Robot) -> Any:
 
     shapes = pin.GeometryModel()
     with suppress(ValueError):  # a mesh is missing
-        for shape in read_shapes(robot, pin.GeometryType.VISUAL, source_of(robot)[1]):
+        for shape in read_shapes(robot, pin.GeometryType.VISUAL):
             shapes.addGeometryObject(shape)
     visualizer = ViserVisualizer(robot.model, pin.GeometryModel(), shapes)
     visualizer.initViewer(viewer=server, loadModel=True)

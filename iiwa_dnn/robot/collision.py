@@ -14,7 +14,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from itertools import combinations
-from pathlib import Path
 
 import coal
 import numpy as np
@@ -104,19 +103,8 @@ class CollisionModel:
             ]
             pairs = tuple((str(a), str(b), str(why)) for a, b, why in tables["left_out"])
             return cls(tuple(capsules), pairs)
-        except KeyError as error:
-            raise FileError(path, f"lacks the key {one_line(error)}") from error
-        except (ValueError, TypeError) as error:
+        except (KeyError, ValueError, TypeError) as error:
             raise FileError(path, f"no collision geometry: {one_line(error)}") from error
-
-
-def collision_file(robot: Robot) -> Path:
-    """Return the file that the collision geometry of a robot is kept in; it need not exist."""
-    path = source_of(robot)[0]
-    if robot.name in ARMS and ARMS[robot.name].path == path:
-        # The package's own file: the arm's folder is somebody else's.
-        return robots_folder() / robot.name / f"{robot.name}.collisions.toml"
-    return path.with_suffix(".collisions.toml")
 
 
 @lru_cache(maxsize=32)
@@ -126,13 +114,12 @@ def collision_model(robot: Robot) -> CollisionModel:
     Raises:
         InvalidInputError: The robot does not come from a file.
         FileError: The file of the geometry is damaged, or a mesh cannot be read.
-        NotFoundError: The file names a link that the robot does not have.
     """
-    path = collision_file(robot)
-    model = CollisionModel.load(path) if path.exists() else make_collision_model(robot)
-    for capsule in model.capsules:
-        robot.frame_id(capsule.link)
-    return model
+    path = source_of(robot)[0]
+    if robot.name in ARMS and ARMS[robot.name].path == path:
+        path = robots_folder() / robot.name / robot.name  # the arm's folder is somebody else's
+    file = path.with_suffix(".collisions.toml")
+    return CollisionModel.load(file) if file.exists() else make_collision_model(robot)
 
 
 @lru_cache(maxsize=32)
@@ -207,8 +194,7 @@ def coal_geometry(
     geometry = pin.GeometryModel()
     for i, capsule in enumerate(model.capsules):
         center, rotation, half = box_around(capsule.a, capsule.b)
-        body = coal.Capsule(capsule.radius, 2.0 * half[2])
-        shape = body if half.any() else coal.Sphere(capsule.radius)
+        shape = coal.Capsule(capsule.radius, 2.0 * half[2])
         frame = robot.model.frames[robot.frame_id(capsule.link)]
         pose = frame.placement * pin.SE3(rotation, center)
         name = f"{capsule.link}_{i}"
@@ -227,13 +213,14 @@ def _capsules(robot: Robot) -> Iterator[LinkCapsule]:
 
     Spheres that another capsule of the link holds, such as the ends of a cylinder, are left out.
     """
-    path, text = source_of(robot)
     try:
-        shapes = read_shapes(robot, pin.GeometryType.COLLISION, text)
+        shapes = read_shapes(robot, pin.GeometryType.COLLISION)
     except ValueError as error:
-        problem = f"a shape cannot be read: {one_line(error)}"
-        hint = "; ROS_PACKAGE_PATH names the folder of its packages" * ("package://" in problem)
-        raise FileError(path, problem + hint) from error
+        raise FileError(
+            source_of(robot)[0],
+            f"a shape cannot be read ({one_line(error)}); "
+            "ROS_PACKAGE_PATH names the folder of packages",
+        ) from error
     found: dict[str, list[LinkCapsule]] = {}
     for shape in sorted(shapes, key=lambda each: isinstance(each.geometry, coal.Sphere)):
         frame = robot.model.frames[shape.parentFrame]
@@ -249,12 +236,9 @@ def _capsules(robot: Robot) -> Iterator[LinkCapsule]:
 
 
 def _holds(capsule: LinkCapsule, sphere: LinkCapsule) -> bool:
-    """Test whether a capsule holds another one of the link, which is a sphere, to 0.03 mm."""
-    a = np.array(capsule.a)
-    axis = np.array(capsule.b) - a
-    along = np.clip((np.array(sphere.a) - a) @ axis / max(float(axis @ axis), 1e-12), 0.0, 1.0)
-    away = float(np.linalg.norm(np.array(sphere.a) - a - along * axis))
-    return sphere.a == sphere.b and away + sphere.radius <= capsule.radius + 3e-5
+    """Test whether an end of a capsule holds another one of the link, a sphere, to 0.03 mm."""
+    away = np.linalg.norm(np.subtract(sphere.a, [capsule.a, capsule.b]), axis=1).min()
+    return sphere.a == sphere.b and bool(away + sphere.radius <= capsule.radius + 3e-5)
 
 
 def _fit(shape: coal.CollisionGeometry) -> tuple[checks.Array, checks.Array, float]:
@@ -266,8 +250,7 @@ def _fit(shape: coal.CollisionGeometry) -> tuple[checks.Array, checks.Array, flo
         return -half, half, float(shape.radius)
     if hasattr(shape, "vertices"):
         return _enclosing_capsule(np.array(shape.vertices(), dtype=np.float64))
-    half_extents = shape.halfSide if isinstance(shape, coal.Box) else [shape.aabb_radius] * 3
-    return _enclosing_capsule(Box((0.0, 0.0, 0.0), tuple(half_extents)).points)
+    return _enclosing_capsule(Box((0.0, 0.0, 0.0), tuple(shape.halfSide)).points)
 
 
 def _enclosing_capsule(points: checks.Array) -> tuple[checks.Array, checks.Array, float]:

@@ -1,5 +1,7 @@
 """A configuration: joint positions together with the kinematics that belong to them."""
 
+from dataclasses import dataclass
+
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
@@ -7,90 +9,64 @@ from iiwa_dnn.checks import Array, finite_array, instance, read_only
 from iiwa_dnn.robot.robot import Robot
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class FrameState:
-    """Pose and Jacobian of a frame, read-only."""
+    """Pose and Jacobian of a frame, read-only.
 
-    __slots__ = ("_jacobian", "_pose")
+    Attributes:
+        pose: Pose of the frame in the world as a homogeneous matrix, shape (4, 4).
+        jacobian: Jacobian J of the frame, shape (6, n): J dq = [linear velocity; angular velocity],
+            along the world's axes, at the frame's origin (Pinocchio's LOCAL_WORLD_ALIGNED).
+    """
 
-    def __init__(self, pose: Array, jacobian: Array) -> None:
-        self._pose = pose
-        self._jacobian = jacobian
-
-    @property
-    def pose(self) -> Array:
-        """Pose of the frame in the world as a homogeneous matrix, shape (4, 4)."""
-        return read_only(self._pose)
+    pose: Array
+    jacobian: Array
 
     @property
     def position(self) -> Array:
         """Position of the frame in the world [m], shape (3,)."""
-        return read_only(self._pose[:3, 3])
+        return self.pose[:3, 3]
 
     @property
     def rotation(self) -> Array:
         """Orientation of the frame, shape (3, 3): columns are its axes in the world."""
-        return read_only(self._pose[:3, :3])
-
-    @property
-    def jacobian(self) -> Array:
-        """Jacobian J of the frame, shape (6, n): J dq = [linear velocity; angular velocity].
-
-        Along the world's axes, at the frame's origin (Pinocchio's LOCAL_WORLD_ALIGNED).
-        """
-        return read_only(self._jacobian)
+        return self.pose[:3, :3]
 
 
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class Configuration(FrameState):
     """Joint positions of a robot, with pose and Jacobian of one frame, its tip.
 
     Every array is a copy, and read-only: a configuration stays as it is, whatever becomes of ``q``
     afterwards. Positions outside the joint limits are accepted.
 
-    Args:
-        robot: The robot.
+    Attributes:
+        robot: The robot that is in this configuration.
         q: Joint positions [rad], shape (n,).
 
     Raises:
         InvalidInputError: If ``q`` has a wrong shape or is not finite.
     """
 
-    # Built at every control step, so: slots, and no numpy call that is not needed.
-    __slots__ = ("_inertia", "_q", "_robot")
-    _inertia: Array | None
+    robot: Robot
+    q: Array
 
     def __init__(self, robot: Robot, q: ArrayLike) -> None:
-        shape = instance("robot", robot, Robot).q_lower.shape
-        self._robot = robot
-        self._q = finite_array("q", q, shape).copy()  # not read-only, for compiled code
-        self._inertia = None
-        super().__init__(*_kinematics(robot, self._q, robot.tip_id))
-
-    @property
-    def arrays(self) -> tuple[Array, Array, Array]:
-        """``(q, pose, jacobian)`` for compiled code, not protected, which makes it quicker."""
-        return self._q, self._pose, self._jacobian
-
-    @property
-    def robot(self) -> Robot:
-        """The robot that is in this configuration."""
-        return self._robot
-
-    @property
-    def q(self) -> Array:
-        """Joint positions [rad], shape (n,)."""
-        return read_only(self._q)
+        checked = finite_array("q", q, (instance("robot", robot, Robot).dof,))
+        pose, jacobian = _kinematics(robot, checked, robot.tip_id)
+        values = {"robot": robot, "q": checked, "pose": pose, "jacobian": jacobian}
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
 
     @property
     def inertia(self) -> Array:
         """Joint-space inertia matrix M [kg m^2], shape (n, n), symmetric positive definite.
 
         The kinetic energy is dq' M dq / 2. By the composite rigid body algorithm (Featherstone,
-        "Rigid Body Dynamics Algorithms", 2008, section 6.2), on first use.
+        "Rigid Body Dynamics Algorithms", 2008, section 6.2), at each use.
         """
-        if self._inertia is None:
-            model = self._robot.model
-            self._inertia = pin.crba(model, model.createData(), self._q)
-        return read_only(self._inertia)
+        model = self.robot.model
+        return read_only(pin.crba(model, model.createData(), self.q))
 
     def frame(self, name: str) -> FrameState:
         """Compute pose and Jacobian of a frame out of `Robot.frame_names`, as those of the tip.
@@ -98,8 +74,7 @@ class Configuration(FrameState):
         Raises:
             NotFoundError: If there is no such frame; the error lists those of similar names.
         """
-        index = self._robot.frame_id(name)
-        return FrameState(*_kinematics(self._robot, self._q, index))
+        return FrameState(*_kinematics(self.robot, self.q, self.robot.frame_id(name)))
 
 
 def _kinematics(robot: Robot, q: Array, index: int) -> tuple[Array, Array]:
@@ -109,4 +84,4 @@ def _kinematics(robot: Robot, q: Array, index: int) -> tuple[Array, Array]:
     # The first call has placed the joints, so the second need not run over the chain again.
     jacobian = pin.computeFrameJacobian(model, data, q, index, pin.LOCAL_WORLD_ALIGNED)
     pose = pin.updateFramePlacement(model, data, index).homogeneous
-    return pose, jacobian.reshape(6, -1)  # (6,) for a single joint
+    return read_only(pose), read_only(jacobian.reshape(6, -1))  # (6,) for a single joint

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.robot.loading import load_robot
 from iiwa_dnn.robot.robot import Robot
 
 Convention = Literal["standard", "modified"]
@@ -59,8 +60,6 @@ def robot_from_dh(
     checks.one_of("convention", convention, ("standard", "modified"))
     rows = checks.finite_array("table", table, (-1, 4))
     slides = set(prismatic)
-    if not len(rows):
-        raise InvalidInputError("table", "has 0 rows", table)
     if not slides <= set(range(1, len(rows) + 1)):
         problem = f"must be numbers from 1 to {len(rows)}, not {sorted(slides)}"
         raise InvalidInputError("prismatic", problem, prismatic)
@@ -82,8 +81,4 @@ def robot_from_dh(
         joint = model.addJoint(joint, kind, before, f"joint_{i}")
         model.addJointFrame(joint)
         model.addFrame(pin.Frame(f"link_{i}", joint, behind, pin.FrameType.BODY))
-    unlimited = np.full((5, len(rows)), np.inf)
-    unlimited[0] = -np.inf
-    ramps = np.array([[0.0], [np.inf]]) * np.ones(len(rows))
-    robot = Robot(name, model, f"link_{len(rows)}", unlimited, ramps)
-    return robot.with_limits(lower, upper, velocity)
+    return load_robot(model, f"link_{len(rows)}").with_limits(lower, upper, velocity)

@@ -9,14 +9,13 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
-from iiwa_dnn.checks import Array
+from iiwa_dnn.checks import Array, Matrix
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.robot.robot import Robot
 
-Vector = Array
-Matrix = Array
 IntVector = NDArray[np.int64]
 IntMatrix = NDArray[np.int64]
 
@@ -25,14 +24,15 @@ CYCLE = (0, 1, 2, 0, 1)
 
 
 class ModelTables(NamedTuple):
-    """Tables of a robot of n joints, each of which turns about an axis or slides along it.
+    """Tables of a robot of n joints, each of which turns about its z axis or slides along it.
 
-    A placement has 12 numbers: the rotation's columns, then the position [m].
+    Pinocchio's joints with other axes are turned so, with all that they carry. A placement has 12
+    numbers: the rotation's columns, then the position [m].
 
     Attributes:
         parents: For each joint the number of the one that carries it, from 1; 0: the world, (n,).
         joints: Placement of each joint at 0 in the frame of its parent, (n, 12).
-        axes: Direction of each joint's motion in its own frame, linear and angular, (n, 6).
+        kinds: For each joint 1 and 0 if it slides, 0 and 1 if it turns, (n, 2).
         frames: For each frame its row among the placements, and the joint that carries it, (k, 2).
         offsets: Placement of each frame in its joint's, (k, 12).
         bodies: For what each joint carries the placement of its principal axes, and the roots of
@@ -43,46 +43,53 @@ class ModelTables(NamedTuple):
 
     parents: IntVector
     joints: Matrix
-    axes: Matrix
+    kinds: Matrix
     frames: IntMatrix
     offsets: Matrix
     bodies: Matrix
     supports: Matrix
-    armature: Vector
+    armature: Array
 
 
 def model_tables(robot: Robot, frames: Sequence[int], dynamics: bool = False) -> ModelTables:
     """Return the tables of a robot and its frames, by Pinocchio's indices; with bodies if asked."""
     model = robot.model
     moving = range(1, model.njoints)
-    axes = []
-    for j in moving:
-        joint = model.joints[j]
-        data = joint.createData()
-        joint.calc(data, np.zeros(1), np.zeros(1))
-        axes.append(np.ravel(data.S))
-    carried = [[model.frames[k].placement, model.frames[k].parentJoint] for k in frames]
+    axes = np.array([np.reshape(model.joints[j].createData().S, (2, 3)) for j in moving])
+    turns = [pin.SE3.Identity(), *map(_turn, axes.sum(axis=1))]
+    carriers = [(model.frames[k], turns[model.frames[k].parentJoint]) for k in frames]
     carrying = moving if dynamics else ()
-    bodies = [_body(model.inertias[j]) for j in carrying]
+    bodies = [_body(turns[j].actInv(model.inertias[j])) for j in carrying]
     supports = [[float(j in list(model.supports[i])) for j in moving] for i in carrying]
     return ModelTables(
         np.array(model.parents[1:], dtype=np.int64),
-        np.array([_flat(model.jointPlacements[j]) for j in moving]),
-        np.array(axes),
-        np.array([[k, row[1]] for k, row in zip(frames, carried, strict=True)], dtype=np.int64),
-        np.array([_flat(row[0]) for row in carried]),
+        np.array(
+            [
+                _flat(turns[model.parents[j]].actInv(model.jointPlacements[j] * turns[j]))
+                for j in moving
+            ]
+        ),
+        np.asarray(axes.any(axis=2), dtype=np.float64),
+        np.array([[k, model.frames[k].parentJoint] for k in frames], dtype=np.int64),
+        np.array([_flat(turn.actInv(frame.placement)) for frame, turn in carriers]),
         np.reshape(bodies, (-1, 16)),
         np.reshape(supports, (-1, model.nv)),
         np.array(model.armature),
     )
 
 
-def _flat(placement: Any) -> Vector:
+def _turn(axis: Array) -> pin.SE3:
+    """Return a rotation that takes the z axis to an axis (3,)."""
+    turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis)
+    return pin.SE3(turn.matrix(), np.zeros(3))
+
+
+def _flat(placement: Any) -> Array:
     """Return Pinocchio's placement as 12 numbers."""
     return np.append(placement.rotation.T, placement.translation)
 
 
-def _body(body: Any) -> Vector:
+def _body(body: Any) -> Array:
     """Return a row of `ModelTables.bodies` for Pinocchio's inertia of a body."""
     moments, axes = np.linalg.eigh(body.inertia)
     masses = np.append(body.mass, moments.clip(0.0))
@@ -91,7 +98,7 @@ def _body(body: Any) -> Vector:
 
 @compiled
 def write_kinematics(
-    model: ModelTables, q: Vector, jacobian: Matrix, placements: Matrix, inertia: Matrix
+    model: ModelTables, q: Array, jacobian: Matrix, placements: Matrix, inertia: Matrix
 ) -> None:
     """Write the kinematics at joint positions q (n,) [rad or m], as `Kinematics` holds them.
 
@@ -104,14 +111,20 @@ def write_kinematics(
     """
     placed = np.zeros((q.size + 1, 12))
     start = np.empty(12)
-    motion = np.empty(12)
+    motion = np.zeros(12)
+    motion[8] = 1.0
     for i in range(3):
         placed[0, 4 * i] = 1.0
     for j in range(q.size):
+        angle = model.kinds[j, 1] * q[j]
+        motion[0] = math.cos(angle)
+        motion[1] = math.sin(angle)
+        motion[3] = -motion[1]
+        motion[4] = motion[0]
+        motion[11] = model.kinds[j, 0] * q[j]
         compose(placed[model.parents[j]], model.joints[j], start)
-        _write_twist(start, model.axes[j], jacobian[j])
-        _write_motion(model.axes[j], q[j], motion)
         compose(start, motion, placed[j + 1])
+        _write_twist(placed[j + 1], model.kinds[j], jacobian[j])
     for k in range(len(model.frames)):
         carrier = placed[model.frames[k, 1]]
         compose(carrier, model.offsets[k], placements[model.frames[k, 0]])
@@ -120,7 +133,7 @@ def write_kinematics(
 
 
 @compiled
-def compose(first: Vector, second: Vector, product: Vector) -> None:
+def compose(first: Array, second: Array, product: Array) -> None:
     """Write the product (12,) of two placements (12,)."""
     for k in range(4):
         for i in range(3):
@@ -134,34 +147,15 @@ def compose(first: Vector, second: Vector, product: Vector) -> None:
 
 
 @compiled
-def _write_twist(placement: Vector, axis: Vector, twist: Vector) -> None:
-    """Write a joint's twist (6,) about the world's origin, from its placement (12,), axis (6,)."""
+def _write_twist(placement: Array, kind: Array, twist: Array) -> None:
+    """Write a joint's twist (6,) about the world's origin from its placement (12,), kind (2,)."""
+    axis = placement[6:9]
+    position = placement[9:]
     for i in range(3):
-        twist[i] = 0.0
-        twist[3 + i] = 0.0
-        for k in range(3):
-            twist[i] += placement[3 * k + i] * axis[k]
-            twist[3 + i] += placement[3 * k + i] * axis[3 + k]
-    twist[0] += placement[10] * twist[5] - placement[11] * twist[4]
-    twist[1] += placement[11] * twist[3] - placement[9] * twist[5]
-    twist[2] += placement[9] * twist[4] - placement[10] * twist[3]
-
-
-@compiled
-def _write_motion(axis: Vector, q: float, motion: Vector) -> None:
-    """Write the placement (12,) of a joint at q [rad or m] in its own frame; the axis is (6,)."""
-    sine = math.sin(q)
-    lacking = 1.0 - math.cos(q)
-    square = axis[3] * axis[3] + axis[4] * axis[4] + axis[5] * axis[5]
-    for k in range(3):
-        for i in range(3):
-            motion[3 * k + i] = lacking * axis[3 + i] * axis[3 + k]
-        motion[4 * k] += 1.0 - lacking * square
-        motion[9 + k] = axis[k] * q
-    for k in range(3):
-        x = sine * axis[3 + k]
-        motion[CYCLE[k + 1] + 3 * CYCLE[k + 2]] -= x
-        motion[CYCLE[k + 2] + 3 * CYCLE[k + 1]] += x
+        twist[3 + i] = kind[1] * axis[i]
+        moment = position[CYCLE[i + 1]] * axis[CYCLE[i + 2]]
+        moment -= position[CYCLE[i + 2]] * axis[CYCLE[i + 1]]
+        twist[i] = kind[0] * axis[i] + kind[1] * moment
 
 
 @compiled

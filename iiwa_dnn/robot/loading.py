@@ -6,6 +6,7 @@ import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -16,8 +17,6 @@ from iiwa_dnn.errors import InvalidInputError, MissingDependencyError, NotFoundE
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS, RATES, TIPS
 from iiwa_dnn.robot.robot import Robot, frame_id
-
-_Joints = dict[str, ET.Element]
 
 _NO_LIMIT = 1e300
 """Limit from which on Pinocchio means none [rad, rad/s]."""
@@ -39,10 +38,9 @@ def load_robot(
 ) -> Robot:
     """Load a robot by its name, from a URDF file or from a Pinocchio model.
 
-    Limits are the source's. A joint of a file whose ``<limit>`` gives neither ``lower`` nor
-    ``upper`` has no position limit, and a ``velocity`` of 0 stands for "not given": no velocity
-    limit. Joints that move neither the tip nor one of `frames` are held still; unless the robot is
-    one of a known name, a warning says which.
+    Limits are the source's; a ``velocity`` of 0 stands for "not given": no velocity limit. Joints
+    that move neither the tip nor one of `frames` are held still; unless the robot is one of a known
+    name, a warning says which.
 
     Args:
         source: A name out of `available_robots`, the path of a file (a `Path`, or a string that
@@ -64,13 +62,10 @@ def load_robot(
         MissingDependencyError: If the arm of that name is in a package that is not installed.
     """
     path, tips = _find(source)
-    joints: _Joints = {}
-    text = None
+    root = ET.Element("robot")
     full: pin.Model = source
     if path is not None:
         root = urdf.read(path)
-        joints = {joint.get("name", ""): joint for joint in root.findall("joint")}
-        text = urdf.text_of(root)
         full = urdf.build_model(path, root)
     # By the name it was asked for: the URDFs call some of these arms otherwise.
     name = str(source) if tips else full.name
@@ -80,7 +75,8 @@ def load_robot(
     idle = _idle_joints(full, (tip, *others, *frames))
     chosen = _chosen_joints(full, locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
-    limits, ramps = _limits(name, model, joints)
+    limits, ramps = _limits(name, model, root)
+    text = urdf.text_of(root)
     robot = Robot(name, model, tip, limits, ramps, tuple(held), tuple(held.values()), path, text)
     expected = {*chosen, *(_idle_joints(full, tips) if tips else ())}
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
@@ -97,13 +93,10 @@ def robots_folder() -> Path:
     return inside if inside.is_dir() else here.parent / "robots"
 
 
-def _find(source: object) -> tuple[Path | None, tuple[str, ...]]:
+def _find(source: Any) -> tuple[Path | None, tuple[str, ...]]:
     """Find the file of a robot; return it with the tips of its arms if it is known by name."""
     if isinstance(source, pin.Model):
         return None, ()
-    if not isinstance(source, str | os.PathLike):
-        problem = "must be a robot's name, a path or a pinocchio.Model"
-        raise InvalidInputError("source", problem, source)
     name = os.fspath(source)
     is_file = isinstance(source, os.PathLike) or name.endswith((".urdf", ".xacro"))
     if is_file or os.sep in name:
@@ -127,8 +120,6 @@ def _only_end(model: pin.Model) -> str:
 
 def _chosen_joints(model: pin.Model, locked: str | Iterable[str]) -> list[str]:
     """Return the names of joints that are to be frozen, if the model has them."""
-    if not isinstance(locked, Iterable):
-        raise InvalidInputError("locked", f"must be names of joints, not {locked!r}", locked)
     chosen = [locked] if isinstance(locked, str) else list(locked)
     for name in chosen:
         if name not in tuple(model.names)[1:]:
@@ -155,24 +146,21 @@ def _lock(model: pin.Model, locked: Iterable[str]) -> tuple[pin.Model, dict[str,
     }
     reduced = pin.buildReducedModel(model, list(frozen.values()), posture) if held else model
     for joint, *sizes in zip(reduced.names, reduced.nqs, reduced.nvs, strict=True):
-        if sizes not in ([0, 0], [1, 1]):  # the world; a position and its velocity differ in kind
-            problem = f"joint {joint!r} has {sizes[0]} coordinates, {sizes[1]} directions: lock it"
-            raise InvalidInputError("locked", problem, joint)
+        if max(sizes) > 1:
+            raise InvalidInputError("locked", f"joint {joint!r} has {sizes[0]} coordinates", joint)
     return reduced, held
 
 
-def _limits(name: str, model: pin.Model, joints: _Joints) -> tuple[Array, Array]:
+def _limits(name: str, model: pin.Model, root: ET.Element) -> tuple[Array, Array]:
     """Return `Robot.limits`, (5, n), and `Robot.ramps`, (2, n), the latter Franka's element."""
+    joints = {joint.get("name"): joint for joint in root.findall("joint")}
     limits = np.full((5, model.nv), np.inf)
     ramps = np.array([[0.0], [np.inf]]) * np.ones(model.nv)
     limits[:3] = [model.lowerPositionLimit, model.upperPositionLimit, model.velocityLimit]
     limits[np.abs(limits) > _NO_LIMIT] *= np.inf
     limits[2, limits[2] == 0.0] = np.inf
     for i, joint in enumerate(tuple(model.names)[1:]):
-        element = joints.get(joint, ET.Element("joint"))
-        limit = element.find("limit")
-        if limit is not None and not {"lower", "upper"} & set(limit.keys()):
-            limits[:2, i] = [-np.inf, np.inf]
+        element = joints.get(joint, root)
         mimic = element.find("mimic")
         if mimic is not None:
             problem = f"joint {joint!r} follows {mimic.get('joint')!r}: lock it, or take its"
@@ -180,8 +168,8 @@ def _limits(name: str, model: pin.Model, joints: _Joints) -> tuple[Array, Array]
             raise InvalidInputError("locked", f"{problem} {remedy}", joint)
         ramp = element.find("position_based_velocity_limits")
         if ramp is not None:
-            keys = ("velocity_offset", "deceleration_limit")
-            ramps[:, i] = [float(ramp.get(key, "nan")) for key in keys]
+            ramps[0, i] = ramp.attrib["velocity_offset"]
+            ramps[1, i] = ramp.attrib["deceleration_limit"]
     if name in RATES and np.size(RATES[name][0]) in (1, model.nv):
         limits[3] = RATES[name][0]
         limits[4] = RATES[name][1]

@@ -1,13 +1,12 @@
 """A robot in MuJoCo, compiled from the project's own URDF.
 
 MuJoCo reads the URDF by itself (its own parser and its own dynamics, independent of Pinocchio).
-Facts that a URDF does not hold are added here: torque motors, joint damping, rotor inertia, and the
-pairs of links that can collide. MuJoCo is imported only when a model is built (extra ``sim``).
+Facts that a URDF does not hold are added here: torque motors, joint damping, rotor inertia. Links
+do not collide. MuJoCo is imported only when a model is built (extra ``sim``).
 """
 
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -25,10 +24,6 @@ TIP_SITE = "tip"
 VISUAL_GROUP = 1
 """Geometry group of the URDF's <visual> shapes."""
 
-# Links whose collision shapes can really meet (the others are neighbours, or stay apart by design
-# although the capsules around them overlap). Robots that are not named here collide with nothing.
-_COLLISION_PAIRS = {"iiwa7": [{"iiwa7_link_0", f"iiwa7_link_{i}"} for i in (5, 6, 7)]}
-
 
 @dataclass(frozen=True)
 class JointDynamics:
@@ -43,11 +38,6 @@ class JointDynamics:
     damping: float = 0.5
     armature: float = 0.1
 
-    def __post_init__(self) -> None:
-        """Check the numbers; raises InvalidInputError naming the one that is wrong."""
-        checks.not_negative("damping", self.damping)
-        checks.not_negative("armature", self.armature)
-
 
 def torque_limits(robot: Robot) -> checks.Array:
     """Return the torque limits of the URDF [N m], (n,); inf where it gives none."""
@@ -55,7 +45,7 @@ def torque_limits(robot: Robot) -> checks.Array:
 
 
 def build_spec(robot: Robot) -> Any:
-    """Make MuJoCo's ``MjSpec`` of a robot: its URDF, a torque motor a joint, its collision pairs.
+    """Make MuJoCo's ``MjSpec`` of a robot: its URDF with a torque motor for each joint.
 
     Locked joints are welded. The mechanical stops are the URDF's: the robot's own position limits
     are a matter of the controller. Body 0 is the world; every link is a body of its own,
@@ -63,20 +53,17 @@ def build_spec(robot: Robot) -> Any:
 
     Raises:
         MissingDependencyError: If MuJoCo is not installed.
-        InvalidInputError: If the robot has no file, or MuJoCo refuses the URDF.
+        InvalidInputError: If the robot has no file, or MuJoCo orders its joints differently.
+        ValueError: If MuJoCo refuses the URDF.
     """
     mj = import_mujoco()
     root = ET.fromstring(source_of(robot)[1])
-    urdf.weld(root, robot)
-    urdf.drop_meshes(root)
-    urdf.mend_inertias(root)
+    urdf.strip(root, robot)
     extension = ET.SubElement(root, "mujoco")
     # Not fused: links keep their names, and the base can be told from the world.
     ET.SubElement(extension, "compiler", fusestatic="false", discardvisual="false")
-    try:
-        spec = mj.MjSpec.from_string(urdf.text_of(root))
-    except ValueError as error:
-        raise InvalidInputError("robot", f"MuJoCo refuses its URDF: {error}", robot) from error
+    spec = mj.MjSpec.from_string(urdf.text_of(root))
+    _weld(spec, robot)
     joints = {joint.name: joint for joint in spec.joints}
     if tuple(joints) != robot.joint_names:
         raise InvalidInputError("robot", "MuJoCo and Pinocchio order its joints differently", robot)
@@ -87,13 +74,32 @@ def build_spec(robot: Robot) -> Any:
             motor.forcerange = [-limit, limit]
     # The site of the tip hangs on the body of the joint that carries Pinocchio's frame.
     frame = robot.model.frames[robot.tip_id]
-    x, y, z, w = pin.Quaternion(frame.placement.rotation).coeffs()
     carrier = joints[robot.model.names[frame.parentJoint]].parent
-    carrier.add_site(name=TIP_SITE, pos=frame.placement.translation, quat=[w, x, y, z])
-    for first, second in combinations([body.name for body in spec.bodies[1:]], 2):
-        if {first, second} not in _COLLISION_PAIRS.get(robot.name, []):
-            spec.add_exclude(bodyname1=first, bodyname2=second)
+    turn = _quaternion(frame.placement)
+    carrier.add_site(name=TIP_SITE, pos=frame.placement.translation, quat=turn)
     return spec
+
+
+def _weld(spec: Any, robot: Robot) -> None:
+    """Fix the locked joints of a robot where they are; joints that follow others are among them."""
+    for coupling in spec.equalities:
+        spec.delete(coupling)
+    for joint in spec.joints:
+        if joint.name in robot.locked:
+            body = joint.parent
+            # In Pinocchio's model both links have become frames of one joint.
+            ends = [robot.frame_id(each.name) for each in (body.parent, body)]
+            before, after = (robot.model.frames[end].placement for end in ends)
+            pose = before.actInv(after)
+            body.pos = pose.translation
+            body.quat = _quaternion(pose)
+            spec.delete(joint)
+
+
+def _quaternion(pose: pin.SE3) -> list[float]:
+    """Return a pose's quaternion in MuJoCo's order."""
+    x, y, z, w = pin.Quaternion(pose.rotation).coeffs()
+    return [w, x, y, z]
 
 
 def compile_model(
@@ -107,19 +113,21 @@ def compile_model(
 
     Drives without `dynamics` have the estimates, joints Coulomb friction (n,) [N m]; masses and
     inertias of the links that each joint carries are multiplied by `mass_factors` (n,).
+
+    Raises:
+        MissingDependencyError: If MuJoCo is not installed.
+        InvalidInputError: If the robot has no file, or MuJoCo refuses the URDF.
     """
     mj = import_mujoco()
-    spec = build_spec(robot)
     dynamics = JointDynamics() if dynamics is None else dynamics
-    spec.option.timestep = timestep
-    spec.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
     try:
+        spec = build_spec(robot)
+        spec.option.timestep = timestep
+        spec.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
+        spec.option.disableflags = mj.mjtDisableBit.mjDSBL_CONTACT
         model = spec.compile()
     except ValueError as error:
-        hint = "; a moving link has no <inertial>, or no mass" if "mjMINVAL" in str(error) else ""
-        raise InvalidInputError(
-            "robot", f"MuJoCo refuses its URDF: {error}{hint}", robot
-        ) from error
+        raise InvalidInputError("robot", f"MuJoCo refuses its URDF: {error}", robot) from error
     # On the model, not the joints of the specification: there, MuJoCo's type of it has changed.
     model.dof_damping[:] = dynamics.damping
     model.dof_armature[:] = dynamics.armature

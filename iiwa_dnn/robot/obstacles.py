@@ -1,7 +1,7 @@
 """Obstacles that an arm keeps away from: convex shapes in the world, still or moving."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
@@ -196,25 +196,21 @@ class HalfSpace(Obstacle):
 SHAPES = {shape.__name__.lower(): shape for shape in (Sphere, Capsule, Box, HalfSpace)}
 
 
-def make_obstacles(tables: object) -> list[Obstacle]:
+def make_obstacles(tables: Iterable[Any]) -> list[Obstacle]:
     """Make the obstacles of a file: tables of ``shape`` and the shape's parameters.
 
     Raises:
-        InvalidInputError: They are no tables, or the shape or a parameter of the one with a number
-            is missing, unknown or wrong.
+        InvalidInputError: The shape or a parameter of the one with a number is missing, unknown or
+            wrong.
     """
-    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise InvalidInputError("obstacle", f"must be tables [[obstacle]], not {tables!r}", tables)
     found: list[Obstacle] = []
     for number, table in enumerate(tables, 1):
-        values = dict(table)
-        shape = str(values.pop("shape", None)).replace("_", "").lower()
         try:
-            checks.one_of("shape", shape, tuple(SHAPES))
-            found.append(SHAPES[shape](**values))
-        except (InvalidInputError, TypeError) as error:
-            reason = one_line(error).replace(".__init__()", ":")
-            raise InvalidInputError(f"obstacle {number}", reason, table) from error
+            values = dict(table)
+            shape = str(values.pop("shape", None)).replace("_", "").lower()
+            found.append(SHAPES[checks.one_of("shape", shape, tuple(SHAPES))](**values))
+        except (ValueError, TypeError) as error:
+            raise InvalidInputError(f"obstacle {number}", one_line(error), table) from error
     return found
 
 

@@ -9,7 +9,7 @@ import os
 import sys
 from typing import Any
 
-from iiwa_dnn.errors import MissingDependencyError
+from iiwa_dnn.errors import MissingDependencyError, import_extra
 
 _REMEDY = (
     "on Debian and Ubuntu: apt-get install libegl1 libgl1 (or libosmesa6, and MUJOCO_GL=osmesa)"
@@ -17,19 +17,8 @@ _REMEDY = (
 
 
 def import_mujoco() -> Any:
-    """Import MuJoCo's Python package.
-
-    Raises:
-        MissingDependencyError: If it is not installed, or lacks the OpenGL library that the
-            environment variable MUJOCO_GL makes it load.
-    """
-    try:
-        return importlib.import_module("mujoco")
-    except ModuleNotFoundError as error:
-        package = "the Python package mujoco"
-        raise MissingDependencyError(package, "pip install 'iiwa-dnn[sim]'") from error
-    except Exception as error:  # whatever PyOpenGL meets where that library is not there
-        raise MissingDependencyError("the OpenGL library of MUJOCO_GL", _REMEDY) from error
+    """Import MuJoCo's Python package; raises MissingDependencyError where it is not installed."""
+    return import_extra("mujoco", "pip install 'iiwa-dnn[sim]'")
 
 
 def prepare_renderer() -> None:

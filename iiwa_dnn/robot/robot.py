@@ -63,9 +63,6 @@ class Robot:
         object.__setattr__(self, "tip_id", self.frame_id(self.tip))
         if self.model.frames[self.tip_id].parentJoint == 0:
             raise InvalidInputError("tip", f"no joint moves frame {self.tip!r}", self.tip)
-        if not ((self.ramps[0] >= 0.0) & (self.ramps[1] > 0.0)).all():
-            problem = "must have offsets of at least 0 and decelerations above 0"
-            raise InvalidInputError("ramps", problem, self.ramps)
         for joint, (lower, upper, *rates) in zip(self.joint_names, self.limits.T, strict=True):
             if not lower < upper:
                 problem = f"joint {joint!r}: lower limit {lower:g} is not below {upper:g}"
@@ -171,10 +168,10 @@ class Robot:
 
         A distance of 1e-9 beyond a limit is forgiven: a run may end there, and the next one begin.
         """
-        q = np.asarray(q)
-        for i in np.flatnonzero((q < self.q_lower - 1e-9) | (q > self.q_upper + 1e-9)):
-            limits = f"{self.q_lower[i]:g} and {self.q_upper[i]:g} rad"
-            return f"must be within {limits}: joint {i + 1} is at {q[i]:g}"
+        rows = zip(*self.limits[:2], np.asarray(q), strict=True)
+        for i, (lower, upper, each) in enumerate(rows, 1):
+            if not lower - 1e-9 <= each <= upper + 1e-9:
+                return f"must be within {lower:g} and {upper:g} rad: joint {i} is at {each:g}"
         return ""
 
     def with_tool(self, tool: pin.SE3 | ArrayLike, name: str = "tool") -> Robot:
@@ -212,13 +209,10 @@ class Robot:
         joints of any other robot begin bent to either side in turn, 0.15 of their ranges from the
         middle, where it may all the same be singular or in a collision.
         """
-        if not self.has_known_start:
-            bent = np.where(np.arange(self.dof) % 2, 0.5 - _BENT, 0.5 + _BENT)
-            return self._inside(bent)
-        known = np.array(STARTS[self.name])
-        inside = (self.q_lower < known) & (known < self.q_upper)
-        low, high = self._inside(np.array([[0.05], [0.95]]))
-        return np.where(inside, known, np.clip(known, low, high))
+        bent = np.where(np.arange(self.dof) % 2, 0.5 - _BENT, 0.5 + _BENT)
+        start = np.array(STARTS[self.name]) if self.has_known_start else self._inside(bent)
+        inside = (self.q_lower < start) & (start < self.q_upper)
+        return np.where(inside, start, np.clip(start, *self._inside(np.array([[0.05], [0.95]]))))
 
     def draw(self, random: np.random.Generator, count: int) -> checks.Array:
         """Draw joint positions inside the limits, evenly, (count, n) [rad]."""

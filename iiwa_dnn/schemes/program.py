@@ -139,7 +139,7 @@ class Scheme:
         program = self.program(checks.instance("conf", conf, Configuration).robot)
         if program.needs_period:
             checks.positive("dt", dt)
-        q = conf.arrays[0]
+        q = conf.q
         velocity = np.zeros(q.size) if dq is None else checks.finite_array("dq", dq, (q.size,))
         targets = np.array(targets_of(conf.robot.tip, program.target_frames, target))
         data = np.empty(program.data_size)

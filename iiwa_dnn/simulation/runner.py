@@ -129,9 +129,9 @@ def simulate(
         "motion": motion if plant.exact else "physics",
         "seed": seed,
         "check": check.settings(),
-        **plant.start(robot, start.arrays[0], controller.dt, seed),
+        **plant.start(robot, start.q, controller.dt, seed),
     }
-    loop = Loop(controller, plant, chain, MOTIONS[motion], start.arrays[0])
+    loop = Loop(controller, plant, chain, MOTIONS[motion], start.q)
     recorder = Recorder(steps, controller, loop.q, settings)
     progress(0)
     stages = MOTIONS[motion].stages
@@ -216,7 +216,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         "q_upper": robot.q_upper,
         "dq_max": robot.dq_max,
         **rates,
-        "q0": start.arrays[0],
+        "q0": start.q,
         "tol": solver.tol,
         "rho": solver.network.rho,
         "network": solver.network.settings(),

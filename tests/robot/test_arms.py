@@ -1,14 +1,16 @@
-"""Arms by name: the chain, its gripper, and the heart drawn with it, whatever its redundancy."""
+"""Arms by name: the chain, its gripper, a second reader's poses, and the heart drawn with it."""
 
 from __future__ import annotations
 
 import dataclasses
+import io
+import xml.etree.ElementTree as ET
 from itertools import product
-from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
+import pinocchio as pin
 import pytest
+import yourdfpy
 
 from helpers_kinematics import PAPER_Q0, Array, example_urdf
 from iiwa_dnn import (
@@ -26,6 +28,8 @@ from iiwa_dnn import (
 )
 from iiwa_dnn.robot import arms
 from iiwa_dnn.robot.arms import ARMS, TIPS
+from iiwa_dnn.robot.loading import robots_folder
+from iiwa_dnn.robot.shapes import visual_meshes
 
 JOINTS = {
     "baxter_left": 7, "baxter_right": 7, "kinova": 6, "panda": 7, "talos_left": 9, "talos_right": 9,
@@ -36,7 +40,7 @@ JOINTS = {
 
 def still(name: str) -> set[str]:
     """Joints that are not between base and tip, by the XML."""
-    root = ElementTree.parse(example_urdf(ARMS[name].file)).getroot()
+    root = ET.parse(example_urdf(ARMS[name].file)).getroot()
     above = {joint.find("child").get("link"): joint for joint in root.findall("joint")}
     names = {joint.get("name") for joint in above.values() if joint.get("type") != "fixed"}
     link = ARMS[name].tip
@@ -103,12 +107,6 @@ def test_a_start_where_limits_are_on_one_side_or_on_none(lower: object, upper: o
     assert np.abs(robot.start_posture()).max() < 3.0 * np.pi
 
 
-def test_locked_and_tip_can_be_chosen_besides() -> None:
-    robot = load_robot("panda", tip="panda_link8", locked=("panda_joint3",))
-    assert (robot.dof, robot.tip) == (6, "panda_link8")
-    assert robot.locked == ("panda_finger_joint1", "panda_finger_joint2", "panda_joint3")
-
-
 @pytest.mark.parametrize(
     ("name", "orientation"),
     [*product(ARMS, ["so3"]), *product(["ur5", "panda"], ["none"])],
@@ -127,9 +125,7 @@ def test_the_heart_with_any_redundancy(name: str, orientation: str) -> None:
     assert (metrics["max_orientation_error_rad"] < 1e-3) == (orientation == "so3")
 
 
-def test_without_the_package_one_line_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_without_the_package_one_line_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     def missing(name: str) -> None:
         raise arms.PackageNotFoundError(name)
 
@@ -137,3 +133,104 @@ def test_without_the_package_one_line_says_what_to_install(
     with pytest.raises(MissingDependencyError, match=r"pip install 'iiwa-dnn\[robots\]'"):
         load_robot("panda")
     assert "panda" not in available_robots()
+
+
+# The package's own files
+
+
+def test_the_iiwa_7_has_the_pose_and_the_limits_of_its_documents() -> None:
+    robot = load_robot("iiwa7")
+    conf = Configuration(robot, PAPER_Q0)
+    rotation = [
+        [0.685264, 0.717982, 0.122129],
+        [0.702680, -0.695883, 0.148283],
+        [0.191452, -0.015795, -0.981375],
+    ]
+    np.testing.assert_allclose(conf.position, [0.373145, 0.388717, 0.301206], rtol=0, atol=5.1e-7)
+    np.testing.assert_allclose(conf.rotation, rotation, rtol=0, atol=5.1e-7)
+    position = np.radians([170, 120, 170, 120, 170, 120, 175])
+    np.testing.assert_array_equal(robot.q_upper, position)
+    np.testing.assert_array_equal(robot.q_lower, -position)
+    np.testing.assert_array_equal(robot.dq_max, np.radians([98, 98, 100, 130, 140, 180, 180]))
+    np.testing.assert_array_equal(robot.model.effortLimit, [176, 176, 110, 110, 110, 40, 40])
+
+
+def test_robots_of_the_package_need_no_file_of_another_package() -> None:
+    assert {path.stem for path in robots_folder().glob("*/*.urdf")} == set(TIPS)
+    for name in TIPS:
+        root = ET.fromstring(load_robot(name).urdf)
+        assert root.get("name") == name
+        assert root.findall(".//visual")
+        assert root.findall(".//collision")
+        assert not root.findall(".//mesh")
+        assert visual_meshes(load_robot(name)) == ()
+
+
+# Poses and meshes as yourdfpy has them, which reads the same text
+
+
+def reader_of(robot: Robot) -> yourdfpy.URDF:
+    """Read a robot's text a second time; joints that follow others are given their positions."""
+    text = io.BytesIO(robot.urdf.encode())
+    file = yourdfpy.URDF.load(text, build_scene_graph=False, load_meshes=False).robot
+    for joint in file.joints:
+        joint.mimic = None
+    for link in file.links:
+        link.visuals = []
+    return yourdfpy.URDF(file, load_meshes=False)
+
+
+CASES = [
+    *[(name, ()) for name in (*TIPS, *ARMS)],
+    ("panda", ("panda_link8", "panda_joint3", "panda_joint4")),  # which is not held at zero
+    ("kinova", (None, "j2s6s200_joint_1", "j2s6s200_joint_4")),  # continuous
+]
+
+
+@pytest.mark.parametrize(("name", "words"), CASES)
+def test_joints_limits_and_poses_of_all_links(name: str, words: tuple[str, ...]) -> None:
+    tip, *locked = words or (None,)
+    robot = load_robot(name, tip=tip, locked=locked)
+    reader = reader_of(robot)
+    movable = {joint.name for joint in reader.robot.joints if joint.type != "fixed"}
+    assert movable == {*robot.joint_names, *robot.locked}
+    assert set(locked) <= set(robot.locked)
+    assert robot.tip == (tip or load_robot(name).tip)
+    for i, joint in enumerate(robot.joint_names):
+        limit = reader.joint_map[joint].limit or yourdfpy.Limit()
+        assert robot.q_lower[i] == (-np.inf if limit.lower == -1e308 else limit.lower)
+        assert robot.q_upper[i] == (np.inf if limit.upper == 1e308 else limit.upper)
+        assert robot.dq_max[i] == (limit.velocity or np.inf)
+        assert robot.model.effortLimit[i] == (limit.effort or 0.0)
+    data = robot.model.createData()
+    names = (*robot.joint_names, *robot.locked)
+    for q in np.random.default_rng(0).uniform(-np.pi, np.pi, (5, robot.dof)):
+        pin.framesForwardKinematics(robot.model, data, q)
+        reader.update_cfg(dict(zip(names, (*q, *robot.q_locked), strict=True)))
+        for link in reader.link_map:
+            ours = data.oMf[robot.frame_id(link)].homogeneous
+            theirs = reader.get_transform(link, reader.base_link)
+            np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9, err_msg=link)
+
+
+@pytest.mark.parametrize("name", ["ur5", "xarm7"])
+def test_meshes_are_where_yourdfpy_has_them(name: str) -> None:
+    robot = load_robot(name)
+    q = np.linspace(-1.0, 1.0, robot.dof)
+    folder = str(robot.path.parents[3])
+    other = yourdfpy.URDF.load(
+        str(robot.path),
+        filename_handler=lambda fname: fname.replace("package://example-robot-data", folder),
+    )
+    other.update_cfg(dict(zip(robot.joint_names, q, strict=True)))
+    data = robot.model.createData()
+    pin.forwardKinematics(robot.model, data, q)
+    places = [data.oMi[mesh.joint] for mesh in visual_meshes(robot)]
+    corners = np.vstack(
+        [
+            mesh.corners @ place.rotation.T + place.translation
+            for mesh, place in zip(visual_meshes(robot), places, strict=True)
+        ]
+    )
+    bounds = [corners.min(axis=0), corners.max(axis=0)]
+    np.testing.assert_allclose(bounds, other.scene.bounds, atol=1e-5)

@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_kinematics import Array, dh_pose
-from iiwa_dnn import (
-    Configuration,
-    load_robot,
-    robot_from_dh,
-)
+from iiwa_dnn import Configuration, load_robot, robot_from_dh
 
 RNG = np.random.default_rng(5)
 TABLE = RNG.uniform(-1.0, 1.0, (6, 4)) * [0.4, np.pi, 0.4, np.pi]
