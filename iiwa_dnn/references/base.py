@@ -42,13 +42,11 @@ class Reference(ABC):
     Until :meth:`anchored` the origin is at position 0 with orientation identity.
 
     Attributes:
-        name: Name of the path in settings and on the command line.
         path: Kernel or other function ``path(t, constants, target)``, on `Target.data` (18,).
         constants: Constants of `path`, shape (c,).
         base: Target at the origin, at rest, `Target.data` (18,), read-only.
     """
 
-    name: ClassVar[str]
     path: ClassVar[Any]
     constants: Array = read_only(np.zeros(0))
     base: Array = AT_REST
@@ -57,6 +55,11 @@ class Reference(ABC):
         """Set checked parameters of a frozen dataclass."""
         for name, value in values.items():
             object.__setattr__(self, name, value)
+
+    @property
+    def name(self) -> str:
+        """Name of the path in settings and on the command line: its class's, in small letters."""
+        return type(self).__name__.lower()
 
     @property
     def compiled(self) -> Any:
@@ -135,8 +138,6 @@ class Reference(ABC):
 
 class Ahead(Reference):
     """A path whose targets have the mean twist over the coming period in place of their own."""
-
-    name: ClassVar[str] = "ahead"
 
     def __init__(self, along: Reference, dt: float) -> None:
         """Look at a path one period of dt [s] ahead."""

@@ -1,7 +1,7 @@
 """A target that is set from outside: by a person's hand, a camera, another program."""
 
 import math
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -29,7 +29,7 @@ class MovingTarget(Reference):
         rate: Largest angular speed of the target [rad/s].
     """
 
-    name: ClassVar[str] = "moving target"
+    name: str = "moving target"
     period: float = math.inf
 
     def __init__(self, pose: Pose, speed: float = 0.25, rate: float = 1.0) -> None:

@@ -56,7 +56,6 @@ class Heart(Reference):
         InvalidInputError: If a parameter is not a finite number above zero.
     """
 
-    name: ClassVar[str] = "heart"
     path: ClassVar[Any] = staticmethod(heart_path)
     scale: float = 3.45e-3
     period: float = 10.0
@@ -104,7 +103,6 @@ class Circle(Reference):
             normal is zero.
     """
 
-    name: ClassVar[str] = "circle"
     path: ClassVar[Any] = staticmethod(circle_path)
     radius: float = 0.05
     period: float = 10.0
@@ -148,19 +146,15 @@ class Line(Reference):
         period: Time to go there and back [s].
 
     Raises:
-        InvalidInputError: If a parameter is not finite, the offset is zero or the period is not
-            above zero.
+        InvalidInputError: If a parameter is not finite or the period is not above zero.
     """
 
-    name: ClassVar[str] = "line"
     path: ClassVar[Any] = staticmethod(line_path)
     offset: Vector3 = (0.1, 0.0, 0.0)
     period: float = 10.0
 
     def __post_init__(self) -> None:
         self._set(offset=vector3("offset", self.offset), period=positive("period", self.period))
-        if not any(self.offset):
-            raise InvalidInputError("offset", "must not be zero", self.offset)
         self._set(constants=np.array([2.0 * np.pi / self.period, *self.offset]))
 
 
@@ -193,11 +187,10 @@ class Lissajous(Reference):
         period: Time to go round once [s].
 
     Raises:
-        InvalidInputError: If a parameter is not finite, the period is not above zero, a number of
-            turns is not whole, or nothing moves.
+        InvalidInputError: If a parameter is not finite, the period is not above zero or a number of
+            turns is not whole.
     """
 
-    name: ClassVar[str] = "lissajous"
     path: ClassVar[Any] = staticmethod(lissajous_path)
     amplitudes: Vector3 = (0.05, 0.05, 0.0)
     turns: Vector3 = (1.0, 2.0, 1.0)
@@ -210,8 +203,6 @@ class Lissajous(Reference):
         self._set(period=positive("period", self.period))
         if not all(turns.is_integer() for turns in self.turns):
             raise InvalidInputError("turns", "must be whole numbers", self.turns)
-        if not any(a * k for a, k in zip(self.amplitudes, self.turns, strict=True)):
-            raise InvalidInputError("amplitudes", "nothing moves", self.amplitudes)
         rates = (2.0 * np.pi / self.period) * np.array(self.turns)
         self._set(constants=np.concatenate([self.amplitudes, rates, self.phases]))
 
@@ -229,7 +220,6 @@ class Still(Reference):
         period: Length of a run without a duration [s], above 0.
     """
 
-    name: ClassVar[str] = "still"
     path: ClassVar[Any] = staticmethod(still_path)
     period: float = 10.0
 

@@ -61,7 +61,6 @@ class Cone(Reference):
         InvalidInputError: If a parameter is out of range.
     """
 
-    name: ClassVar[str] = "cone"
     path: ClassVar[Any] = staticmethod(cone_path)
     angle: float = TILT
     period: float = 10.0
@@ -117,7 +116,6 @@ class Tilting(Reference):
         InvalidInputError: If a parameter is out of range.
     """
 
-    name: ClassVar[str] = "tilting"
     path: ClassVar[Any] = staticmethod(tilting_path)
     along: Reference = field(default_factory=Circle)
     angle: float = TILT
