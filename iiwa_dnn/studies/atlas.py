@@ -125,8 +125,7 @@ def _along(course: Callable[[Vector], Vector]) -> Callable[[np.random.Generator,
 
     def draw(rng: np.random.Generator, times: Vector) -> Matrix:
         direction = rng.standard_normal(STATES) / np.sqrt(7.0)
-        noise: Matrix = (times[1] - times[0]) * np.outer(course(times), direction)
-        return noise
+        return np.asarray((times[1] - times[0]) * np.outer(course(times), direction))
 
     return draw
 
@@ -432,8 +431,9 @@ def best_gains(
     for cell, result in zip(cells, results, strict=True):
         residual = result["residual"][0]
         found = np.inf if residual is None else max(residual, SOLVED)
-        own = ranked.setdefault(cell.network, [])
-        own.append((found, -cell.share, cell.most is not None, cell))
+        ranked.setdefault(cell.network, []).append(
+            (found, -cell.share, cell.most is not None, cell)
+        )
     best = {network: min(own)[-1] for network, own in ranked.items()}
     return {network: {"share": cell.share, "most": cell.most} for network, cell in best.items()}
 

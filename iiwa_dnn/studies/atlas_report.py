@@ -119,14 +119,12 @@ def scores(rows: Sequence[Row], network: str) -> Vector | None:
     if any(row["lost"] for row in found):
         return None
     count = max(len(row["residual"]) for row in found)
-    mean: Vector = np.mean([np.resize(_logarithms(row), count) for row in found], axis=0)
-    return mean
+    return np.asarray(np.mean([np.resize(_logarithms(row), count) for row in found], axis=0))
 
 
 def _logarithms(row: Row) -> Vector:
     """Return the decimal logarithms of a row's residuals, of a solved program that of `SOLVED`."""
-    logarithms: Vector = np.log10(np.maximum(row["residual"], SOLVED))
-    return logarithms
+    return np.asarray(np.log10(np.maximum(row["residual"], SOLVED)))
 
 
 def compare(one: Vector, other: Vector) -> int:

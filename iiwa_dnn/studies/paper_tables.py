@@ -131,11 +131,11 @@ def _measure(
     """Lay out one measure of the four cases, and its changes by noise and filter."""
     silent = [values[key] for values in quiet]
     plain, filtered = np.array([[values[key] for values in runs] for runs in noisy], float)
-    cases = [*map(Estimate.exact, silent), estimate(plain), estimate(filtered)]
+    cases = [*map(Estimate, silent), estimate(plain), estimate(filtered)]
     difference = paired_difference(filtered, plain)
     changes = {
         "filter, with noise": _relative(difference, float(plain.mean())),
-        "filter, without noise": Estimate.exact(silent[1] / silent[0] - 1.0),
+        "filter, without noise": Estimate(silent[1] / silent[0] - 1.0),
         "noise, without filter": _relative(estimate(plain - silent[0]), silent[0]),
     }
     printed = _changes_of_paper(_CASES[key])

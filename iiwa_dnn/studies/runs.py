@@ -70,8 +70,6 @@ class Scope:
 
     def __post_init__(self) -> None:
         """Check the sizes; raises InvalidInputError naming the one that is wrong."""
-        for name in ("duration", "laps_dt", "dt"):
-            checks.positive(name, getattr(self, name))
         checks.integer("seeds", self.seeds, 2)
         checks.integer("laps", self.laps, 1)
         for weight in self.weights:
@@ -128,8 +126,15 @@ class HeartRun:
         follower = ImplicitEuler() if implicit else ExplicitEuler(substeps=steps)
         # Implicit steps of the flow without the projection are convex problems, and compiled.
         solver = DNNSolver(ProjectionNetwork(primal_projection=not implicit), follower=follower)
-        options |= {"check": CrossCheck(()), "solver": solver}
-        return simulate(paper_robot(), self.scheme(), self.reference(), paper.START, **options)
+        return simulate(
+            paper_robot(),
+            self.scheme(),
+            self.reference(),
+            paper.START,
+            solver=solver,
+            check=CrossCheck(()),
+            **options,
+        )
 
     def scheme(self) -> Scheme:
         """Make the scheme, with the paper's start as its home."""

@@ -26,7 +26,6 @@ from numpy.typing import ArrayLike
 from scipy.stats import kendalltau, t as student
 
 from iiwa_dnn.checks import finite_array
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import plain
 
 CONFIDENCE = 0.95
@@ -48,18 +47,14 @@ class Estimate:
 
     Attributes:
         mean: Mean of the samples.
-        half_width: Half the width of the confidence interval around it; 0 of an exact value.
-        samples: Number of samples; 1 of an exact value.
+        half_width: Half the width of the confidence interval around it; 0 of a number without
+            chance in it, such as that of a quiet run.
+        samples: Number of samples; 1 of such a number.
     """
 
     mean: float
-    half_width: float
-    samples: int
-
-    @classmethod
-    def exact(cls, value: float) -> Estimate:
-        """Make an estimate of a number without chance in it, such as that of a quiet run."""
-        return cls(float(value), 0.0, 1)
+    half_width: float = 0.0
+    samples: int = 1
 
     @property
     def low(self) -> float:
@@ -82,14 +77,12 @@ class Estimate:
 
 
 def estimate(samples: ArrayLike) -> Estimate:
-    """Estimate the mean of independent samples (k,), with its confidence interval.
+    """Estimate the mean of independent samples (k,), two or more, with its confidence interval.
 
     Raises:
-        InvalidInputError: There are fewer than two samples, or one is not finite.
+        InvalidInputError: A sample is not finite.
     """
     values = finite_array("samples", samples, (-1,))
-    if values.size < 2:
-        raise InvalidInputError("samples", f"must be two or more, not {values.size}", samples)
     # Not scipy's ttest_1samp, whose interval is NaN where all samples are equal.
     quantile = float(student.ppf(0.5 * (1.0 + CONFIDENCE), values.size - 1))
     half_width = quantile * float(values.std(ddof=1)) / float(np.sqrt(values.size))
@@ -97,14 +90,8 @@ def estimate(samples: ArrayLike) -> Estimate:
 
 
 def paired_difference(after: ArrayLike, before: ArrayLike) -> Estimate:
-    """Estimate the mean of ``after - before`` over pairs, (k,) both: entry i shares its noise.
-
-    Raises:
-        InvalidInputError: The lengths differ, or as for `estimate`.
-    """
-    one = finite_array("after", after, (-1,))
-    other = finite_array("before", before, (one.size,))
-    return estimate(one - other)
+    """Estimate the mean of ``after - before`` over pairs, (k,) both: entry i shares its noise."""
+    return estimate(np.subtract(after, before))
 
 
 def trend(x: ArrayLike, y: ArrayLike) -> Trend:

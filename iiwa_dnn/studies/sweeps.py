@@ -22,16 +22,14 @@ import joblib
 from tqdm import tqdm
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import IiwaDnnError, InvalidInputError, import_extra
-from iiwa_dnn.files import one_line, prepare_folder
+from iiwa_dnn.errors import IiwaDnnError, import_extra
+from iiwa_dnn.files import prepare_folder
 from iiwa_dnn.robot.loading import robots_folder
 
 Task = Callable[[Any], Any]
 
 PACKAGES = ("iiwa-dnn", "numpy", "scipy", "pin")
 """Packages whose versions a result depends on."""
-
-_PATIENCE = 10.0  # time to look for a scheduler [s]
 
 
 @cache
@@ -67,7 +65,7 @@ def sweep(
 
     Raises:
         IiwaDnnError: A cell has an error, which is named with the cell.
-        InvalidInputError: There is no scheduler at that address.
+        OSError: There is no scheduler at that address.
         MissingDependencyError: Dask is not installed.
         FileError: A file cannot be written.
     """
@@ -82,7 +80,8 @@ def sweep(
         "inner_max_num_threads": 1,
     }
     if dask is not None:
-        client = _connect(dask)
+        distributed = import_extra("distributed", "pip install 'iiwa-dnn[dask]'")
+        client = distributed.Client(dask)
         backend = {"backend": "dask"}
     with client, joblib.parallel_config(**backend):
         # One cell a message, and no arrays in shared memory, which a killed sweep would leave.
@@ -102,13 +101,3 @@ def _compute(task: Task, cell: Any, expected: str) -> Any:
     except IiwaDnnError as error:
         # The base class alone is sure to survive the way back from another process.
         raise IiwaDnnError(f"{error} (in a sweep, at {cell})") from None
-
-
-def _connect(address: str) -> Any:
-    """Return a client of a Dask scheduler."""
-    distributed = import_extra("distributed", "pip install 'iiwa-dnn[dask]'")
-    try:
-        return distributed.Client(address, timeout=_PATIENCE)
-    except (OSError, ValueError) as error:
-        problem = f"no scheduler at {address!r} ({one_line(error)})"
-        raise InvalidInputError("dask", problem) from error

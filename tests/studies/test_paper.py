@@ -9,7 +9,7 @@ from helpers_paper import SCOPE, table_of, values
 from helpers_records import heart_record
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.paper_report import error_figure, report
-from iiwa_dnn.studies.paper_tables import EXPERIMENTS, figure_runs
+from iiwa_dnn.studies.paper_tables import EXPERIMENTS, VARIANTS, figure_runs
 from iiwa_dnn.studies.runs import FULL, HeartRun, Scope
 
 TABLES = tuple(EXPERIMENTS)
@@ -29,12 +29,7 @@ def test_table1_keeps_variants_and_weights_apart() -> None:
 
     scope = Scope(weights=(0.2, 0.9))
     table = table_of("table1", lambda run: values(max_position_error_m=error(run)), scope)
-    for name, first in (
-        ("continuous, block", 7.0),
-        ("converged, SO(3)", 8.0),
-        ("continuous, block, G = inertia", 9.0),
-        ("converged, SO(3), G = inertia", 10.0),
-    ):
+    for name, first in zip(VARIANTS, (7.0, 8.0, 9.0, 10.0), strict=True):
         row = table["variants"][name]["rows"]["max_position_error_m"]
         np.testing.assert_allclose(row, first + np.array(scope.weights), err_msg=name)
     assert table["paper"]["max_position_error_m"] == [5.59e-5, 1.75e-5]

@@ -12,19 +12,13 @@ from helpers_records import make_record
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.studies import paper
-from iiwa_dnn.studies.runs import (
-    HeartRun,
-    Scope,
-    lap_drift,
-    measure,
-    total_variation,
-)
+from iiwa_dnn.studies.runs import HeartRun, Scope, lap_drift, measure, total_variation
 
 SHORT = HeartRun(duration=3e-3)
 
 
 def test_the_defaults_are_the_papers() -> None:
-    asked = HeartRun(duration=1e-3).run().settings
+    asked = SHORT.run().settings
     assert asked["mode"] == "continuous"
     assert asked["scheme"]["orientation"] == "block"
     assert asked["scheme"]["weight"] == 0.2
@@ -40,16 +34,11 @@ def test_every_setting_reaches_the_run() -> None:
         SHORT, weight=0.7, mode="converged", orientation="so3", kinetic="inertia", noise=0.02,
         noise_at="measurement", filter_window=3, seed=5, dt=2e-4, duration=4e-3, motion="midpoint",
     )  # fmt: skip
-    record = run.run()
-    asked = record.settings
+    asked = run.run().settings
     for name in ("mode", "noise", "noise_at", "filter_window", "seed", "dt", "duration", "motion"):
         assert asked[name] == getattr(run, name), name
     for name in ("weight", "orientation", "kinetic"):
         assert asked["scheme"][name] == getattr(run, name), name
-    assert record.steps == 20
-
-
-def test_the_baseline_and_the_sub_steps_reach_the_run() -> None:
     baseline = replace(SHORT, baseline=True, mode="converged").run()
     assert baseline.settings["scheme"]["name"] == "pseudo-inverse"
     np.testing.assert_array_equal(replace(SHORT, substeps=3).run().iterations, 3)
@@ -83,9 +72,7 @@ def test_drift_after_each_lap_of_a_made_up_record() -> None:
     assert found == [0.3, 0.5]
 
 
-@pytest.mark.parametrize(
-    "bad", [{"seeds": 1}, {"laps": 0}, {"duration": 0.0}, {"weights": (0.3,)}], ids=str
-)
+@pytest.mark.parametrize("bad", [{"seeds": 1}, {"laps": 0}, {"weights": (0.3,)}], ids=str)
 def test_a_bad_size_is_named(bad: dict[str, Any]) -> None:
     with pytest.raises(InvalidInputError, match=f"^{next(iter(bad))}: "):
         Scope(**bad)

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from helpers_sweeps import cells, draw
-from iiwa_dnn.errors import IiwaDnnError, InvalidInputError
+from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.studies import sweeps
 from iiwa_dnn.studies.runs import HeartRun, measure
 from iiwa_dnn.studies.sweeps import sweep
@@ -160,10 +160,3 @@ def test_a_dask_cluster_brings_the_same_bytes(tmp_path: Path, log: Path, schedul
     lines = log.read_text(encoding="utf-8").splitlines()
     assert len({line.split()[2] for line in lines}) == 2, "both workers"
     assert sorted(computed(log)) == [0, 1, 2, 3, 4, 5]
-
-
-def test_a_missing_scheduler_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("distributed")
-    monkeypatch.setattr(sweeps, "_PATIENCE", 0.5)
-    with pytest.raises(InvalidInputError, match=r"^dask: no scheduler at 'tcp://127\.0\.0\.1:1'"):
-        sweep(draw, [], tmp_path, dask="tcp://127.0.0.1:1")
