@@ -72,7 +72,6 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
     (lambda: d.CrossCheck(3), "solvers: must be a tuple of names, not 3"),
     (lambda: d.MujocoPlant(3), "disturbances: must be an iiwa_dnn.Disturbances"),
     (lambda: paper_robot().frame_id(None), "no frame 'None'"),
-    (lambda: d.load_robot("iiwa7", locked=3), "locked: must be names of joints"),
     (lambda: d.compute_metrics({}), "record: must be an iiwa_dnn.Record"),
     (lambda: d.failures("runs/heart"), "run: must be a record or its metrics"),
     (lambda: d.Record.load(3), "3: "),

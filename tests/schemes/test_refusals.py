@@ -94,7 +94,7 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
         (lambda text=text: read(text), rf".*toml: .*{problem}")
         for text, problem in (
             ("[[obstacle]]\nshape = 'ball'", "shape: must be one of sphere"),
-            ("[[obstacle]]\nshape = 'sphere'\nradius = 1", "Sphere.__init__() missing"),
+            ("[[obstacle]]\nshape = 'sphere'\nradius = 1", "missing 1 required"),
             ("[[obstacle]]\nshape = 'sphere'\ncenter = [0, 0]\nradius = 1", "center"),
             ("[[obstacle]]\nshape = 'Sphere'\nradus = 1", "unexpected keyword argument 'radus'"),
             ("[[obstacle]]\nshape = 'Box'\ncenter = [0,0,0]\nhalf_extents = [1,1,-1]", "half_ext"),
