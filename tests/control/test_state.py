@@ -177,3 +177,20 @@ def test_a_simulation_is_a_loop_of_steps_to_the_last_bit(make: Any, limits: Any)
         np.testing.assert_array_equal(q, record.q[k])
         q = q + 2e-3 * controller.step(q, k * 2e-3).dq
     np.testing.assert_array_equal(q, record.q[-1])
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_what_was_sent_in_place_of_a_command_is_what_the_jerk_is_counted_from(times: int) -> None:
+    jerk = 200.0
+    limits = (AccelerationLimits(5.0), JerkLimits(jerk))
+    controller = Controller(paper_robot(), DoubleIndicator(extra_limits=limits), heart(), dt=DT)
+    q = np.array(PAPER_Q0)
+    for k in range(100):
+        command = controller.step(q, k * DT)
+        q = q + DT * command.dq
+    sent = command.dq + 5e-4
+    for _ in range(times):  # twice the same: the acceleration is over
+        controller.send(sent)
+    change = sent - command.dq if times == 1 else 0.0
+    jump = controller.step(q, 0.1).dq - (sent + change)
+    assert np.abs(jump).max() == pytest.approx(jerk * DT**2, rel=1e-6)
