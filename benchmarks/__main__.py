@@ -18,7 +18,7 @@ def main() -> int:
     parser = argparse.ArgumentParser("python -m benchmarks", description=__doc__)
     parser.add_argument("command", choices=("loop", "solvers", "export", "shields", "figures"))
     parser.add_argument("--steps", type=int, default=10_000, help="number of steps of a kind")
-    for library in ("placo", "mink"):
+    for library in ("placo", "mink", "cbfpy"):
         words = f"Python interpreter of an environment with {library}"
         parser.add_argument(f"--{library}-python", type=Path, dest=library, help=words)
     options = parser.parse_args()
@@ -41,7 +41,7 @@ def main() -> int:
     if options.command in ("shields", "figures"):
         from benchmarks import shields
 
-        shields.report()
+        shields.report(options.cbfpy)
     if options.command == "figures":
         from benchmarks import figures
 

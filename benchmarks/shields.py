@@ -1,22 +1,33 @@
-"""The shield beside a clamp and beside Ruckig, on the same hostile wishes (tests/hostile.py)."""
+"""The shield beside other filters of commands, on the same hostile wishes (tests/hostile.py).
 
+The obstacles are spheres that stand still. libfranka's limiter is the one inside pylibfranka, in
+units of time in which a period is 1 ms; cbfpy runs in an environment of its own.
+"""
+
+import ctypes
+import json
+import subprocess
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pylibfranka
 import ruckig
 
 import hostile
 import iiwa_dnn
 from benchmarks.report import show
 from iiwa_dnn.qp import Vector
+from iiwa_dnn.robot.collision import collision_model
 from judge_distances import Judge
 from judge_limits import breaches
 
-RUNS = 40
-STEPS = 2000
-"""Runs, each of so many steps at most, among obstacles that stand still."""
+RUNS = 10
+STEPS = 1000
+RADIUS = 0.08
+"""Runs, each of so many steps at most, among spheres of this radius [m]."""
 
 Step = Callable[[Vector, Vector, dict[str, Any]], Vector]
 """Returns the command at joint positions q, for a velocity wished for, or the wish itself."""
@@ -29,7 +40,7 @@ def shield(case: hostile.Case) -> Step:
 
 
 def clamp(case: hostile.Case) -> Step:
-    """Return a clamp of the velocities, and of the next positions, to their limits."""
+    """Return a clamp of the way of a step, and of the next positions, to their limits."""
     robot = case.robot
 
     def step(q: Vector, dq: Vector, wish: dict[str, Any]) -> Vector:
@@ -64,6 +75,77 @@ def with_ruckig(case: hostile.Case) -> Step:
     return step
 
 
+def libfranka(case: hostile.Case) -> Step:
+    """Return ``franka::limitRate`` of seven joint velocities, which pylibfranka holds inside."""
+    place = Path(pylibfranka.__file__).parent / "libfranka.so"
+    limit_rate = ctypes.CDLL(str(place))._ZN6franka9limitRateERKSt5arrayIdLm7EES3_S3_S3_S3_S3_S3_
+    robot, n = case.robot, case.robot.dof
+    unit = case.dt / 1e-3
+    numbers = np.ones((8, 7))  # of the call: the command, and seven arguments
+    jerk = np.minimum(robot.dddq_max, robot.ddq_max / case.dt)  # with more it is not stable
+    limits = (robot.dq_max, -robot.dq_max, robot.ddq_max, jerk)
+    for row, limit, power in zip(numbers[1:5], limits, (1, 1, 2, 3), strict=True):
+        row[:n] = limit * unit**power
+    numbers[5:] = 0.0
+    pointers = [ctypes.c_void_p(row.ctypes.data) for row in numbers]
+
+    def step(q: Vector, dq: Vector, wish: dict[str, Any]) -> Vector:
+        numbers[5, :n] = unit * dq
+        limit_rate(*pointers)
+        numbers[7] = (numbers[0] - numbers[6]) / 1e-3
+        numbers[6] = numbers[0]
+        return numbers[0, :n] / unit
+
+    return step
+
+
+def scene_of(case: hostile.Case) -> dict[str, Any]:
+    """Describe an arm and the spheres for cbfpy, whose barriers are written in jax."""
+    model = case.robot.model
+    capsules = collision_model(case.robot).capsules
+    frames = [model.frames[case.robot.frame_id(each.link)] for each in capsules]
+    moved = [(c, f) for c, f in zip(capsules, frames, strict=True) if f.parentJoint]
+    axes = [np.eye(3)["XYZ".index(joint.shortname()[-1])] for joint in model.joints[1:]]
+    scene: dict[str, Any] = {
+        "places": [place.translation for place in model.jointPlacements[1:]],
+        "turns": [place.rotation for place in model.jointPlacements[1:]],
+        "axes": axes,
+        "a": [frame.placement.act(np.array(capsule.a)) for capsule, frame in moved],
+        "b": [frame.placement.act(np.array(capsule.b)) for capsule, frame in moved],
+        "radii": [capsule.radius + RADIUS for capsule, _ in moved],
+        "balls": [ball.center for ball in case.avoidance.obstacles],
+        "lower": np.maximum(case.robot.q_lower, -1e3),
+        "upper": np.minimum(case.robot.q_upper, 1e3),
+        "velocity": case.robot.dq_max,
+    }
+    arrays = {name: np.array(value).tolist() for name, value in scene.items()}
+    joints = [frame.parentJoint for _, frame in moved]
+    return arrays | {"joints": joints, "distance": hostile.DISTANCE}
+
+
+class Cbfpy:
+    """cbfpy in its own Python; `seconds` is the time of the last step without the pipe."""
+
+    def __init__(self, python: Path, case: hostile.Case) -> None:
+        """Start it."""
+        file = Path(__file__).with_name("loops") / "cbfpy_filter.py"
+        words = [python, file, json.dumps(scene_of(case))]
+        self._process = subprocess.Popen(
+            words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+        self.seconds = 0.0
+
+    def __call__(self, q: Vector, dq: Vector, wish: dict[str, Any]) -> Vector:
+        """Return the command."""
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        asked = {"q": q.tolist(), "dq": dq.tolist()}
+        print(json.dumps(asked), file=self._process.stdin, flush=True)
+        answer = json.loads(self._process.stdout.readline())
+        self.seconds = answer["seconds"]
+        return np.array(answer["dq"])
+
+
 def velocity_of(wish: dict[str, Any], q: Vector, last: Vector, case: hostile.Case) -> Vector:
     """Return the joint velocity that a wish asks for; `last` where there is none."""
     dq = last
@@ -77,15 +159,14 @@ def velocity_of(wish: dict[str, Any], q: Vector, last: Vector, case: hostile.Cas
     return dq if np.isfinite(dq).all() else last
 
 
-def run(make: Callable[[hostile.Case], Step], seeds: list[int]) -> dict[str, Any]:
-    """Drive the cases of some seeds; return a row of the table."""
+def run(make: Callable[[hostile.Case], Step], cases: dict[int, hostile.Case]) -> dict[str, Any]:
+    """Drive the cases by their seeds; return a row of the table."""
     broken: dict[str, int] = dict.fromkeys(("position", "velocity", "acceleration", "jerk"), 0)
     times = []
     misses = []
     near = 0
     least = np.inf
-    for seed in seeds:
-        case = hostile.draw_case(seed)
+    for seed, case in cases.items():
         robot = case.robot
         step = make(case)
         wishes = hostile.wishes(case, seed)
@@ -96,30 +177,47 @@ def run(make: Callable[[hostile.Case], Step], seeds: list[int]) -> dict[str, Any
             dq = velocity_of(wish, path[-1], dq, case)
             began = time.perf_counter()
             taken = step(path[-1], dq, wish)
-            times.append(time.perf_counter() - began)
+            times.append(getattr(step, "seconds", time.perf_counter() - began))
             misses.append(np.linalg.norm(taken - np.clip(dq, -robot.dq_max, robot.dq_max)))
             path.append(path[-1] + case.dt * taken)
         driven = np.array(path)
         kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, robot.dddq_max)
         for breach in breaches(driven, case.dt, *kinds):
-            broken[breach.quantity] += 1
+            broken[breach.quantity] += breach.excess > 1e-4  # what a solver's tolerance may cost
         found = Judge(robot, case.avoidance).verdict(driven, case.dt)
-        near += found.broken > 0
+        near += found.least < hostile.DISTANCE - 1e-4
         least = min(least, found.least)
     about = {"near": near, "least": 1e3 * least, "miss": np.mean(misses)}
     return broken | about | {"us": 1e6 * np.median(times), "p99": 1e6 * np.percentile(times, 99)}
 
 
-def report() -> None:
-    """Print the table."""
-    seeds: list[int] = []
+def draw_cases() -> dict[int, hostile.Case]:
+    """Draw cases whose acceleration is limited, by their seeds, with spheres as obstacles."""
+    cases: dict[int, hostile.Case] = {}
     seed = 0
-    while len(seeds) < RUNS:
+    while len(cases) < RUNS:
         seed += 1
         case = hostile.draw_case(seed)
-        if case and not case.moving and np.isfinite(case.robot.ddq_max).all():
-            seeds.append(seed)
-    filters = {"shield": shield, "clamp": clamp, "Ruckig, velocities": with_ruckig}
+        if case and np.isfinite(case.robot.ddq_max).all():
+            balls = [iiwa_dnn.Sphere(place, RADIUS) for place in hostile.places_of(case)]
+            avoidance = iiwa_dnn.CollisionAvoidance(balls, False, distance=hostile.DISTANCE)
+            case = case._replace(avoidance=avoidance, moving=False)
+            if hostile.is_clear(case, 0.0):
+                cases[seed] = case
+    return cases
+
+
+def report(cbfpy: Path | None) -> None:
+    """Print the table, with cbfpy where an environment with it is given."""
+    cases = draw_cases()
+    filters: dict[str, Callable[[hostile.Case], Step]] = {
+        "shield": shield,
+        "clamp": clamp,
+        "Ruckig, velocities": with_ruckig,
+        "libfranka, `limitRate`": libfranka,
+    }
+    if cbfpy:
+        filters["cbfpy"] = lambda case: Cbfpy(cbfpy, case)
     columns = {
         "filter": "{name}",
         "position": "{position}",
@@ -132,5 +230,5 @@ def report() -> None:
         "median": "{us:.0f} us",
         "p99": "{p99:.0f} us",
     }
-    rows = ({"name": name} | run(make, seeds) for name, make in filters.items())
+    rows = ({"name": name} | run(make, cases) for name, make in filters.items())
     show(f"Runs of {RUNS} in which a limit is broken, hostile wishes", columns, rows)
