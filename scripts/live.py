@@ -1,6 +1,7 @@
 """Drag a target in the browser and let the arm follow it: python scripts/live.py [ROBOT].
 
 Beside the target there is a ball to drag against the arm, which gives way by its redundancy first.
+Two rows of numbers ask the tip for a twist, as a gamepad does; a shield keeps it from the ball.
 """
 
 import sys
@@ -52,6 +53,11 @@ class Live:
             name: gui.add_slider(name, 0.0, most, 0.01, getattr(scheme, name))
             for name, most in SLIDERS.items()
         }
+        self.twist = [
+            gui.add_vector3(name, (0.0, 0.0, 0.0), min=(-most,) * 3, max=(most,) * 3, step=0.01)
+            for name, most in (("twist, linear [m/s]", SPEED), ("angular [rad/s]", 1.0))
+        ]
+        self.shield = None
         self.state = gui.add_markdown("")
 
     def avoid(self):
@@ -60,7 +66,33 @@ class Live:
         return iiwa_dnn.CollisionAvoidance([ball], self_collision=False, distance=0.03)
 
     def tick(self):
-        """Take the steps of a picture, check the last one, and show it."""
+        """Take the steps of a picture, and show the last one."""
+        twist = np.concatenate([each.value for each in self.twist])
+        state = self.drive(twist) if twist.any() else self.follow()
+        self.arm.display(self.q)
+        self.sphere.position = self.center
+        self.state.content = state
+
+    def drive(self, twist):
+        """Ask a shield for a twist [m/s, rad/s] of the tip; the ball stands, the target follows."""
+        if self.shield is None:
+            ball = iiwa_dnn.Sphere(self.center.tolist(), RADIUS)
+            self.shield = iiwa_dnn.Shield(self.robot, DT, [ball], 0.03)
+        for _ in range(STEPS):
+            command = self.shield.step(self.q, twist=twist)
+            self.q = self.q + DT * command.dq
+        tip = iiwa_dnn.Configuration(self.robot, self.q)
+        self.goal = iiwa_dnn.MovingTarget(tip, speed=SPEED, rate=1.0)
+        self.target.position = tip.position
+        self.target.wxyz = pin.Quaternion(tip.rotation).coeffs()[[3, 0, 1, 2]]
+        against = ", ".join(command.limits)
+        return f"twist {f'clipped by {against}' if command.clipped else 'as wished'}"
+
+    def follow(self):
+        """Take the steps of a picture towards the target; return what is to be said of the last."""
+        if self.shield is not None:
+            self.shield = None
+            self.controller.reference = self.goal
         way = np.asarray(self.ball.position) - self.center
         most = SPEED * STEPS * DT  # of the ball's way in a tick
         self.center = self.center + way * min(1.0, most / max(np.linalg.norm(way), 1e-9))
@@ -75,12 +107,10 @@ class Live:
             command = self.controller.step(self.q, self.steps * DT)
             self.q = self.q + DT * command.dq
             self.steps += 1
-        self.arm.display(self.q)
-        self.sphere.position = self.center
         gap = self.check.check(command.qp, command.solution.x).solution_gap[0, 0]
         against = ", ".join(command.against)
         done = "as wanted" if command.ok else f"held back by {against or 'a singular pose'}"
-        self.state.content = f"gap to ProxQP {gap:.1e} rad/s\n\nlast step {done}"
+        return f"gap to ProxQP {gap:.1e} rad/s\n\nlast step {done}"
 
 
 def main(

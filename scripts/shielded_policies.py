@@ -1,7 +1,6 @@
 """The shield under a learned policy: as a Gymnasium wrapper, and as a step of LeRobot's processors.
 
-Both are to be copied. ``python scripts/shielded_policies.py`` drives them by random policies, and
-prints how many of their actions the shield has changed.
+Both are to be copied; tests/scripts/test_shielded_policies.py drives them by random policies.
 """
 
 from collections.abc import Callable
@@ -12,8 +11,6 @@ import numpy as np
 
 import iiwa_dnn
 from iiwa_dnn.qp import Vector
-
-Q0 = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
 
 
 class ShieldedActions(gymnasium.ActionWrapper[Any, Any, Any]):
@@ -80,68 +77,3 @@ class ShieldStep:
     def transform_features(self, features: dict[str, Any]) -> dict[str, Any]:
         """Return the features as they are."""
         return features
-
-
-class Arm(gymnasium.Env[Vector, Vector]):
-    """An arm that follows every velocity [rad/s]."""
-
-    def __init__(self, robot: iiwa_dnn.Robot, dt: float) -> None:
-        """Take a robot and its control period [s]."""
-        self.dt = dt
-        self.q = Q0
-        shape = (robot.dof,)
-        self.observation_space = gymnasium.spaces.Box(-np.pi, np.pi, shape, np.float64)
-        self.action_space = gymnasium.spaces.Box(-5.0, 5.0, shape, np.float64)
-
-    def reset(self, **options: Any) -> tuple[Vector, dict[str, Any]]:
-        """Stand at the start."""
-        super().reset(**options)
-        self.q = Q0
-        return self.q, {}
-
-    def step(self, action: Vector) -> tuple[Vector, float, bool, bool, dict[str, Any]]:
-        """Move for one period."""
-        self.q = self.q + self.dt * action
-        return self.q, 0.0, False, False, {}
-
-
-def run_gymnasium(robot: iiwa_dnn.Robot, steps: int) -> tuple[list[Vector], int]:
-    """Drive the wrapped arm by random actions; return its positions [rad] and actions changed."""
-    shield = iiwa_dnn.Shield(robot, 0.01, [])
-    arm = ShieldedActions(Arm(robot, 0.01), shield, lambda env: env.get_wrapper_attr("q"))
-    arm.action_space.seed(0)
-    q, _ = arm.reset()
-    path = [q]
-    for _ in range(steps):
-        q, *_ = arm.step(arm.action_space.sample())
-        path.append(q)
-    return path, arm.clipped
-
-
-def run_chunks(robot: iiwa_dnn.Robot, steps: int) -> tuple[list[Vector], int]:
-    """Drive an arm at 50 Hz by goals that jump ten times a second, as `run_gymnasium`."""
-    names = list(robot.joint_names)
-    step = ShieldStep(iiwa_dnn.Shield(robot, 0.02, []), names)
-    random = np.random.default_rng(0)
-    path = [Q0]
-    goal = Q0
-    for k in range(steps):
-        if k % 5 == 0:
-            goal = Q0 + random.uniform(-0.5, 0.5, robot.dof)
-        seen = {f"{name}.pos": x for name, x in zip(names, np.degrees(path[-1]), strict=True)}
-        asked = {f"{name}.pos": x for name, x in zip(names, np.degrees(goal), strict=True)}
-        made = step({"observation": seen, "action": asked | {"gripper.pos": 40.0}})
-        path.append(np.radians([made["action"][f"{name}.pos"] for name in names]))
-    return path, step.clipped
-
-
-def main() -> None:
-    """Print how many actions the shield has changed."""
-    robot = iiwa_dnn.load_robot("iiwa7").with_limits(acceleration=10.0, jerk=500.0)
-    for run in (run_gymnasium, run_chunks):
-        path, clipped = run(robot, 500)
-        print(f"{run.__name__}: {clipped} of {len(path) - 1} actions changed")
-
-
-if __name__ == "__main__":
-    main()

@@ -7,6 +7,7 @@ import json
 import os
 import sys
 import time
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -18,23 +19,28 @@ jax.config.update("jax_enable_x64", True)
 class Arm(CBFConfig):
     """An arm whose joint velocities are the control input."""
 
-    def __init__(self, scene):
+    def __init__(self, scene: dict[str, Any]) -> None:
+        """Take the scene."""
         self.scene = {name: jnp.array(value) for name, value in scene.items()}
         self.joints = scene["joints"]  # of the capsules
         n = len(scene["velocity"])
         fastest = self.scene["velocity"]
         super().__init__(n=n, m=n, u_min=-fastest, u_max=fastest, solver_tol=1e-6)
 
-    def f(self, z):
+    def f(self, z: jax.Array) -> jax.Array:
+        """Return the drift of the positions."""
         return jnp.zeros_like(z)
 
-    def g(self, z):
+    def g(self, z: jax.Array) -> jax.Array:
+        """Return how velocities move the positions."""
         return jnp.eye(z.size)
 
-    def alpha(self, h):
+    def alpha(self, h: jax.Array) -> jax.Array:
+        """Return the least rate of a barrier, less its sign."""
         return 10.0 * h
 
-    def h_1(self, z):
+    def h_1(self, z: jax.Array) -> jax.Array:
+        """Return the barriers: distances from the joint limits, and of capsules from spheres."""
         scene = self.scene
         turn, place = jnp.eye(3), jnp.zeros(3)
         placed = []

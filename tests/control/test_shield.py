@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 import qpsolvers
 
 from iiwa_dnn import (
     Configuration,
+    Heart,
     InvalidInputError,
     NotFoundError,
     Robot,
@@ -128,6 +130,25 @@ def test_positions_are_reached_and_not_passed(robot: Robot) -> None:
     beyond = (path - goal) * np.sign(goal - START)
     assert beyond.max() < 1e-9
     assert limits_broken(np.vstack([START, path]), robot) == []
+
+
+def test_the_heart_of_another_loop_goes_through_to_the_last_bit() -> None:
+    pink = pytest.importorskip("pink")
+    heart = Heart(period=10.0).anchored(Configuration(SMOOTH, START))
+    task = pink.tasks.FrameTask(SMOOTH.tip, position_cost=1.0, orientation_cost=0.3)
+    shield = Shield(SMOOTH, 4e-3, [])
+    q = START
+    for k in range(1, 500):
+        target = heart.at(k * shield.dt)
+        task.set_target(pin.SE3(target.rotation, target.position))
+        conf = pink.Configuration(SMOOTH.model, SMOOTH.model.createData(), q)
+        wish = pink.solve_ik(conf, [task], shield.dt, solver="daqp", safety_break=False)
+        command = shield.step(q, wish)
+        np.testing.assert_array_equal(command.dq, wish)
+        assert not command.clipped
+        q = q + shield.dt * command.dq
+        tip = Configuration(SMOOTH, q).position
+        np.testing.assert_allclose(tip, target.position, atol=1e-6)
 
 
 def test_a_twist_moves_its_frame() -> None:
