@@ -51,8 +51,7 @@ class Activation(ABC):
 
     def __call__(self, error: Vector) -> Vector:
         """Evaluate at errors (...,)."""
-        value: Vector = np.copysign(self.magnitude(np.abs(error)), error)
-        return value
+        return np.asarray(np.copysign(self.magnitude(np.abs(error)), error))
 
     @abstractmethod
     def magnitude(self, size: Vector) -> Vector:
@@ -108,8 +107,7 @@ class FixedTime(Activation):
 
     def magnitude(self, size: Vector) -> Vector:
         """Evaluate at sizes (...,)."""
-        value: Vector = self.low * size**self.power + self.high * size**self.upper_power
-        return value
+        return np.asarray(self.low * size**self.power + self.high * size**self.upper_power)
 
 
 SIGN_BI_POWER = FixedTime(0.5, 2.0, 0.5, 0.5)
@@ -132,8 +130,7 @@ class PredefinedTime(Activation):
     def magnitude(self, size: Vector) -> Vector:
         """Evaluate at sizes (...,); the exponent is cut lest it overflow."""
         grown = np.exp(np.minimum(size**self.power, 300.0))
-        value: Vector = grown * size ** (1.0 - self.power) / (self.power * self.time)
-        return value
+        return np.asarray(grown * size ** (1.0 - self.power) / (self.power * self.time))
 
 
 @dataclass(frozen=True, kw_only=True)

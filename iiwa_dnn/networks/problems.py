@@ -8,8 +8,8 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import backend
 from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.solution import SOLVE
 
 if TYPE_CHECKING:
     import qpsolvers
@@ -68,4 +68,4 @@ def solve_problem(
     return solution._replace(dual=dual, gap=solution.gap * scale).to_qpsolvers(problem)
 
 
-backend.SOLVE.append(solve_problem)
+SOLVE.append(solve_problem)

@@ -26,7 +26,7 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.base import Flow, Network, kkt_product
-from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, row_dot
+from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, times
 from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector, larger
 from iiwa_dnn.qp.program import QP
 
@@ -37,10 +37,8 @@ def rows_times(qp: QPViews, x: Vector, values: Vector) -> None:
     n = qp.q.size
     p = qp.b.size
     first = p + qp.h.size
-    for j in range(p):
-        values[j] = row_dot(qp.A, j, x)
-    for j in range(qp.h.size):
-        values[p + j] = row_dot(qp.G, j, x)
+    times(qp.A, x, values)
+    times(qp.G, x, values[p:])
     for i in range(n):
         values[first + i] = x[i]
         values[first + n + i] = -x[i]
@@ -86,8 +84,9 @@ def field(qp: QPViews, s: Vector, rates: Vector) -> float:
         The largest absolute rate: zero exactly at a KKT point, NaN if one is NaN.
     """
     n = qp.q.size
+    times(qp.P, s, rates)
     for i in range(n):
-        rates[i] = -qp.q[i] - row_dot(qp.P, i, s)
+        rates[i] = -qp.q[i] - rates[i]
     add_transposed(qp, -1.0, s, rates)
     write_slacks(qp, s, rates[n:])
     for k in range(n + qp.b.size, s.size):

@@ -3,14 +3,14 @@
 A reference gets the program and nothing of the network's state, and is believed only where its own
 KKT residual is small. If the one that was asked has no such answer, a second one is asked, and the
 agreement says which of both judged. "proof" stands among the references for `iiwa_dnn.qp.proof`,
-which asks no other solver.
+which asks no other solver. `CheckPool` is the check behind a running loop.
 """
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Sequence
+from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -54,6 +54,12 @@ OPTIONS: dict[str, dict[str, Any]] = {
 
 PROOF = "proof"
 """Name of the proof among the references."""
+
+_WORTH_A_PROCESS = 10_000
+"""Programs from which on a worker's start, about a second, is repaid."""
+
+_AHEAD = 2
+"""Blocks that a worker has before it: one in work, one waiting. More would only take memory."""
 
 _FLAT = 1e-10
 """Curvature of cost and task rows, by the largest, below which x is not unique along it."""
@@ -186,7 +192,7 @@ class CrossCheck:
         if gap > self.tolerance:
             curvatures = np.linalg.eigvalsh(qp.P + qp.A.T @ qp.A)
             if curvatures[0] <= _FLAT * curvatures[-1]:
-                gap = math.sqrt(max(float(step @ curved), 0.0))
+                gap = float(np.sqrt(max(float(step @ curved), 0.0)))
         return gap, objective_gap, residual, len(residuals) - 1
 
 
@@ -221,8 +227,7 @@ def ask(name: str, qp: QP) -> Vector:
         return _ask_proxqp(qp)
     import qpsolvers
 
-    options = OPTIONS.get(name, {})
-    solution = qpsolvers.solve_problem(qp.to_qpsolvers(), solver=name, **options)
+    solution = qpsolvers.solve_problem(qp.to_qpsolvers(), name, **OPTIONS.get(name, {}))
     point = point_of(solution, qp)
     return point if solution.found else np.full_like(point, np.nan)
 
@@ -247,3 +252,53 @@ def _proven(name: str, qp: QP, point: Vector) -> tuple[float, float, float, int]
     bound = prove_point(qp, point).bound
     proven = bound < np.inf
     return bound, np.nan, 0.0 if proven else np.inf, 0 if proven else -1
+
+
+class CheckPool:
+    """Judges blocks of programs while others are still being made.
+
+    A block goes to a worker process that has room for it; where none has, the caller's own process
+    judges it at once.
+
+    Attributes:
+        check: The references and the tolerances.
+        workers: Processes beside the caller's.
+    """
+
+    def __init__(self, check: CrossCheck, programs: int, workers: int | None = None) -> None:
+        """Start the workers.
+
+        Args:
+            check: The references and the tolerances.
+            programs: Number of programs that will come in all.
+            workers: Processes beside the caller's; None takes the cores that are free, or none
+                where so few programs would not repay them.
+        """
+        import loky  # with its processes' machinery, which not every run needs
+
+        if workers is None:
+            worth = programs >= _WORTH_A_PROCESS and set(check.solvers) - {PROOF}
+            workers = loky.cpu_count() - 1 if worth else 0
+        self.check = check
+        self.workers = workers
+        # Not the standard library's pool: that one runs the caller's script once more in every
+        # worker, so a script without a __main__ guard would start itself again.
+        self._executor = loky.get_reusable_executor(workers, timeout=60) if workers else None
+        self._verdicts: list[Agreement | Future[Agreement]] = []
+
+    def submit(self, programs: Matrix, sizes: Sizes, answers: Matrix) -> None:
+        """Take the next block: N programs of one shape, and the answers to be judged.
+
+        The arguments are those of `CrossCheck.check_block`.
+        """
+        ahead = sum(isinstance(own, Future) and not own.done() for own in self._verdicts)
+        if self._executor is not None and ahead < _AHEAD * self.workers:
+            future = self._executor.submit(self.check.check_block, programs, sizes, answers)
+            self._verdicts.append(future)
+        else:
+            self._verdicts.append(self.check.check_block(programs, sizes, answers))
+
+    def finish(self) -> Agreement:
+        """Wait for every block and return the verdicts in the order of the programs."""
+        verdicts = [own.result() if isinstance(own, Future) else own for own in self._verdicts]
+        return Agreement.joined(verdicts, len(self.check.solvers))

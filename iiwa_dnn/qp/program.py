@@ -195,8 +195,10 @@ class QP:
             z_box: Multipliers of the bounds, (n,).
         """
         n, m, p = self.sizes
-        given = zip((x, y, z, z_box), (n, p, m, n), strict=True)
-        parts = [np.zeros(size) if part is None else part for part, size in given]
+        parts = [
+            np.zeros(size) if part is None else part
+            for part, size in zip((x, y, z, z_box), (n, p, m, n), strict=True)
+        ]
         point = check_size("point", np.concatenate(parts), 2 * n + m + p)
         return Residuals(*residuals_of(self.data, n, m, p, point))
 

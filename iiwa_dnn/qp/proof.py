@@ -205,8 +205,7 @@ def _is_clear(rows: _Rows, x: Vector, error: Vector) -> Mask:
     """Test which rows (k,) hold with a margin at all points within an error of x, (n,) both."""
     spread = rows.unit * np.abs(x) + error
     reach = np.abs(rows.rows) @ spread + rows.unit * np.abs(rows.limits) + _TINY
-    clear: Mask = rows.limits - rows.rows @ x > (1.0 + rows.unit) * reach
-    return clear
+    return np.asarray(rows.limits - rows.rows @ x > (1.0 + rows.unit) * reach)
 
 
 def _enclose(

@@ -1,4 +1,4 @@
-"""The answer to a quadratic program, with the residuals that judge it.
+"""The answer to a quadratic program, with its residuals; and the network as a solver of qpsolvers.
 
 Multipliers are named as in qpsolvers: ``z`` for ``G x <= h``, ``y`` for ``A x = b``, and ``z_box``
 for the bounds (positive at ``ub``, negative at ``lb``).
@@ -6,15 +6,21 @@ for the bounds (positive at ``ub``, negative at ``lb``).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import Enum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.layout import Sizes, Vector
 
 if TYPE_CHECKING:
     import qpsolvers
+
+NAME = "iiwa_dnn"
+SOLVE: list[Callable[..., qpsolvers.Solution]] = []
+"""The function that `register` enters, put here by `iiwa_dnn.networks`, a later room."""
 
 
 class Status(str, Enum):
@@ -157,3 +163,36 @@ class Solution(NamedTuple):
             point[n + p : n + p + m],
             point[n + p + m :] if bounded else np.empty(0),
         )
+
+
+def register() -> None:
+    """Register the network as the dense solver "iiwa_dnn" of qpsolvers; twice is as good as once.
+
+    From then on ``qpsolvers.solve_qp(P, q, ..., solver="iiwa_dnn")`` and ``solve_problem`` run
+    `iiwa_dnn.solve_problem` with ``sharpen=True``, and ``qpsolvers.available_solvers`` lists it.
+    Its keyword argument is ``eps_abs``, the absolute tolerance on primal residual, dual residual
+    and gap (1e-9). The start is always cold: ``initvals`` is not used, nor is ``verbose``. A
+    malformed or nonconvex problem raises ``qpsolvers.ProblemError``, an option of another name
+    ``TypeError``.
+    """
+    from qpsolvers import solvers
+
+    solvers.solve_function[NAME] = _solve_problem
+    for names in (solvers.available_solvers, solvers.dense_solvers):
+        if NAME not in names:
+            names.append(NAME)
+
+
+def _solve_problem(
+    problem: qpsolvers.Problem,
+    initvals: Vector | None = None,
+    verbose: bool = False,
+    eps_abs: float = 1e-9,
+) -> qpsolvers.Solution:
+    """Solve a problem as qpsolvers' own functions do; see `register`."""
+    from qpsolvers import ProblemError
+
+    try:
+        return SOLVE[0](problem, tol=eps_abs, sharpen=True)
+    except InvalidInputError as error:
+        raise ProblemError(str(error)) from error

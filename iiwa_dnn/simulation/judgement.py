@@ -4,8 +4,7 @@ from contextlib import ExitStack
 
 from iiwa_dnn.control.command import RowLayout
 from iiwa_dnn.qp import Matrix
-from iiwa_dnn.qp.checkpool import CheckPool
-from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
+from iiwa_dnn.qp.crosscheck import Agreement, CheckPool, CrossCheck
 
 
 class Judgement(ExitStack):

@@ -8,7 +8,7 @@ import pytest
 
 from helpers_qp import known_qp
 from iiwa_dnn import Agreement, CrossCheck, DNNSolver
-from iiwa_dnn.qp.checkpool import CheckPool
+from iiwa_dnn.qp.crosscheck import CheckPool
 
 CHECK = CrossCheck(("osqp",))  # ProxQP does not repeat its last digits
 

@@ -14,6 +14,8 @@ def test_cholesky_is_numpys_and_refuses_what_is_not_definite() -> None:
         assert dense.cholesky_factor(factor)
         dense.factor_solve(factor, rhs, out)
         np.testing.assert_allclose(out, np.linalg.solve(matrix, rhs), rtol=1e-8, atol=1e-11)
+        dense.times(matrix, rhs, out)
+        assert [dense.row_dot(matrix, j, rhs) for j in range(n)] == out.tolist()
         matrix[-1, -1] = -1.0
         assert not dense.cholesky_factor(matrix.copy())
 

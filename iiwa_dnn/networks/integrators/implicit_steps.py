@@ -35,7 +35,7 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled, inlined
 from iiwa_dnn.networks.projection import add_transposed, rows_times, write_slacks
-from iiwa_dnn.qp.dense import add_outer, cholesky_factor, factor_solve, row_dot
+from iiwa_dnn.qp.dense import add_outer, cholesky_factor, factor_solve, times
 from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, larger
 
 SLOPE = 0.3
@@ -196,8 +196,9 @@ def _multipliers(
 def _descent(qp: QPViews, s: Vector, step: float, new: Vector, descent: Vector) -> float:
     """Write minus the gradient of the step's convex function; returns its largest entry."""
     size = 0.0
+    times(qp.P, new, descent)
     for i in range(qp.q.size):
-        descent[i] = -(row_dot(qp.P, i, new) + (qp.q[i] + (new[i] - s[i]) / step))
+        descent[i] = -(descent[i] + (qp.q[i] + (new[i] - s[i]) / step))
     add_transposed(qp, -1.0, new, descent)
     for i in range(qp.q.size):
         size = larger(size, abs(descent[i]))
