@@ -31,7 +31,6 @@ from iiwa_dnn.networks import NoiseSuppressingNetwork
 from iiwa_dnn.networks.activations import FixedTime
 from iiwa_dnn.networks.admm import AdmmIteration
 from iiwa_dnn.networks.primal_dual import variational
-from iiwa_dnn.networks.zeroing import evaluate
 from iiwa_dnn.studies.paper import START
 
 Array = np.ndarray
@@ -157,19 +156,6 @@ def test_at_rest_exactly_at_kkt_points(name: str) -> None:
         assert np.abs(reference(qp, moved)).max() > 1e-5
 
 
-def test_explicit_steps_are_those_of_the_rates(name: str) -> None:
-    rng, (network, reference) = np.random.default_rng(7), SOURCES[name]
-    qp, _ = known_qp(rng, 5, 2, 2, inequalities=2)
-    state = rng.standard_normal(network.state_size(qp))
-    expected = state.copy()
-    for _ in range(7):
-        expected += 0.01 * reference(qp, expected)
-    assert ExplicitEuler(substeps=7).advance(network, qp, state, 0.07) == 7
-    np.testing.assert_allclose(state, expected, rtol=1e-9)
-    if "projection" not in name and name != "free":
-        assert DNNSolver(network).compiled_answer(qp.sizes, 0.1) is None  # set up in Python
-
-
 MANY_BOUNDS = known_qp(np.random.default_rng(3), 5, 2, 2, inequalities=2)[0]
 
 
@@ -231,24 +217,6 @@ def test_the_gradient_network_descends_at_the_smallest_eigenvalue() -> None:
     end = solve_ivp(lambda t, s: rates(s), (0, 3.0), start, rtol=1e-9, atol=1e-12).y[:, -1]
     expected = vectors @ (np.exp(-3.0 * values) * (vectors.T @ (start - rest)))
     np.testing.assert_allclose(end - rest, expected, atol=1e-6)
-
-
-def test_the_gradient_network_lowers_its_energy_and_rests_at_kkt_points() -> None:
-    rng, network = np.random.default_rng(3), GradientNetwork(form="smooth")
-    zeroing = ZeroingNetwork(form="smooth", integral=1.0)
-    for case in range(3):
-        qp, _ = known_qp(rng, 4, 1, case, inequalities=2)
-        state = np.zeros(network.state_size(qp))
-        ExplicitEuler(substeps=200).advance(ZeroingNetwork(form="smooth"), qp, state, 100.0)
-        assert np.abs(network.rates(qp, state)).max() < 1e-4
-        state, energy = state + rng.standard_normal(state.size), np.inf
-        for _ in range(200):
-            # The integral's rate is the residual.
-            error = zeroing.rates(qp, np.r_[state, 0.0 * state])[state.size :]
-            assert error @ error < energy
-            energy = error @ error
-            W = evaluate(qp, "smooth", state).matrix
-            state = state + 0.8 / np.linalg.norm(W, 2) ** 2 * network.rates(qp, state)
 
 
 def test_an_activated_networks_stable_step_follows_its_speed() -> None:

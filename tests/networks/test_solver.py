@@ -78,14 +78,6 @@ def test_warm_start_needs_fewer_systems_and_reset_forgets() -> None:
     assert solver.state.size == 3 * 5 + 1
 
 
-def test_bounds_are_kept_exactly() -> None:
-    for seed in range(20):
-        qp, _ = known_qp(np.random.default_rng(seed), 7, 3, 4)
-        x = DNNSolver().solve(qp).x
-        assert (x >= qp.lb).all()
-        assert (x <= qp.ub).all()
-
-
 def test_advance_moves_by_the_time_given_and_says_how_far_it_is() -> None:
     qp, x = known_qp(np.random.default_rng(9), 5, 2, 1)
     solver = DNNSolver()

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import time
 import warnings
 
+import loky
 import numpy as np
 import pytest
 import qpsolvers
@@ -14,7 +16,7 @@ from helpers_simulation import heart, paper_start, run
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution, crosscheck
-from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
+from iiwa_dnn.qp.crosscheck import Agreement, CheckPool, CrossCheck
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.schemes import DoubleIndicator
@@ -50,13 +52,6 @@ def test_right_answers_are_agreed_with(check: CrossCheck, active: int) -> None:
         assert agreement.solution_gap.max() <= 1e-7
         assert agreement.reference_residual.max() <= 1e-8
         assert agreement.objective_gap.max() <= 1e-7
-
-
-@pytest.mark.parametrize("check", EACH, ids=IDS)
-@pytest.mark.parametrize("rows", [{}, {"A": [[1.0, 1.0]], "b": [0.0]}, {"ub": [0.0, 0.0]}])
-def test_constraints_may_be_absent(check: CrossCheck, rows: dict) -> None:
-    qp = QP(np.eye(2), [-1.0, 1.0], **rows)
-    assert check.check(qp, DNNSolver().solve(qp).x).solution_gap.max() <= 1e-7
 
 
 def test_gaps_are_those_to_the_known_solution() -> None:
@@ -268,3 +263,48 @@ def test_verdicts_keep_their_step_over_the_blocks_of_a_long_run() -> None:
     record = run(solver=Liar(wrong_at=2 * 730 + 1), check=EACH[0], duration=1.1, motion="midpoint")
     assert np.flatnonzero(record.crosscheck_gap > 1e-6).tolist() == [730]
     assert (record.reference_residual <= 1e-8).all()
+
+
+def jobs(count: int, size: int = 20) -> list[tuple]:
+    """Blocks of programs; answer i of block j is off by about i + 100 j units of 1e-7."""
+    made = []
+    for number in range(count):
+        rng = np.random.default_rng(number)
+        qps = [known_qp(rng, 5, 2, 1)[0] for _ in range(size)]
+        x = np.stack([DNNSolver().solve(qp).x for qp in qps])
+        x[:, 0] += 1e-7 * (100 * number + np.arange(size))
+        made.append((np.stack([qp.data for qp in qps]), qps[0].sizes, x))
+    return made
+
+
+def judged(blocks: list[tuple], workers: int) -> Agreement:
+    pool = CheckPool(EACH[1], 1_000_000, workers)  # ProxQP does not repeat its last digits
+    for block in blocks:
+        pool.submit(*block)
+        time.sleep(0.01 * workers)
+    return pool.finish()
+
+
+def test_workers_change_nothing_and_keep_the_order() -> None:
+    blocks = jobs(6)
+    alone = judged(blocks, 0)
+    for left, right in zip(judged(blocks, 1), alone, strict=True):
+        np.testing.assert_array_equal(left, right)
+    # In order: the gap of program i of block j is the one that was put there.
+    expected = 1e-7 * (100 * np.arange(6)[:, None] + np.arange(20)).ravel()
+    np.testing.assert_allclose(alone.solution_gap[:, 0], expected, rtol=0, atol=1e-8)
+
+
+def test_a_fault_of_the_check_itself_is_not_swallowed() -> None:
+    programs, sizes, x = jobs(1)[0]
+    with pytest.raises(ValueError, match="shape"):
+        judged([(programs, sizes, np.hstack([x, x, x, x]))], 1)  # answers of a wrong shape
+
+
+def test_processes_are_started_where_solvers_are_asked_often() -> None:
+    assert CheckPool(EACH[1], 100).workers == 0
+    assert CheckPool(EACH[1], 100_000).workers == loky.cpu_count() - 1
+    nobody = CheckPool(CrossCheck(()), 1_000_000)
+    assert nobody.workers == 0
+    nobody.submit(*jobs(1)[0])
+    assert nobody.finish().solution_gap.shape == (20, 0)
