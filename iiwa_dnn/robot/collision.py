@@ -67,14 +67,15 @@ class CollisionModel:
 
     def pairs(self, robot: Robot) -> list[tuple[int, int]]:
         """List the pairs of capsules that may meet, the one nearer to the base first."""
-        joints = [_joint(robot, capsule.link) for capsule in self.capsules]
+        links = [capsule.link for capsule in self.capsules]
+        joints = [_joint(robot, link) for link in links]
         left_out = {frozenset(pair[:2]) for pair in self.left_out}
-        pairs = []
-        for i, k in combinations(sorted(range(len(joints)), key=joints.__getitem__), 2):
-            links = frozenset((self.capsules[i].link, self.capsules[k].link))
-            if joints[i] != joints[k] and links not in left_out:
-                pairs.append((i, k))
-        return pairs
+        outward = sorted(range(len(joints)), key=joints.__getitem__)
+        return [
+            (i, k)
+            for i, k in combinations(outward, 2)
+            if joints[i] != joints[k] and frozenset((links[i], links[k])) not in left_out
+        ]
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the model as a TOML file that `collision_model` reads; lengths in [m]."""
@@ -260,7 +261,7 @@ def _enclosing_capsule(points: checks.Array) -> tuple[checks.Array, checks.Array
     equal.
     """
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    least = np.inf
+    fitted = []
     for axis in np.linalg.svd(points - middle, full_matrices=False)[2]:
         along = (points - middle) @ axis
         across = np.linalg.norm(points - middle - along[:, np.newaxis] * axis, axis=1)
@@ -271,7 +272,5 @@ def _enclosing_capsule(points: checks.Array) -> tuple[checks.Array, checks.Array
         if low > high:  # any point between them is the middle of a sphere that holds all
             low = high = 0.5 * (low + high)
         volume = radius**2 * (high - low + 4.0 / 3.0 * radius)
-        if volume < least:
-            least = volume
-            best = (middle + low * axis, middle + high * axis, radius)
-    return best
+        fitted.append((volume, middle + low * axis, middle + high * axis, radius))
+    return min(fitted, key=lambda capsule: capsule[0])[1:]

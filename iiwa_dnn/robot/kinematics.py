@@ -28,7 +28,6 @@ class Kinematics:
         placements: Frame placements by frame index, (frames, 12): the rotation's columns, then the
             position [m]. A loop may keep only the rows of `frame_ids` current.
         inertia: Joint-space inertia matrix [kg m^2], (n, n), current where `dynamics` is set.
-        moves: `Robot.moves`, (frames, n): by frame index, 1 for each joint that moves the frame.
     """
 
     def __init__(self, robot: Robot, frames: Iterable[str] = (), dynamics: bool = False) -> None:
@@ -46,7 +45,6 @@ class Kinematics:
         self.jacobian: Array = self.data.J.T.reshape(robot.dof, 6)
         self.inertia: Array = self.data.M.T.reshape(robot.dof, robot.dof)
         self.placements = _placements(robot.model, self.data)
-        self.moves: Array = robot.moves.copy()  # compiled code takes arrays that are not protected
 
     def update(self, q: Array) -> None:
         """Compute the kinematics at joint positions `q` (n,) [rad], which are not checked."""

@@ -76,8 +76,17 @@ def load_robot(
     chosen = _chosen_joints(full, locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
     limits, ramps = _limits(name, model, root)
-    text = urdf.text_of(root)
-    robot = Robot(name, model, tip, limits, ramps, tuple(held), tuple(held.values()), path, text)
+    robot = Robot(
+        name,
+        model,
+        tip,
+        limits,
+        ramps,
+        tuple(held),
+        tuple(held.values()),
+        path,
+        urdf.text_of(root),
+    )
     expected = {*chosen, *(_idle_joints(full, tips) if tips else ())}
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
     if still:

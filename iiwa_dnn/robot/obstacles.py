@@ -56,7 +56,7 @@ class Obstacle(ABC):
 
     def __post_init__(self) -> None:
         for name in {"center", "a", "b", "half_extents", "velocity"} & vars(self).keys():
-            self._set(name, checks.vector3(name, getattr(self, name)))
+            object.__setattr__(self, name, checks.vector3(name, getattr(self, name)))
         if hasattr(self, "radius"):
             checks.positive("radius", self.radius)
 
@@ -96,9 +96,6 @@ class Obstacle(ABC):
         """Return shape and parameters as a table of an obstacle file has them."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         return {"shape": type(self).__name__} | {k: v for k, v in values.items() if v is not None}
-
-    def _set(self, name: str, value: object) -> None:
-        object.__setattr__(self, name, value)
 
 
 @dataclass(frozen=True)
@@ -155,11 +152,10 @@ class Box(Obstacle):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for half in self.half_extents:
-            checks.positive("half_extents", half)
+        checks.positive("half_extents", min(self.half_extents))
         if self.rotation is not None:
             turn = checks.rotation("rotation", self.rotation)
-            self._set("rotation", tuple(map(tuple, turn.tolist())))
+            object.__setattr__(self, "rotation", tuple(map(tuple, turn.tolist())))
 
     @property
     def box(self) -> PlacedBox:
@@ -182,7 +178,7 @@ class HalfSpace(Obstacle):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._set("normal", checks.direction("normal", self.normal))
+        object.__setattr__(self, "normal", checks.direction("normal", self.normal))
         checks.finite("offset", self.offset)
 
     @property
@@ -215,20 +211,20 @@ def make_obstacles(tables: Iterable[Any]) -> list[Obstacle]:
 
 
 def outline(obstacle: Obstacle) -> tuple[checks.Array, NDArray[np.int32]]:
-    """Return vertices (k, 3) [m] at time 0 and triangles (m, 3) of a shape, for pictures."""
-    from scipy.spatial import ConvexHull  # slow to import
+    """Return vertices (k, 3) [m] at time 0 and triangles (m, 3) of a shape, for pictures.
 
-    points = obstacle.points
-    if obstacle.thickness:
-        rank = np.arange(800) + 0.5  # points spread evenly over a ball
-        turn = np.pi * (1.0 + 5.0**0.5) * rank
-        height = 1.0 - rank / 400.0
-        ring = np.sqrt(1.0 - height**2)
-        ball = np.column_stack([ring * np.cos(turn), ring * np.sin(turn), height])
-        points = (points[:, np.newaxis] + obstacle.thickness * ball).reshape(-1, 3)
-    hull = ConvexHull(points)
-    faces = hull.simplices.astype(np.int32)
-    a, b, c = points[faces].transpose(1, 0, 2)
-    inward = np.sum(np.cross(b - a, c - a) * hull.equations[:, :3], axis=1) < 0.0
-    faces[inward] = faces[inward, ::-1]
-    return points, faces
+    They are a ball's, each octant of which is moved to a corner of the box.
+    """
+    center, rotation, half_extents = obstacle.box
+    turn = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False) + 0.1
+    height = np.cos(np.linspace(0.0, np.pi, 16))[:, np.newaxis]
+    ring = np.sqrt(1.0 - height**2)  # 0 at both poles, each of which goes to one corner
+    axes = np.broadcast_arrays(ring * np.cos(turn), ring * np.sin(turn), height)
+    ball = np.stack(axes, axis=-1)
+    corners = np.where(ball < 0.0, -half_extents, half_extents) + obstacle.thickness * ball
+    here = np.arange(ball[..., 0].size, dtype=np.int32).reshape(height.size, -1)
+    aside = np.roll(here, -1, axis=1)
+    lower = np.stack([here[:-1], here[1:], aside[1:]], axis=-1)
+    upper = np.stack([here[:-1], aside[1:], aside[:-1]], axis=-1)
+    faces = np.concatenate([lower, upper]).reshape(-1, 3)
+    return corners.reshape(-1, 3) @ rotation.T + center, faces

@@ -11,10 +11,6 @@ from typing import Any
 
 from iiwa_dnn.errors import MissingDependencyError, import_extra
 
-_REMEDY = (
-    "on Debian and Ubuntu: apt-get install libegl1 libgl1 (or libosmesa6, and MUJOCO_GL=osmesa)"
-)
-
 
 def import_mujoco() -> Any:
     """Import MuJoCo's Python package; raises MissingDependencyError where it is not installed."""
@@ -36,5 +32,8 @@ def prepare_renderer() -> None:
         context = importlib.import_module(f"mujoco.{library}").GLContext
         context(1, 1).free()
     except Exception as error:  # whatever PyOpenGL meets
-        raise MissingDependencyError(f"OpenGL by {library}, without a display", _REMEDY) from error
+        raise MissingDependencyError(
+            f"OpenGL by {library}, without a display",
+            "on Debian: apt-get install libegl1 libgl1 (or libosmesa6, and MUJOCO_GL=osmesa)",
+        ) from error
     renderer.gl_context.GLContext = context

@@ -195,7 +195,7 @@ class ProgramArrays(NamedTuple):
         constants: `StepProgram.constants`, (k,).
         jacobian: `Kinematics.jacobian`, (dof, 6).
         placements: `Kinematics.placements`, (frames, 12).
-        moves: `Kinematics.moves`, (frames, dof).
+        moves: `Robot.moves`, (frames, dof).
         inertia: `Kinematics.inertia`, (dof, dof).
         rate: Inverse of the control period [1/s]; inf outside of a loop.
     """
@@ -387,7 +387,7 @@ class StepProgram:
             self.constants,
             self.kinematics.jacobian,
             self.kinematics.placements,
-            self.kinematics.moves,
+            self.kinematics.robot.moves,
             self.kinematics.inertia,
             1.0 / dt if dt < np.inf else np.inf,
         )

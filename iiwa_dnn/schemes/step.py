@@ -38,7 +38,7 @@ class StepViews(NamedTuple):
         before: Command before the last one [rad/s], (n,).
         jacobian: Joint Jacobian, `Kinematics.jacobian`, (n, 6).
         placements: Frame placements by frame index, `Kinematics.placements`, (frames, 12).
-        moves: 1 where a joint moves a frame, else 0, `Kinematics.moves`, (frames, n).
+        moves: 1 where a joint moves a frame, else 0, `Robot.moves`, (frames, n).
         inertia: Joint-space inertia matrix [kg m^2], (n, n), current if a cost needs it.
         targets: Targets of the tracked frames, `Target.data` each, (k, 18).
     """

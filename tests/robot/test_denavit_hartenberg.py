@@ -5,16 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from helpers_kinematics import Array, dh_pose
-from iiwa_dnn import Configuration, load_robot, robot_from_dh
+from helpers_kinematics import Array
+from iiwa_dnn import Configuration, robot_from_dh
 
 RNG = np.random.default_rng(5)
 TABLE = RNG.uniform(-1.0, 1.0, (6, 4)) * [0.4, np.pi, 0.4, np.pi]
 SLIDES = (3, 5)
-IIWA7 = [
-    (0.0, turn * np.pi / 2, d, 0.0)
-    for turn, d in zip((-1, 1, 1, -1, -1, 1, 0), (0.34, 0, 0.4, 0, 0.4, 0, 0.126), strict=True)
-]
 
 
 def printed_product(q: Array, convention: str) -> Array:
@@ -39,15 +35,6 @@ def test_poses_are_the_product_of_the_printed_matrices(convention: str) -> None:
         poses = np.array([conf.frame(f"link_{i}").pose for i in range(1, 7)])
         np.testing.assert_allclose(poses, printed_product(q, convention), atol=1e-14)
         np.testing.assert_array_equal(conf.pose, poses[-1])
-
-
-def test_the_iiwa_7_of_its_table_is_that_of_its_urdf() -> None:
-    urdf, robot = load_robot("iiwa7"), robot_from_dh(IIWA7, name="iiwa7")
-    for q in RNG.uniform(-2.0, 2.0, (20, 7)):
-        conf, other = Configuration(robot, q), Configuration(urdf, q)
-        np.testing.assert_allclose(conf.pose, other.pose, atol=1e-9)
-        np.testing.assert_allclose(conf.jacobian, other.jacobian, atol=1e-9)
-        np.testing.assert_allclose(conf.position, dh_pose(q)[0], atol=1e-14)
 
 
 def test_limits_and_names() -> None:
