@@ -77,17 +77,20 @@ def test_idle_rows_are_those_that_no_velocity_within_the_limits_can_break() -> N
 def test_points_move_on_curves_that_h_allows_for() -> None:
     # A floor is flat: what the row's gradient does not say of a distance is the points' curves.
     floor = avoiding([HalfSpace([0.0, 0.0, 1.0], -1.0)])
-    dt, random, most = 0.02, np.random.default_rng(1), 0.0
-    for q in postures(80):
-        last = ROBOT.dq_max * random.choice([-1.0, 1.0], 7)
+    dt, random = 0.02, np.random.default_rng(1)
+    # Three parallel joints that bend a stretched arm need all of it: half, as the bound is twice.
+    motions = [(np.array([0.0, 0.3, 0, 0, 0, 0, 0]), np.array([0.0, 1, 0, -1, 0, 1, 0]))]
+    motions += [(q, ROBOT.dq_max * random.choice([-1.0, 1.0], 7)) for q in postures(40)]
+    shares = []
+    for q, last in motions:
         G, still = rows(floor, q, dt=dt)
         allowed = still - rows(floor, q, dt=dt, dq=last)[1]
         after = rows(floor, q + dt * last)[1]
         counted = (allowed > 0.0) & (allowed < still) & (np.maximum(still, after) < 9.0)
-        curved = np.abs(still - dt * (G @ last) - after)[counted]
-        assert (curved < allowed[counted]).all()
-        most = max(most, (curved / allowed[counted]).max(initial=0.0))
-    assert most > 0.2
+        curved = np.abs(still - dt * (G @ last) - after)
+        shares.append(curved[counted] / allowed[counted])
+    assert np.concatenate(shares).max() < 0.5
+    assert shares[0].max() > 0.45
 
 
 def test_within_what_a_step_may_take_h_asks_for_all_of_it_at_once() -> None:
