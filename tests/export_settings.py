@@ -103,12 +103,6 @@ def with_rates() -> Made:
     return drawing(DoubleIndicator(extra_limits=limits), iiwa_dnn.Line((0.0, -0.1, 0.0)))
 
 
-def with_accelerations() -> Made:
-    """Return a line with limits of acceleration."""
-    limits = (iiwa_dnn.AccelerationLimits(10.0),)
-    return drawing(DoubleIndicator(extra_limits=limits), iiwa_dnn.Line((0.0, -0.1, 0.0)))
-
-
 def through_points() -> Made:
     """Return a path through poses."""
     points = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02, 0.03, 0.0], [0.0, 0.0, 0.01]]
@@ -131,7 +125,6 @@ SETTINGS: dict[str, Callable[[], Made]] = {
     "heart": drawing,
     "velocity limits active": at_limits,
     "acceleration and jerk": with_rates,
-    "acceleration": with_accelerations,
     "collisions, 21 pairs": among_balls,
     "collisions with itself, a box, a floor": among_boxes,
     "two arms": two_arms,
@@ -143,7 +136,6 @@ SETTINGS: dict[str, Callable[[], Made]] = {
     "poses": through_points,
     "panda": arm("panda"),
     "ur5": arm("ur5"),
-    "xarm7": arm("xarm7"),
 }
 """Functions that make each controller, by its name."""
 

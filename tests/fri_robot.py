@@ -1,49 +1,26 @@
-"""A robot controller's side of KUKA's FRI, with a simulated arm behind it.
+"""A robot's side of KUKA's Fast Robot Interface (FRI), with an arm that follows every command.
 
-`FriController` is the session alone: messages out, datagrams in, one period after the other. It has
-no clock; `serve` lets it talk to a client over UDP in real time.
-
-KUKA publishes the session states and the messages, but not the numbers: the window and the
-thresholds of the connection quality and the length of the waiting states are this module's. A robot
-brakes where this one holds its last commanded position. It is for programs, not for safety: what is
-accepted here may be refused there.
+The robot sends a monitoring message in every period, and the client answers it by a command; both
+are in protobuf's wire format. Field numbers are those of KUKA's client SDK 1.11 to 2.5; a reader
+skips fields that it does not know, so only those used here are declared. KUKA publishes states and
+messages, but no numbers: the lengths of the waiting states are this module's. A robot brakes where
+this one ends the session. It is for programs, not for safety.
 """
 
 import socket
 import time
-from collections import Counter, deque
 from collections.abc import Callable
-from select import select
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from google.protobuf import descriptor_pb2, message_factory
 
-from fri_messages import (
-    COMMAND_ID,
-    LARGEST_MESSAGE,
-    MONITORING_ID,
-    PORT,
-    WRAP,
-    Quality,
-    SessionState,
-    message_types,
-    parse,
-)
-from iiwa_dnn import checks
-from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.files import one_line
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.simulation.plants import Plant
 
-JOINTS = 7
-
-WINDOW = 100
-"""Number of the last messages that the connection quality is computed from."""
-
-THRESHOLDS = {Quality.EXCELLENT: 0.98, Quality.GOOD: 0.9, Quality.FAIR: 0.5, Quality.POOR: 0.0}
-"""Smallest ratio of messages answered in time for a connection quality."""
+MONITORING_ID = 0x245142
+COMMAND_ID = 0x34001
 
 READY_PERIODS = 20
 """Periods in MONITORING_READY before the robot asks for commands."""
@@ -54,194 +31,164 @@ MIRRORED_PERIODS = 20
 CLOSING_MESSAGES = 3
 """Messages that tell the client of the end of the session; some may be lost."""
 
-_PATIENCE = 0.1  # longest period without real time [s]
-_LATE = 0.5  # part of a period by which a message may be sent late [1]
+_PATIENCE = 1.0  # longest time for an answer [s]
 _ROUNDING = 1e-6  # of a repeated position [rad], and of a velocity limit, relative to it
-
-# Entries of the SDK's enumerations: overlay of joint positions, commands of positions, drives on.
-_OVERLAY_JOINT = 1
-_COMMAND_POSITION = 1
-_DRIVE_ACTIVE = 2
+_ONE = 1  # in the SDK's enumerations: an overlay of joint positions, commands of positions
 
 
-class Connection:
-    """Datagrams between the robot and a client: sequence counters and connection quality.
+class SessionState(IntEnum):
+    """State of the session between robot and client."""
 
-    Attributes:
-        quality: Connection quality, of the last `WINDOW` messages.
-        packets: Numbers of commands in time, late, repeated and garbled, and of messages without
-            one ("missing").
-        answered: Whether a new command came in this period.
-    """
+    IDLE = 0
+    MONITORING_WAIT = 1
+    MONITORING_READY = 2
+    COMMANDING_WAIT = 3
+    COMMANDING_ACTIVE = 4
 
-    def __init__(self) -> None:
-        self.quality = Quality.POOR
-        self.packets: Counter[str] = Counter()
-        self._sequence = 0
-        self._newest: Any = None
-        self.answered = False
-        self._in_time: deque[bool] = deque([False] * WINDOW, maxlen=WINDOW)
 
-    def header(self) -> dict[str, int]:
-        """Return the header of this period's message."""
-        newest = self._newest
-        return {
-            "messageIdentifier": MONITORING_ID,
-            "sequenceCounter": self._sequence,
-            "reflectedSequenceCounter": 0 if newest is None else newest.header.sequenceCounter,
-        }
+_EXCELLENT = 3  # connection quality
 
-    def receive(self, datagram: bytes, ordered: bool) -> None:
-        """Take a datagram, if it holds a command that is new.
+# Fields of each message by their numbers. An enumeration is an int32 on the wire.
+_FIELDS = {
+    "JointValues": {1: "value repeated double"},
+    "TimeStamp": {1: "sec required uint32", 2: "nanosec required uint32"},
+    "MessageHeader": {
+        1: "messageIdentifier required uint32",
+        2: "sequenceCounter required uint32",
+        3: "reflectedSequenceCounter required uint32",
+    },
+    "ConnectionInfo": {
+        1: "sessionState required int32",
+        2: "quality required int32",
+        3: "sendPeriod optional uint32",
+        4: "receiveMultiplier optional uint32",
+    },
+    "RobotInfo": {1: "numberOfJoints optional int32", 5: "driveState repeated int32"},
+    "MessageMonitorData": {
+        1: "measuredJointPosition optional JointValues",
+        2: "measuredTorque optional JointValues",
+        3: "commandedJointPosition optional JointValues",
+        4: "commandedTorque optional JointValues",
+        5: "externalTorque optional JointValues",
+        15: "timestamp optional TimeStamp",
+    },
+    "MessageIpoData": {
+        1: "jointPosition optional JointValues",
+        10: "clientCommandMode optional int32",
+        11: "overlayType optional int32",
+    },
+    "FRIMonitoringMessage": {
+        1: "header required MessageHeader",
+        2: "robotInfo optional RobotInfo",
+        3: "monitorData optional MessageMonitorData",
+        4: "connectionInfo optional ConnectionInfo",
+        5: "ipoData optional MessageIpoData",
+    },
+    "MessageCommandData": {1: "jointPosition optional JointValues"},
+    "FRICommandMessage": {
+        1: "header required MessageHeader",
+        2: "commandData optional MessageCommandData",
+    },
+}
 
-        Args:
-            datagram: Content of a UDP packet.
-            ordered: Whether commands older than the last one are dropped; otherwise a client may
-                have begun anew.
-        """
-        command = parse(message_types().command, COMMAND_ID, datagram)
-        if command is None:
-            self.packets["garbled"] += 1
-            return
-        if self._newest is not None:
-            before = self._newest.header.sequenceCounter
-            ahead = (command.header.sequenceCounter - before) % WRAP
-            if ahead == 0 or (ordered and ahead > WRAP // 2):
-                self.packets["repeated"] += 1
-                return
-        self._newest = command
-        self.answered = True
 
-    def end_period(self) -> Any:
-        """Judge the answer to this period's message; return the new command, None without one."""
-        kind = "missing"
-        if self.answered:
-            in_time = self._newest.header.reflectedSequenceCounter == self._sequence
-            kind = "in time" if in_time else "late"
-        self.packets[kind] += 1
-        self._in_time.append(kind == "in time")
-        ratio = sum(self._in_time) / WINDOW
-        self.quality = next(each for each, least in THRESHOLDS.items() if ratio >= least)
-        self._sequence = (self._sequence + 1) % WRAP
-        command = self._newest if self.answered else None
-        self.answered = False
-        return command
+def message_types() -> tuple[Any, Any]:
+    """Build the classes of monitoring and of command messages."""
+    kind = descriptor_pb2.FieldDescriptorProto
+    file = descriptor_pb2.FileDescriptorProto(name="fri.proto", package="fri", syntax="proto2")
+    for message, fields in _FIELDS.items():
+        declared = file.message_type.add(name=message)
+        for number, field in fields.items():
+            name, label, own = field.split()
+            added = declared.field.add(name=name, number=number)
+            added.label = kind.Label.Value(f"LABEL_{label.upper()}")
+            if own in _FIELDS:
+                added.type = kind.TYPE_MESSAGE
+                added.type_name = f".fri.{own}"
+            else:
+                added.type = kind.Type.Value(f"TYPE_{own.upper()}")
+    classes = message_factory.GetMessages([file])
+    return classes["fri.FRIMonitoringMessage"], classes["fri.FRICommandMessage"]
+
+
+MONITORING, COMMAND = message_types()
 
 
 class FriController:
-    """One session of a robot with one client, in joint position control.
+    """One session of a robot of 7 joints with one client, in joint position control.
 
-    In each period: send `message`, hand every datagram to `receive`, then `advance`.
-
-    A command is followed if it is newer than the last one, inside the position limits, and reached
-    from the last commanded position within the velocity limits in one period. Without a command the
-    arm keeps its position. Bytes that hold no command are dropped. The session ends at a command
-    that is refused, or with a connection below GOOD while commands are followed.
+    In each period: send `message`, hand the answer to `advance`. A command is followed if it is
+    inside the position limits, and reached from the last commanded position within the velocity
+    limits in one period. The session ends at any other, and where none comes.
 
     Attributes:
         state: State of the session.
-        fault: Reason for the end of the session; None: it goes on, or ended with the arm at rest.
-        connection: Datagrams of the session.
+        fault: Reason for the end of the session; None: it goes on, or was ended.
         commanded: Commanded joint positions [rad], (7,).
-        period: Time between two messages [s].
+        period: Time between two messages [s], whole milliseconds.
     """
 
-    def __init__(self, robot: Robot, plant: Plant, q0: ArrayLike, period: float) -> None:
-        """Put the arm at rest and open the session.
-
-        Args:
-            robot: Robot with the limits that commands have to keep, 7 joints.
-            plant: Arm that moves.
-            q0: Joint positions at the start [rad], (7,).
-            period: Time between two messages [s], whole milliseconds.
-
-        Raises:
-            InvalidInputError: An argument does not fit FRI, or the start is outside the limits.
-            MissingDependencyError: The package protobuf is not installed.
-        """
-        if robot.dof != JOINTS:
-            raise InvalidInputError("robot", f"must have {JOINTS} joints, not {robot.dof}", robot)
-        self.period = round(checks.positive("period", period), 3)
-        if abs(self.period - period) > 1e-9 or not 1e-3 <= self.period <= 0.1:
-            problem = f"must be whole milliseconds from 1 to 100, not {1e3 * period:g}"
-            raise InvalidInputError("period", problem, period)
-        self.commanded: Vector = checks.finite_array("q0", q0, (JOINTS,))
-        outside = robot.outside(self.commanded)
-        if outside:
-            raise InvalidInputError("q0", outside, q0)
-        message_types()
+    def __init__(self, robot: Robot, q0: Vector, period: float) -> None:
         self.state = SessionState.MONITORING_WAIT
         self.fault: str | None = None
-        self.connection = Connection()
+        self.commanded = q0
+        self.period = period
         self._robot = robot
-        self._plant = plant
-        self._held = self.commanded
+        self._held = q0
         self._in_state = 0
-        self._moves = False
-        self._torque: Vector | None = None
-        plant.start(robot, self.commanded, self.period, 0)
+        self._sequence = 0
+        self._reflected = 0
 
     def message(self) -> bytes:
         """Encode the monitoring message of this period."""
         seconds, nanoseconds = divmod(time.time_ns(), 10**9)
-        zeros = {"value": [0.0] * JOINTS}
-        torque = self._torque
-        held = {
-            "jointPosition": {"value": self._held.tolist()},
-            "clientCommandMode": _COMMAND_POSITION,
-            "overlayType": _OVERLAY_JOINT,
-        }
-        message = message_types().monitoring(
-            header=self.connection.header(),
-            robotInfo={"numberOfJoints": JOINTS, "driveState": [_DRIVE_ACTIVE] * JOINTS},
+        zeros = {"value": [0.0] * 7}
+        commanded = {"value": self.commanded.tolist()}
+        held = {"value": self._held.tolist()}
+        asks = self.state >= SessionState.COMMANDING_WAIT
+        message = MONITORING(
+            header={
+                "messageIdentifier": MONITORING_ID,
+                "sequenceCounter": self._sequence,
+                "reflectedSequenceCounter": self._reflected,
+            },
+            robotInfo={"numberOfJoints": 7, "driveState": [2] * 7},
             monitorData={
-                "measuredJointPosition": {"value": self._plant.read().tolist()},
-                "measuredTorque": zeros if torque is None else {"value": torque.tolist()},
-                "commandedJointPosition": {"value": self.commanded.tolist()},
+                "measuredJointPosition": commanded,
+                "measuredTorque": zeros,
+                "commandedJointPosition": commanded,
                 "commandedTorque": zeros,
                 "externalTorque": zeros,
                 "timestamp": {"sec": seconds, "nanosec": nanoseconds},
             },
             connectionInfo={
                 "sessionState": self.state,
-                "quality": self.connection.quality,
+                "quality": _EXCELLENT,
                 "sendPeriod": round(1e3 * self.period),
                 "receiveMultiplier": 1,
             },
-            ipoData=held if self.state >= SessionState.COMMANDING_WAIT else None,
+            ipoData={"jointPosition": held, "clientCommandMode": _ONE, "overlayType": _ONE}
+            if asks
+            else None,
         )
         return bytes(message.SerializeToString())
 
-    def receive(self, datagram: bytes) -> None:
-        """Take a datagram of the client."""
-        self.connection.receive(datagram, ordered=self.state >= SessionState.COMMANDING_WAIT)
-
-    def advance(self) -> None:
-        """End the period: change the state, and move the arm for the next period."""
-        command = self.connection.end_period()
-        good = self.connection.quality >= Quality.GOOD
+    def advance(self, answer: bytes) -> None:
+        """End the period: take the client's answer, change the state, and move the arm."""
         self._in_state += 1
-        q = self.commanded
-        if self.state is SessionState.IDLE:
-            pass
-        elif not good and self.state < SessionState.COMMANDING_ACTIVE:
-            self._enter(SessionState.MONITORING_WAIT)
-        elif self.state is SessionState.MONITORING_WAIT:
+        command = COMMAND.FromString(answer)
+        header = command.header
+        fits = (header.messageIdentifier, header.reflectedSequenceCounter)
+        assert fits == (COMMAND_ID, self._sequence)
+        self._reflected = header.sequenceCounter
+        self._sequence += 1
+        if self.state is SessionState.MONITORING_WAIT:
             self._enter(SessionState.MONITORING_READY)
         elif self.state is SessionState.MONITORING_READY:
             if self._in_state >= READY_PERIODS:
                 self._enter(SessionState.COMMANDING_WAIT)
-        elif not good:
-            quality = self.connection.quality.name
-            self.end(f"the connection became {quality} in motion" if self._moves else None)
-        elif command is not None:
-            q = self._judge(np.array(command.commandData.jointPosition.value))
-            self._moves = bool((q != self.commanded).any())
-        moved = self._plant.move((q - self.commanded) / self.period)
-        self._torque = moved.torque
-        self.commanded = q
-        if moved.fault is not None:
-            self.end(moved.fault)
+        elif self.state >= SessionState.COMMANDING_WAIT:
+            self._take(np.array(command.commandData.jointPosition.value))
 
     def end(self, fault: str | None = None) -> None:
         """End the session; the arm keeps its commanded position."""
@@ -252,77 +199,47 @@ class FriController:
         self.state = state
         self._in_state = 0
 
-    def _judge(self, q: Vector) -> Vector:
-        """Return the joint positions (7,) [rad] to move to by a command `q`, of any size."""
+    def _take(self, q: Vector) -> None:
+        """Follow commanded joint positions, of any size, or wait for those that are held."""
         refusal = self._refusal(q)
         if refusal:
             self.end(f"command refused: {refusal}")
         elif self.state is SessionState.COMMANDING_ACTIVE:
-            return q
+            self.commanded = q
         elif np.abs(q - self.commanded).max() > _ROUNDING:
             self._in_state = 0
         elif self._in_state >= MIRRORED_PERIODS:
             self._enter(SessionState.COMMANDING_ACTIVE)
-        return self.commanded
 
     def _refusal(self, q: Vector) -> str | None:
-        """Return the reason for refusing a command `q`, of any size; None if it is followed."""
-        if q.shape != (JOINTS,) or not np.isfinite(q).all():
-            return f"it does not hold {JOINTS} finite joint positions"
-        outside = self._robot.outside(q)
-        if outside:
-            return outside
+        """Return the reason for refusing commanded joint positions; None if there is none."""
+        if q.shape != (7,) or not np.isfinite(q).all():
+            return "it does not hold 7 finite joint positions"
         ratio = np.abs(q - self.commanded) / (self.period * self._robot.dq_max)
         joint = int(ratio.argmax())
         if ratio[joint] > 1.0 + _ROUNDING:
             return f"joint {joint + 1} jumps, {ratio[joint]:.3g} times its velocity limit"
-        return None
+        return self._robot.outside(q)
 
 
-def serve(
-    controller: FriController,
-    host: str = "127.0.0.1",
-    port: int = PORT,
-    own_port: int = 0,
-    realtime: bool = True,
-    observe: Callable[[FriController], object] = lambda controller: None,
-) -> None:
-    """Let a controller talk to a client over UDP until the session ends.
+def serve(controller: FriController, port: int, observe: Callable[[FriController], object]) -> None:
+    """Let a controller talk to a client over UDP, not in real time, until the session ends.
 
-    Args:
-        controller: Controller with an open session.
-        host: Address of the client.
-        port: Port of the client.
-        own_port: Port of the robot; 0: a free one.
-        realtime: Whether periods have their length. Otherwise each ends with the client's answer,
-            or 0.1 s without one: nothing is late on a machine with other work.
-        observe: Function that is called after each period.
-
-    Raises:
-        InvalidInputError: There is no such host, or the port is taken.
+    `observe` is called after each period.
     """
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+        client = ("127.0.0.1", port)
+        link.bind(("", 0))
         try:
-            client = (socket.gethostbyname(host), port)
-            link.bind(("", own_port))
-        except OSError as error:
-            raise InvalidInputError("host", f"{host}: {one_line(error)}", host) from error
-        try:
-            deadline = time.perf_counter()
             while controller.state is not SessionState.IDLE:
+                waits = controller.state is SessionState.MONITORING_WAIT
+                link.settimeout(0.1 if waits else _PATIENCE)
                 link.sendto(controller.message(), client)
-                now = time.perf_counter()
-                # A client is not to blame for a message that was sent late.
-                deadline = max(deadline, now - _LATE * controller.period) + controller.period
-                if not realtime:
-                    deadline = now + _PATIENCE
-                waits = True
-                while waits and select([link], [], [], max(0.0, deadline - time.perf_counter()))[0]:
-                    datagram, sender = link.recvfrom(LARGEST_MESSAGE)
-                    if sender == client:
-                        controller.receive(datagram)
-                    waits = realtime or not controller.connection.answered
-                controller.advance()
+                try:
+                    controller.advance(link.recv(1500))
+                except (TimeoutError, ConnectionError):
+                    if not waits:  # the client may not have begun
+                        controller.end("no answer")
                 observe(controller)
         finally:
             controller.end(controller.fault)

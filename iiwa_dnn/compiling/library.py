@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 import threading
 from collections.abc import Callable, Iterator
@@ -37,7 +38,7 @@ _SOURCES: dict[int, Callable[..., Any]] = {}
 _FAILED = ctypes.c_int64.from_address(_LIBRARY.addresses["failed"])
 _CFunction: Any = type(ctypes.pythonapi.Py_IncRef).__mro__[1]
 _ERRORS: dict[int, BaseException] = {}
-_INTERPRETED: dict[int, Callable[..., Any]] = {}
+_CALLBACKS: list[Any] = []
 
 
 def compiled(function: Function) -> Function:
@@ -49,9 +50,6 @@ def compiled(function: Function) -> Function:
         _SOURCES[id(found)] = function
     return cast(Function, found)
 
-
-inlined = compiled
-"""As `compiled`, for a kernel that C copies into its callers."""
 
 released = compiled
 """As `compiled`, for a kernel during which Python's other threads go on."""
@@ -87,20 +85,19 @@ class Entry(Generic[P, R]):
     """
 
     functions: ClassVar[dict[int, Any]] = {}
-    _kept: ClassVar[list[Any]] = []
 
     def __init__(self, prototype: Callable[P, R]) -> None:
         """Take the function that states the types."""
         self.prototype = prototype
         self._name = c_name(prototype.__module__, prototype.__name__)
         self._types = _LIBRARY.codes[self._name][1:]
-        self._addresses: dict[int, int] = {}
+        self._addresses: dict[Any, int] = {}
 
     def __call__(self, *arguments: P.args, **keywords: P.kwargs) -> R:
         """Enter the function at an address."""
         address, *own = arguments
-        if INTERPRETED and address in _INTERPRETED:
-            return cast(R, _INTERPRETED[address](*own))
+        if INTERPRETED and address > 0:  # type: ignore[operator]
+            return cast(R, self.functions[address](*own))  # type: ignore[index]
         return cast(R, getattr(_LIBRARY, self._name)(*arguments))
 
     def address(self, function: Any) -> int:
@@ -109,34 +106,31 @@ class Entry(Generic[P, R]):
         Raises:
             TypeError: It is a kernel of other types, or no function.
         """
-        if id(function) not in self._addresses:
+        if function not in self._addresses:
             address = self._address(function)
-            self._addresses[id(function)] = address
-            self._kept.append(function)
+            self._addresses[function] = address
             Entry.functions[address] = source_of(function)
-        return self._addresses[id(function)]
+        return self._addresses[function]
 
     def _address(self, function: Any) -> int:
         source = source_of(function)
         if source is not function:
             name = c_name(source.__module__, source.__name__)
             if _LIBRARY.codes[name] != self._types:
-                problem = f"is a kernel of the types {_LIBRARY.codes[name]}, not {self._types}"
-                raise TypeError(f"{name} {problem}")
+                types = _LIBRARY.codes[name]
+                raise TypeError(f"{name} is a kernel of the types {types}, not {self._types}")
             return int(_LIBRARY.addresses[name])
         found = getattr(function, "address", function)
-        if isinstance(found, int):
-            if found <= 0:
-                raise TypeError(f"{found} is no address of a function")
+        if isinstance(found, int) and found > 0:
             return -found
         if not callable(function):
             raise TypeError(f"{function!r} is no function")
-        if INTERPRETED and not isinstance(function, _CFunction):
-            _INTERPRETED[id(function)] = function
-            return id(function)
-        called = function if isinstance(function, _CFunction) else self._callback(function)
-        self._kept.append(called)
-        return -cast(int, ctypes.cast(called, ctypes.c_void_p).value)
+        if not isinstance(function, _CFunction):
+            if INTERPRETED:
+                return id(function)
+            function = self._callback(function)
+            _CALLBACKS.append(function)
+        return -cast(int, ctypes.cast(function, ctypes.c_void_p).value)
 
     def _callback(self, function: Callable[..., Any]) -> Any:
         """Make a function of C that calls one in Python; its error is raised by `raise_failure`."""
@@ -188,7 +182,5 @@ def _rebuilt(hint: Any, codes: Iterator[str], values: Iterator[Any]) -> Any:
         return first
     shape = [next(values) for _ in _FLAT[code][1:]]
     kind = ctypes.c_double if code in "vmc" else ctypes.c_int64
-    if not first or not np.prod(shape):
-        return np.zeros(shape, dtype=kind)
-    memory: Any = (kind * int(np.prod(shape))).from_address(first)
-    return np.frombuffer(memory, kind).reshape(shape)
+    memory: Any = (kind * math.prod(shape)).from_address(first)
+    return np.ctypeslib.as_array(memory).reshape(shape)

@@ -6,8 +6,8 @@ import ast
 from pathlib import Path
 from typing import Any, NoReturn
 
-KERNELS = ("compiled", "inlined", "released")
-"""Decorators of a kernel: plain, copied into its callers, and called without Python's lock."""
+KERNELS = ("compiled", "released")
+"""Decorators of a kernel: plain, and called without Python's lock."""
 
 ENTRY = "entry"
 """Decorator of a function without a body, which calls the kernel at an address."""

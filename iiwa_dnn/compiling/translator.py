@@ -101,8 +101,7 @@ class Function(Expressions):
         self.result = of(module, node.returns or ast.Constant(None))
         self.types = [f"const {k.tag} *" if k.is_named else f"{k.tag} " for k in kinds.values()]
         own = ["struct arena *arena", *map("".join, zip(self.types, kinds, strict=True))]
-        inline = "inline " * (self.decoration == "inlined")
-        self.head = f"static {inline}{self.result.tag} {self.name}({', '.join(own)})"
+        self.head = f"static {self.result.tag} {self.name}({', '.join(own)})"
         self.text = ""
         self._node = node
         self._lines: list[str] = []

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.compiling.library import inlined
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.layout import Sizes, offsets
@@ -65,7 +65,7 @@ class RowViews(NamedTuple):
     targets: Matrix
 
 
-@inlined
+@compiled
 def row_ends(
     n: int, m: int, p: int, dof: int
 ) -> tuple[int, int, int, int, int, int, int, int, int]:
@@ -92,7 +92,7 @@ def row_ends(
     )
 
 
-@inlined
+@compiled
 def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
     """Make the views of a row, (width,)."""
     ends = row_ends(n, m, p, dof)

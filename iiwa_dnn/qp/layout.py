@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.compiling.library import compiled, inlined
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 
 Vector = NDArray[np.float64]
@@ -74,7 +74,7 @@ class QPViews(NamedTuple):
     ub: Vector
 
 
-@inlined
+@compiled
 def qp_views(data: Vector, n: int, m: int, p: int) -> QPViews:
     """Make the views of a program's flat array, `QP.data` (size,), which has to outlive them."""
     at_q, at_G, at_A, at_lb = offsets(n, m, p)

@@ -30,7 +30,7 @@ def compiled(function):
     return function
 
 
-inlined = released = entry = compiled
+released = entry = compiled
 
 
 class Kind(IntEnum):
@@ -141,7 +141,7 @@ def arrays(values: Vector, rows: Matrix, counts: IntVector) -> None:
     counts[2] = counts[0] - counts[1]
 
 
-@inlined
+@compiled
 def views_of(data: Vector, n: int) -> Views:
     """Make views."""
     return Views(data[:n], data[n:].reshape((data.size - n) // n, n), 2.0)

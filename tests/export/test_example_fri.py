@@ -17,7 +17,6 @@ from fri_robot import FriController, serve
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start
 from iiwa_dnn import DoubleIndicator, export, simulate
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.simulation import IdealPlant
 
 
 class Robot(threading.Thread):
@@ -29,10 +28,10 @@ class Robot(threading.Thread):
         self.commanded = []
         self.states = []
         self.observe = observe
-        self.controller = FriController(paper_robot(), IdealPlant(), paper_start().q, 5e-3)
+        self.controller = FriController(paper_robot(), paper_start().q, 5e-3)
 
     def run(self):
-        serve(self.controller, "127.0.0.1", self.port, realtime=False, observe=self.note)
+        serve(self.controller, self.port, self.note)
 
     def note(self, controller):
         self.commanded.append(controller.commanded)

@@ -58,7 +58,7 @@ STEPS = {
 """Steps until what a controller is there for has come and gone; 500 for all others."""
 
 
-SHOWN_BY_OTHERS = ("heart", "acceleration", "panda", "xarm7")
+SHOWN_BY_OTHERS = ("heart", "panda")
 """Controllers whose code is another's too."""
 
 

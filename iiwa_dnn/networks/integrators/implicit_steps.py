@@ -33,7 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.compiling.library import compiled, inlined
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.projection import add_transposed, rows_times, write_slacks
 from iiwa_dnn.qp.dense import add_outer, cholesky_factor, factor_solve, times
 from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, larger
@@ -84,7 +84,7 @@ def _count_rows(matrix: Condensed, rows: Matrix, first: int) -> None:
             matrix.counted[first + j] += change
 
 
-@inlined
+@compiled
 def linear_step(
     qp: QPViews, s: Vector, rates: Vector, step: float, matrix: Condensed, new: Vector
 ) -> bool:
