@@ -91,7 +91,7 @@ def compared(steps: int) -> Iterator[dict[str, Any]]:
     for name, make in SETTINGS.items():
         with tempfile.TemporaryDirectory() as place:
             made = make()
-            folder = c99(made[0], Path(place) / "c", made[1], verify=False)
+            folder = c99(made[0], Path(place) / "c", made[1])
             row = {"name": name, "steps": steps, "size": load(folder).size}
             row["text"] = text_size(folder, Path(place))
             program = compiled(folder, Path(place) / "loop", FAST, driver, folder / "controller.c")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +24,7 @@ def needs(*programs: str) -> Any:
 
 
 def compile_quickly(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the package compile what it exports without optimization, and run its test once."""
-    monkeypatch.setattr(sys.modules["iiwa_dnn.export.load"], "FLAGS", (*QUICK, "-DROUNDS=1"))
+    """Let the package compile what it exports without optimization."""
     monkeypatch.setattr(load, "__defaults__", (QUICK,))
 
 

@@ -338,7 +338,7 @@ def in_c(
     `read` returns the kinds of wishes, (k,), and their numbers, (k, w).
     """
     with tempfile.TemporaryDirectory() as folder:
-        iiwa_dnn.export.c99(made, folder, verify=False)
+        iiwa_dnn.export.c99(made, folder)
         shield = ["-DSHIELD"] * isinstance(made, iiwa_dnn.Shield)
         sources = [
             str(Path(folder) / "controller.c"),

@@ -38,7 +38,7 @@ def heart_controller() -> tuple[iiwa_dnn.Controller, np.ndarray]:
 def compiled(controller: iiwa_dnn.Controller, q0: np.ndarray) -> bytes:
     """Export a controller and compile it for a browser."""
     with tempfile.TemporaryDirectory() as place:
-        folder = iiwa_dnn.export.c99(controller, place, q0, verify=False)
+        folder = iiwa_dnn.export.c99(controller, place, q0)
         result = folder / "controller.wasm"
         sources = (folder / "controller.c", HERE / "page.c")
         linked = (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -54,7 +55,8 @@ def build(package: Path) -> Path:
     translator = Translator(package)
     translator.all()
     text = extension(translator)
-    own = hashlib.sha256(" ".join([text, *FLAGS]).encode()).hexdigest()
+    unmarked = re.sub(r"#line.*", "", text)  # which a comment changes
+    own = hashlib.sha256(" ".join([unmarked, *FLAGS]).encode()).hexdigest()
     if not (made.is_file() and stamp.is_file() and own in stamp.read_text()):
         with tempfile.TemporaryDirectory(dir=made.parent) as place:
             source = Path(place) / "_kernels.c"

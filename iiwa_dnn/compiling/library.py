@@ -38,7 +38,7 @@ _SOURCES: dict[int, Callable[..., Any]] = {}
 _FAILED = ctypes.c_int64.from_address(_LIBRARY.addresses["failed"])
 _CFunction: Any = type(ctypes.pythonapi.Py_IncRef).__mro__[1]
 _ERRORS: dict[int, BaseException] = {}
-_CALLBACKS: list[Any] = []
+_KEPT: list[Any] = []
 
 
 def compiled(function: Function) -> Function:
@@ -91,7 +91,7 @@ class Entry(Generic[P, R]):
         self.prototype = prototype
         self._name = c_name(prototype.__module__, prototype.__name__)
         self._types = _LIBRARY.codes[self._name][1:]
-        self._addresses: dict[Any, int] = {}
+        self._addresses: dict[int, int] = {}
 
     def __call__(self, *arguments: P.args, **keywords: P.kwargs) -> R:
         """Enter the function at an address."""
@@ -106,11 +106,12 @@ class Entry(Generic[P, R]):
         Raises:
             TypeError: It is a kernel of other types, or no function.
         """
-        if function not in self._addresses:
+        if id(function) not in self._addresses:
             address = self._address(function)
-            self._addresses[function] = address
+            self._addresses[id(function)] = address
+            _KEPT.append(function)
             Entry.functions[address] = source_of(function)
-        return self._addresses[function]
+        return self._addresses[id(function)]
 
     def _address(self, function: Any) -> int:
         source = source_of(function)
@@ -129,7 +130,7 @@ class Entry(Generic[P, R]):
             if INTERPRETED:
                 return id(function)
             function = self._callback(function)
-            _CALLBACKS.append(function)
+            _KEPT.append(function)
         return -cast(int, ctypes.cast(function, ctypes.c_void_p).value)
 
     def _callback(self, function: Callable[..., Any]) -> Any:

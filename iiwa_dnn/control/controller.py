@@ -29,7 +29,6 @@ from iiwa_dnn.control.state import (
     LAST,
     REST,
     ControllerState,
-    KeptStates,
     Q,
 )
 from iiwa_dnn.control.step import INVALID, ControlStep, take_step
@@ -109,7 +108,7 @@ class Controller:
             InvalidInputError: An argument is out of range; the message names it.
         """
         self._lock = threading.Lock()
-        self._kept = KeptStates(ControllerState.at_rest(0))
+        self._state = ControllerState(0)
         self._derived: ControlStep | None
         self._anchored: Scheme | None = None
         self.mode = mode
@@ -126,32 +125,26 @@ class Controller:
             check(name, value)
             self._derived = None
         object.__setattr__(self, name, value)
-        if name == "robot" and self._kept.now.past.shape[1] != value.dof:
-            self._kept.now = ControllerState.at_rest(value.dof)
+        if name == "robot" and self._state.past.shape[1] != value.dof:
+            self._state.rest(value.dof)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in vars(self).items() if name not in _DERIVED}
+        own = {"_state": copy.deepcopy(self._state), "solver": copy.copy(self.solver)}
+        return {**vars(self), **own, "_lock": None, "_derived": None}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
         self._lock = threading.Lock()
         self._derived = None
 
-    def __copy__(self) -> Controller:
-        twin = type(self).__new__(type(self))
-        twin.__setstate__(self.__getstate__())
-        twin._kept = copy.deepcopy(self._kept)
-        twin.solver = copy.copy(self.solver)
-        return twin
-
     @property
     def delay(self) -> float:
         """Time by which the reference's clock is behind [s]."""
-        return float(self._kept.now.past[DELAY, 0])
+        return float(self._state.past[DELAY, 0])
 
     @delay.setter
     def delay(self, seconds: float) -> None:
-        self._kept.now.past[DELAY, 0] = seconds
+        self._state.past[DELAY, 0] = seconds
 
     def step(
         self,
@@ -178,14 +171,14 @@ class Controller:
             InvalidInputError: `q` has another size than the robot has joints, or is not finite; or
                 `t` is no number; or there is neither reference nor target; or `dt` is not above 0.
         """
-        before = self._kept.now
+        before = self._state.past
         try:
             with self._lock:
                 command = self._compute(q, t, target, dt)
-                self._kept.now = self._kept.next
+                self._state.past = self._state.next
                 return command
         except BaseException as error:  # interrupted before anybody got the command
-            self._kept.now = before
+            self._state.past = before
             if isinstance(error, TypeError | InvalidInputError):
                 checks.finite("t", t)
             raise
@@ -203,12 +196,13 @@ class Controller:
 
     def send(self, dq: Vector, fraction: float = 1.0) -> None:
         """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a share of the period."""
-        past = self._kept.next.past.copy()
-        past[BEFORE] = self._kept.now.past[LAST]
+        state = self._state
+        past = state.next.copy()
+        past[BEFORE] = state.past[LAST]
         past[LAST] = dq
         past[REST] = 0.0
-        past[DELAY] = self._kept.now.past[DELAY] + self.dt * (1.0 - fraction)
-        self._kept.now = self._kept.next._replace(past=past)
+        past[DELAY] = state.past[DELAY] + self.dt * (1.0 - fraction)
+        state.past = past
 
     def _compute(
         self,
@@ -218,10 +212,9 @@ class Controller:
         dt: float | None,
     ) -> Command:
         step = self._derived
-        state = self._kept.now
+        state = self._state
         if step is None or not state.begun:
             step = self._prepare(q, t, target is None)
-            state = self._kept.now
         if dt is None:
             dt = self.dt
         if dt != step.dt:
@@ -229,29 +222,23 @@ class Controller:
         layout = step.layout
         joints: Any = q if _is_plain(q, layout.dof) else checks.finite_array("q", q, (layout.dof,))
         row = np.empty(layout.width)
+        past = state.past
         samples = step.samples and target is None
         if not samples:
-            layout.targets(row)[:] = self.targets(t - state.past[DELAY, 0], target, dt)
+            layout.targets(row)[:] = self.targets(t - past[DELAY, 0], target, dt)
         program = step.program
         program.kinematics.update(joints)
         if program.refreshed:
-            program.refresh(joints, state.past[LAST], layout.targets(row), t, dt)
-        past = state.past
+            program.refresh(joints, past[LAST], layout.targets(row), t, dt)
         past[Q] = joints
         following = np.empty_like(past)
-        relaxed = state.relaxed
-        if relaxed.size != step.relaxed_size:
-            relaxed = np.zeros(step.relaxed_size)
+        state.next = following  # a halt from here on counts for the next step
         network = self.solver.state_for(layout.sizes) if step.has_network else _NOTHING
-        action = take_step(row, step.plan, past, following, network, relaxed, t, samples)
+        action = take_step(row, step.plan, past, following, network, step.relaxed, t, samples)
         if action == INVALID:
             checks.finite_array("q", past[Q], (layout.dof,))
             checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
-        command = Command(row, layout, _ACTIONS[action])
-        if action and state.blocking is not None:
-            layout.view(row, "blocking")[:] = state.blocking
-        self._kept.next = ControllerState(following, True, state.blocking, relaxed)
-        return command
+        return Command(row, layout, _ACTIONS[action])
 
     def clear_share(self, q: Vector, dq: Vector) -> float:
         """Return the share of a velocity that brings no pair nearer than promised, or too near.
@@ -266,7 +253,7 @@ class Controller:
         if step.yields or not step.plan.yielding.stop:
             return 1.0
         step.program.kinematics.update(q)
-        past = np.zeros_like(self._kept.now.past)
+        past = np.zeros_like(self._state.past)
         following = past.copy()
         for share in TOWARDS:
             following[LAST] = share * dq
@@ -279,13 +266,12 @@ class Controller:
 
         `own` says that the targets are the reference's.
         """
-        posture = checks.finite_array("q", q, (self.robot.dof,))
         checks.finite("t", t)
-        start = Configuration(self.robot, posture)
-        begun = self._kept.now.begun
+        start = Configuration(self.robot, checks.finite_array("q", q, (self.robot.dof,)))
+        begun = self._state.begun
         self.anchor(start)
-        if own and not begun:
-            self.warn_if_far(start, t, stacklevel=5)
+        if not begun:
+            self.warn_of_start(start, t, own, stacklevel=5)
         return self._laid_out()
 
     def _laid_out(self) -> ControlStep:
@@ -294,7 +280,7 @@ class Controller:
         if step is None:
             program = self.scheme.program(self.robot)
             policy = int(Action[self.policy.upper()]) if self.mode == "converged" else BRAKE
-            step = ControlStep(program, self._seen(self.dt) or {}, self.solver, self.dt, policy)
+            step = ControlStep(program, self._seen(self.dt), self.solver, self.dt, policy)
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
         return step
@@ -302,12 +288,12 @@ class Controller:
     @property
     def begun(self) -> bool:
         """Test whether a first step was taken."""
-        return self._kept.now.begun
+        return self._state.begun
 
     @property
     def positions(self) -> Vector:
         """Joint positions of the last step [rad], (n,), a copy."""
-        return np.array(self._kept.now.past[Q])
+        return np.array(self._state.past[Q])
 
     @property
     def control_step(self) -> ControlStep:
@@ -326,26 +312,13 @@ class Controller:
 
     @property
     def last(self) -> Vector:
-        """Last command [rad/s], (n,), a view into the controller's state."""
-        last: Vector = self._kept.now.past[LAST]
-        return last
+        """Last command [rad/s], (n,), a copy."""
+        return np.array(self._state.past[LAST])
 
-    def halt(self, command: Command | None = None) -> None:
-        """Brake at every step from now on.
-
-        Args:
-            command: The command at which a policy stopped an arm that may be able to stop at once;
-                None: it stops for another reason than a limit.
-        """
-        step = self._laid_out()
-        if self._kept.now.past[HALTED, 0] or not (command is None or step.yields):
-            return
-        self._kept.now.past[HALTED] = 1.0
-        n, m, _ = step.layout.sizes
-        blocking = np.zeros(n + m)
-        if command is not None:
-            blocking[:] = step.layout.view(command.row, "blocking")
-        self._kept.now = self._kept.now._replace(blocking=blocking)
+    def halt(self) -> None:
+        """Brake at every step from now on."""
+        self._state.past[HALTED] = 1.0
+        self._state.next[HALTED] = 1.0
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, if the scheme has none."""
@@ -353,44 +326,49 @@ class Controller:
         if scheme is not self.scheme:
             self.scheme = scheme
         self._anchored = self.scheme
-        self._kept.now.past[Q] = start.q
-        if not self._kept.now.begun:
-            for message in doubts(self.program, self.scheme, start, self.dt, self.mode):
-                warnings.warn(message, stacklevel=5)
-        self._kept.now = self._kept.now._replace(begun=True)
+        self._state.past[Q] = start.q
+        self._state.begun = True
 
-    def warn_if_far(
-        self, start: Configuration, t: float, stacklevel: int, refuses: bool = False
+    def warn_of_start(
+        self, start: Configuration, t: float, own: bool, stacklevel: int, refuses: bool = False
     ) -> None:
-        """Warn if a first target is far from its frame: most likely it was not anchored.
+        """Warn of settings, a start posture or a first target that are most likely wrong.
+
+        Args:
+            start: The start.
+            t: Time [s].
+            own: Whether the targets are the reference's.
+            stacklevel: That of the warnings.
+            refuses: Whether a path of poses that begins elsewhere is an error.
 
         Raises:
-            InvalidInputError: `refuses` is set, and a path of poses begins elsewhere.
+            InvalidInputError: `refuses` is set, and there is such a path.
         """
-        paths = paths_of(self.reference, self.robot.tip, self.program.target_frames)
-        targets = self.targets(t)
-        for message in far_targets(self.scheme, paths, start, targets, refuses):
+        program = self.program
+        found = [*doubts(program, start, self.dt, self.mode)]
+        if own:
+            paths = paths_of(self.reference, self.robot.tip, program.target_frames)
+            found += far_targets(self.scheme, paths, start, self.targets(t), refuses)
+        for message in found:
             warnings.warn(message, stacklevel=stacklevel)
 
     def reset(self) -> None:
         """Forget the network's state, the last commands and the delay; the home stays."""
         self.solver.reset()
-        self._kept.now = ControllerState.at_rest(self.robot.dof, self._kept.now.begun)
+        self._state.rest(self.robot.dof)
         self._derived = None
 
-    def warm_up(self, q: ArrayLike, t: float | None = None) -> None:
+    def warm_up(self, q: ArrayLike) -> None:
         """Lay the program out ahead, so that the first step is as quick as the others.
 
         Args:
             q: Joint positions of the first step [rad], (n,), which become the scheme's home if it
                 has none.
-            t: Time of the first step [s], at which a warning says where the reference begins; None:
-                the first step warns.
         """
-        begun = self._kept.now.begun
-        self._kept.now = self._kept.now._replace(begun=begun or t is None)
-        self._prepare(q, 0.0 if t is None else t, self.reference is not None)
-        self._kept.now = self._kept.now._replace(begun=begun or t is not None)
+        begun = self._state.begun
+        self.anchor(Configuration(self.robot, q))
+        self._laid_out()
+        self._state.begun = begun
 
     def targets(
         self,
@@ -408,24 +386,22 @@ class Controller:
         Raises:
             InvalidInputError: A frame that a task tracks has no reference, or another one has.
         """
-        program = self.program
-        frames = program.target_frames
+        tip = self.robot.tip
+        frames = self.program.target_frames
         if target is not None:
-            return np.array(targets_of(self.robot.tip, frames, target))
-        paths = paths_of(self._seen(dt or self.dt), self.robot.tip, frames).values()
+            return np.array(targets_of(tip, frames, target))
+        paths = paths_of(self._seen(dt or self.dt), tip, frames).values()
         found = np.array([path.base for path in paths])
         for path, row in zip(paths, found, strict=True):
             path.move(t, row)
         return found
 
-    def _seen(self, dt: float) -> Mapping[str, Reference] | None:
+    def _seen(self, dt: float) -> Mapping[str, Reference]:
         """Return the references by frame name, a period ahead if the scheme asks for it."""
-        if self.reference is None:
-            return None
         given = by_frame(self.reference, self.robot.tip)
-        if not self.scheme.ahead:
-            return given
-        return {name: path.ahead(dt) for name, path in given.items()}
+        return (
+            {name: path.ahead(dt) for name, path in given.items()} if self.scheme.ahead else given
+        )
 
     def placement(self, q: Vector) -> Vector:
         """Compute the placement of the first tracked frame at joint positions q (n,), (12,)."""
@@ -436,7 +412,7 @@ class Controller:
     def program_at(self, q: Vector, targets: Matrix, t: float) -> QP:
         """Build the program at joint positions q (n,) [rad] for targets (k, 18)."""
         program = self.program
-        past = self._kept.now.past[: LAST + 2].copy()
+        past = self._state.past[: LAST + 2].copy()
         past[Q] = q
         data = np.empty(program.data_size)
         program.kinematics.update(q)
@@ -450,8 +426,6 @@ def _is_plain(q: ArrayLike, dof: int) -> bool:
         type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == (dof,) and q.flags.c_contiguous
     )
 
-
-_DERIVED = ("_derived", "_lock")
 
 # A change of one of them is checked, and what is derived from them is made anew.
 _CHECKS: dict[str, Callable[[str, Any], object]] = {

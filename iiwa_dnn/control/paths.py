@@ -14,7 +14,7 @@ from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.collision import unwatched_links
 from iiwa_dnn.schemes import OrientationTask, PoseTask
-from iiwa_dnn.schemes.collisions import avoidance_of
+from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.limits import largest_gain
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.program import StepProgram
@@ -44,24 +44,19 @@ def paths_of(reference: References | None, tip: str, frames: Sequence[str]) -> d
     Raises:
         InvalidInputError: One of the frames has no reference, or another one has.
     """
-    if reference is None:
-        raise InvalidInputError("reference", "is missing: give one, or a target to each step")
     given = by_frame(reference, tip)
-    wrong = [name for name in frames if name not in given]
-    if wrong or (wrong := [name for name in given if name not in frames]):
-        problem = "is missing for" if wrong[0] in frames else "is given, but no task tracks"
-        raise InvalidInputError("reference", f"{problem} frame {wrong[0]!r}")
+    for name in {*frames} ^ {*given}:
+        problem = "is missing for" if name in frames else "is given, but no task tracks"
+        hint = "; give one, or a target to each step" if name in frames else ""
+        raise InvalidInputError("reference", f"{problem} frame {name!r}{hint}", sorted(given))
     return {name: given[name] for name in frames}
 
 
-def doubts(
-    program: StepProgram, scheme: object, start: Configuration, dt: float, mode: str
-) -> Iterator[str]:
+def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> Iterator[str]:
     """State for what reasons a loop is most likely not the wanted one.
 
     Args:
         program: The program of its steps.
-        scheme: The scheme of the program.
         start: Where it begins.
         dt: Control period [s].
         mode: ``"converged"`` or ``"continuous"``.
@@ -69,41 +64,33 @@ def doubts(
     robot = program.robot
     if problem := robot.outside(start.q):
         yield f"the start posture {problem}"
-    yield from _too_many_rows(program)
-    yield from _too_high_gain(program, dt)
-    limits = [block.part for block in program.blocks if isinstance(block.part, Limit)]
+    yield from _doubts_of_tasks(program, dt)
+    limits = [part for part in program.parts if isinstance(part, Limit)]
     lagging = [type(limit).__name__ for limit in limits if limit.row_count(robot)]
     if mode == "continuous" and lagging:
         yield (
             f"in continuous mode the rows of {', '.join(lagging)} hold where the network has "
             "settled, not on its way: only bounds of the joints are kept at every step"
         )
-    if avoidance_of(scheme) is not None and (links := unwatched_links(robot)):
+    if program.constants_of(CollisionAvoidance) and (links := unwatched_links(robot)):
         yield unwatched(links)
 
 
-def _too_many_rows(program: StepProgram) -> Iterator[str]:
-    """State that hard tasks have more independent rows than there are variables, if so."""
+def _doubts_of_tasks(program: StepProgram, dt: float) -> Iterator[str]:
+    """State that hard tasks have too many rows, or a gain too high for the limits at dt [s]."""
     variables = program.sizes[0]
     # The paper's four rows of an orientation have rank 3; couplings of joints hold always.
     tasks = [task for task in program.tasks if task.row_weight > 0.0]
     blocks = sum(getattr(task, "form", "") == "block" for task in tasks)
     rows = sum(task.row_count(program.robot) for task in tasks) - blocks
     if rows > variables:
-        fault = f"fulfil the {rows} rows of the tasks"
-        if any(isinstance(task, _TURNING) for task in tasks):
-            fault = "hold a pose: orientation='none' leaves it free"
-        yield f"{variables} joints cannot {fault}"
-
-
-def _too_high_gain(program: StepProgram, dt: float) -> Iterator[str]:
-    """State that a gain is too high for limits on acceleration and jerk at dt [s], if so."""
-    if program.rate_limits is None:
+        fault = f"{variables} joints cannot fulfil the {rows} rows of the tasks"
+        yield f"{fault}; orientation='none' leaves the orientation free"
+    gains = [min(task.gain, 1.0 / dt) for task in tasks if isinstance(task, GainTask)]
+    if program.rate_limits is None or not gains:
         return
     largest = largest_gain(program.rate_limits.constants(program.robot), 1.0 / dt)
-    tasks = [block.part for block in program.blocks if isinstance(block.part, GainTask)]
-    gains = [min(task.gain, 1.0 / dt) for task in tasks if task.row_weight > 0.0]
-    if max(gains, default=0.0) > largest * (1.0 + 1e-9):
+    if max(gains) > largest * (1.0 + 1e-9):
         yield (
             f"a gain of {max(gains):.3g} 1/s is above {largest:.3g} 1/s, up to which a loop with "
             f"these limits on acceleration and jerk is stable at {dt:g} s a step (docs/limits.md)"
@@ -137,14 +124,11 @@ def far_targets(
         angle = turns * float(np.linalg.norm(log3(target.rotation @ frame.rotation.T)))
         if distance <= FAR and angle <= TURNED:
             continue
-        where = "tip" if name == start.robot.tip else f"frame {name}"
-        turned = f", turned by {angle:.3g} rad" if angle > TURNED else ""
-        message = f"begins {distance:.3g} m from the {where}{turned}"
-        if getattr(reference, "quaternions", None) is None:
-            yield f"the reference {message}; reference.anchored(configuration) begins there"
-            continue
-        message += "; start at iiwa_dnn.solve_pose(robot, reference.at(0.0)).q"
-        if refuses:
+        message = (
+            f"begins {distance:.3g} m and {angle:.3g} rad from {name}; start at "
+            "iiwa_dnn.solve_pose(robot, reference.at(0.0)).q, or use reference.anchored(start)"
+        )
+        if refuses and getattr(reference, "quaternions", None) is not None:
             problem = f"{message}, or pass far_start=True to go there first"
             raise InvalidInputError("reference", problem, reference)
         yield f"the reference {message}"

@@ -30,7 +30,7 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.relaxed import copied
-from iiwa_dnn.control.state import BEFORE, LAST, YIELDS, ControllerState, KeptStates
+from iiwa_dnn.control.state import BEFORE, LAST, YIELDS, ControllerState
 from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
@@ -316,13 +316,13 @@ class Shield:
         if obstacles is not None:
             self.limits.append(CollisionAvoidance(obstacles, distance=distance))
         self._controllers: dict[str, Controller] = {}
-        self._kept = KeptStates(ControllerState.at_rest(robot.dof))
+        self._kept = ControllerState(robot.dof)
         self.reset()
 
     def reset(self) -> None:
         """Forget wishes, a halt and the last commands: the arm stands where it is measured next."""
         n = self.robot.dof
-        self._kept.now = ControllerState.at_rest(n, self._kept.now.begun)
+        self._kept.rest(n)
         self._state = ShieldState(np.zeros(n), np.zeros(max(n, TWIST)), np.zeros(4))
         self._state.flags[REASON] = NO_WISH
         self._asked = ("dq", JOINTS)
@@ -368,7 +368,7 @@ class Shield:
         target = {seen or self.robot.tip: self._target(controller, kind, held)}
         command = controller.step(positions, self._t, target)
         # A wish that can be had again is had at once.
-        self._kept.now.past[YIELDS] = 0.0
+        self._kept.past[YIELDS] = 0.0
         velocity = wish[: positions.size].copy() if kind == "dq" else None
         reasons = tuple(filter(None, said))
         decision = ShieldCommand(command.dq, velocity, reasons, command, self, self._t)
@@ -397,7 +397,7 @@ class Shield:
                 task = PoseTask(frame=frame, gain=0.0, weight=1.0)
                 scheme = Scheme([KineticEnergy(weight=DAMPING * DAMPING)], [task], self.limits)
             self._controllers[frame] = Controller(self.robot, scheme, dt=self.dt, policy="relax")
-            self._controllers[frame]._kept = self._kept
+            self._controllers[frame]._state = self._kept
         return self._controllers[frame]
 
     def _target(self, controller: Controller, kind: str, held: bool) -> Target:
@@ -408,7 +408,7 @@ class Shield:
         # From here a network that has nothing to do hands the aim out as it is.
         state = controller.solver.state_for(controller.layout.sizes)
         state[:] = 0.0
-        past = self._kept.now.past
+        past = self._kept.past
         aim = state[: self.robot.dof]
         approach(self._state, past, self.motion, self.dt, kind == "position", held, aim)
         target = np.zeros(TARGET_SIZE)

@@ -93,7 +93,7 @@ class ControlStep:
         has_network: Whether the network is compiled.
         samples: Whether the compiled step samples the targets: all references are compiled, and no
             part is refreshed by the targets of a step.
-        relaxed_size: Numbers of the states of relaxed programs' networks.
+        relaxed: States of the networks of relaxed programs, (`relaxed_size`,), warm starts.
     """
 
     def __init__(
@@ -117,7 +117,7 @@ class ControlStep:
         self.names = LimitNames(program, dt)
         frames = len(program.target_frames)
         self.layout = RowLayout(program.sizes, program.robot.dof, frames, self.names)
-        self.relaxed_size = relaxed_size(program.sizes)
+        self.relaxed = np.zeros(relaxed_size(program.sizes))
         self.has_network = self._add_network(solver, dt, policy == BRAKE)
         self.samples = self._add_paths(references, dt) and not program.reads_targets
         arrays = program.arrays(dt)

@@ -151,7 +151,7 @@ def _lengths(controller: Controller, model: ModelTables) -> dict[str, int]:
         "past": ROWS * dof,
         "following": ROWS * dof,
         "state": controller.solver.network.state_size(qp),
-        "relaxed": step.relaxed_size,
+        "relaxed": step.relaxed.size,
         "jacobian": 6 * dof,
         "placements": 12 * controller.robot.model.nframes,
         "inertia": dof * dof * program.needs_inertia,

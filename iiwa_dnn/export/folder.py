@@ -3,7 +3,6 @@
 import copy
 import json
 import os
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +14,7 @@ from iiwa_dnn.control.command import PLACEMENT
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import by_frame
 from iiwa_dnn.control.shield import Shield
-from iiwa_dnn.errors import MissingDependencyError
 from iiwa_dnn.export.code import code_of, filled
-from iiwa_dnn.export.load import tested
 from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Lissajous
@@ -41,8 +38,6 @@ def c99(
     controller: Controller | Shield,
     folder: str | os.PathLike[str],
     q0: ArrayLike | None = None,
-    *,
-    verify: bool = True,
 ) -> Path:
     """Write a controller, or a shield for joint velocities, as a folder of C99.
 
@@ -51,8 +46,6 @@ def c99(
         folder: The folder; files of an earlier export are overwritten.
         q0: Joint positions where the arm begins [rad], (n,): the home of a scheme without one, and
             the beginning of the vectors; None: where the controller is, or the start posture.
-        verify: Whether the C code is compiled, where there is a compiler, and compared with the
-            vectors; what comes out is in ``README.md``.
 
     Returns:
         The folder.
@@ -68,14 +61,10 @@ def c99(
     texts = code_of(twin, shield)
     rows = run(twin, start.q, STEPS)
     folder = prepare_folder(folder)
-    texts |= _texts(twin, start, texts["has_reference"])
+    texts |= _texts(twin, start, rows[0], texts["has_reference"])
     write_csv(folder / "vectors.csv", _head(twin), rows)
     for name in _FILES:
         write_text(folder / name, filled(name, texts))
-    with suppress(MissingDependencyError):
-        if verify:
-            texts["verified"] = tested(folder)
-            write_text(folder / "README.md", filled("README.md", texts))
     return folder
 
 
@@ -125,20 +114,22 @@ def _head(controller: Controller) -> list[str]:
     return ["t", *names, "action"]
 
 
-def _texts(controller: Controller, start: Configuration, has_reference: bool) -> dict[str, Any]:
-    """Return the texts of the templates that are about the run and the settings."""
+def _texts(
+    controller: Controller, start: Configuration, first: Vector, has_reference: bool
+) -> dict[str, Any]:
+    """Return the texts that are about the settings and a run, whose first row is given."""
     robot = controller.robot
     tip = controller.program.target_frames[0]
     limits = np.where(robot.dq_max < np.inf, robot.dq_max, 1.0)
     settings = _settings(controller, tip)
     declared = filled("target.h", {"reference": json.dumps(settings["reference"])})
-    targets = run(controller, start.q, 1)[0, 1 + robot.dof :]
+    targets = first[1 + robot.dof : -1 - robot.dof]
     return {
         "steps": STEPS,
         "velocity_limits": _numbers(limits),
         "tolerance": f"{10.0 * controller.solver.tol:g}",
         "q0": _numbers(start.q),
-        "target": _numbers(targets[: 18 * len(controller.program.target_frames)]),
+        "target": _numbers(targets),
         "tip": PLACEMENT * robot.frame_id(tip) + 9,
         "tip_name": tip,
         "sample": "        controller_target(&c, k * CONTROLLER_DT, target);\n" * has_reference,
@@ -147,7 +138,6 @@ def _texts(controller: Controller, start: Configuration, has_reference: bool) ->
         "target_declaration": declared * has_reference,
         "settings": json.dumps(settings, indent=2),
         "what_systems": "linear systems" if controller.mode == "converged" else "sub-steps",
-        "verified": "not yet: `make test`",
     }
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import os
 import re
-import subprocess
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -115,33 +114,14 @@ def load(folder: str | os.PathLike[str], flags: Sequence[str] = FLAGS) -> Export
         raise FileError(folder / "controller.h", one_line(error)) from error
     with tempfile.TemporaryDirectory() as place:
         library = Path(place) / "controller.so"
-        _compile((*flags, "-shared", "-fPIC"), folder, ["controller.c"], library)
+        try:
+            run_compiler([*flags, "-shared", "-fPIC"], [folder / "controller.c"], library)
+        except LookupError as error:
+            raise MissingDependencyError("a C compiler", str(error.args[0])) from error
+        except RuntimeError as error:
+            raise FileError(folder / "controller.c", str(error)) from error
         # The system keeps the file as long as it is loaded.
         return ExportedController(ctypes.CDLL(str(library)), header)
-
-
-def tested(folder: Path) -> str:
-    """Compile and run the test of an exported controller; return what it prints.
-
-    Raises:
-        FileError: The test does not compile.
-        MissingDependencyError: There is no C compiler.
-    """
-    with tempfile.TemporaryDirectory() as place:
-        program = Path(place) / "test_controller"
-        _compile(FLAGS, folder, ["test_controller.c", "controller.c"], program)
-        words = [str(program), str(folder / "vectors.csv")]
-        said = subprocess.run(words, capture_output=True, text=True, check=False).stdout
-        return f"{said.strip()} ({' '.join(FLAGS)})"
-
-
-def _compile(flags: Sequence[str], folder: Path, names: Sequence[str], output: Path) -> None:
-    try:
-        run_compiler(flags, [folder / name for name in names], output)
-    except LookupError as error:
-        raise MissingDependencyError("a C compiler", str(error.args[0])) from error
-    except RuntimeError as error:
-        raise FileError(folder / names[-1], str(error)) from error
 
 
 def _pointer(array: Vector) -> ctypes.c_void_p:

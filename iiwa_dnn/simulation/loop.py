@@ -140,7 +140,7 @@ class Loop:
         """Let the plant follow a command (n,) [rad/s], unless a policy has stopped the run."""
         command = planned.commands[0]
         if planned.action is Action.STOP:
-            self.controller.halt(command)
+            self.controller.halt()
             if not command.dq.any():
                 return planned._replace(dq=np.zeros_like(dq), ends=True)
         moved = self.plant.move(dq)

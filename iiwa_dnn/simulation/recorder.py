@@ -146,13 +146,14 @@ class Recorder:
             for name, array in self.arrays.items()
         }
 
-    def stop_reason(self, k: int) -> str:
-        """Describe the limits that stood in the way at step k, at which a policy stopped."""
-        codes = self.arrays["blocking"][k]
+    def stop_reason(self) -> str:
+        """Describe the limits that stood in the way when a policy stopped the arm."""
+        stops = self._array("action") == Action.STOP
+        k = int(stops.argmax())
         none = np.zeros((k + 1, len(self._settings["rows"])))
         rows = self.arrays.get("blocking_rows", none)[k]
-        against = ", ".join(map(describe, in_the_way(self._settings, codes, rows)))
-        return f", against {against}" if against else ""
+        against = in_the_way(self._settings, self._array("blocking")[k], rows)
+        return f", against {', '.join(map(describe, against))}" if against else ""
 
     def _array(self, name: str, **sizes: int) -> NDArray[Any]:
         """Return a column, allocated when it is first asked for."""

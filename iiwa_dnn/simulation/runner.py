@@ -186,7 +186,7 @@ def _duration(reference: References | None, dt: float, duration: float | None) -
 def _anchor(controller: Controller, start: Configuration, refuses: bool) -> None:
     """Give the scheme its home; warn of a far start, or refuse a path of poses that has one."""
     controller.anchor(start)
-    controller.warn_if_far(start, 0.0, 4, refuses=refuses)
+    controller.warn_of_start(start, 0.0, own=True, stacklevel=4, refuses=refuses)
 
 
 def _settings(controller: Controller, start: Configuration, duration: float) -> dict[str, Any]:
@@ -235,7 +235,7 @@ def _status(recorder: Recorder, controller: Controller, fault: str | None) -> st
     where = f"stopped at step {k} (t = {k * controller.dt:g} s)"
     if fault is not None:
         return f"{where}: {fault}"
-    against = recorder.stop_reason(k)
+    against = recorder.stop_reason()
     if controller.mode == "continuous" and not against:
         return f"{where}: the network diverged: take a smaller dt, larger rho or more substeps"
     return f"{where}: no solution{against}"

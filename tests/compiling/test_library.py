@@ -18,7 +18,6 @@ import iiwa_dnn
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import paper_robot
 from iiwa_dnn.networks.integrators.implicit import settle
-from iiwa_dnn.qp.residuals import residuals_of
 from iiwa_dnn.references.base import enter_path
 from iiwa_dnn.references.shapes import heart_path
 from iiwa_dnn.schemes.parts import enter_limit
@@ -131,13 +130,6 @@ def test_a_path_is_entered_from_python_and_by_two_threads() -> None:
         thread.join()
     assert len(found) == 2000
     assert all(target.tobytes() == expected.tobytes() for target in found)
-
-
-def test_a_wrong_argument_of_a_kernel_is_an_error() -> None:
-    with pytest.raises(TypeError, match="takes 5 arguments, not 1"):
-        residuals_of(np.zeros(3))  # type: ignore[call-arg]
-    with pytest.raises(TypeError, match="is no array of float64"):
-        residuals_of([0.0], 1, 0, 0, np.zeros(2))  # type: ignore[arg-type]
 
 
 RUNS = """

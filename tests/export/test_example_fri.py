@@ -22,29 +22,21 @@ from iiwa_dnn.control.controller import Controller
 class Robot(threading.Thread):
     """A robot at the paper's start that waits for its client's answers, and what it was told."""
 
-    def __init__(self, port, observe):
+    def __init__(self, periods):
         super().__init__(daemon=True)
-        self.port = port
         self.commanded = []
         self.states = []
-        self.observe = observe
+        self.periods = periods
         self.controller = FriController(paper_robot(), paper_start().q, 5e-3)
 
     def run(self):
-        serve(self.controller, self.port, self.note)
+        serve(self.controller, 30200, self.note)  # KUKA's port is fixed
 
     def note(self, controller):
         self.commanded.append(controller.commanded)
         self.states.append(controller.state.name)
-        self.observe(controller)
-
-    def __enter__(self):
-        self.start()
-        return self
-
-    def __exit__(self, *error):
-        self.controller.end(self.controller.fault)
-        self.join(5.0)
+        if self.states.count("COMMANDING_ACTIVE") == self.periods:
+            controller.end()
 
 
 # Not as a skipped test: with CI=true that is a failure, and KUKA's SDK cannot be downloaded there.
@@ -76,14 +68,12 @@ if "FRI_SDK" in os.environ:
         return program
 
     def run_against_robot(program, periods):
-        """Commanded positions while commands are followed, (periods, 7); KUKA's port is fixed."""
-
-        def end(controller):
-            if robot.states.count("COMMANDING_ACTIVE") == periods:
-                controller.end()
-
-        with Robot(30200, end) as robot:
-            finished = subprocess.run([program], capture_output=True, text=True, timeout=60)
+        """Commanded positions while commands are followed, (periods, 7)."""
+        robot = Robot(periods)
+        robot.start()
+        finished = subprocess.run([program], capture_output=True, text=True, timeout=60)
+        robot.controller.end(robot.controller.fault)
+        robot.join(5.0)
         assert robot.controller.fault is None
         begun = robot.states.index("COMMANDING_ACTIVE")
         return np.array(robot.commanded[begun:]), finished

@@ -23,7 +23,7 @@ def test_the_c_of_a_shield_gives_its_commands(
 ) -> None:
     """Wishes that are held, jump, fall silent for longer than the timeout, and are no numbers."""
     shield = Shield(robot, DT, obstacles, timeout=0.02)
-    export.c99(shield, tmp_path, verify=False)
+    export.c99(shield, tmp_path)
     exported = export.load(tmp_path)
     random = np.random.default_rng(0)
     q = START
@@ -46,7 +46,7 @@ def test_the_c_of_a_shield_gives_its_commands(
 
 def test_a_halt_in_c_lasts(tmp_path: Path) -> None:
     shield = Shield(SMOOTH, DT)
-    export.c99(shield, tmp_path, verify=False)
+    export.c99(shield, tmp_path)
     exported = export.load(tmp_path)
     q = START
     for _ in range(100):
