@@ -3,7 +3,7 @@
 This is the only file that knows where a number lies in a row.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -118,14 +118,14 @@ class RowLayout:
         width: Length of a row.
         columns: Columns by the names of `RowViews`.
         dof: Number of joints.
-        names: Names of the limits; None where nobody asks for them.
+        names: Names of the limits, `LimitNames`; None where nobody asks for them.
     """
 
     def __init__(
         self, sizes: Sizes, dof: int, frames: int, names: LimitNames | None = None
     ) -> None:
         """Lay out rows for programs of these sizes, and a number of tracked frames."""
-        self.names = names
+        self.names: Any = names
         self.sizes = sizes
         self.dof = dof
         ends = row_ends(*sizes, dof)
@@ -141,25 +141,23 @@ class RowLayout:
         """Return the targets of a row, (k, 18)."""
         return row[self.columns["targets"]].reshape(-1, TARGET_SIZE)
 
-    def bound_multipliers(self, rows: Matrix, tol: float) -> Matrix:
-        """Return the multipliers of the joints' active bounds, (..., dof), as `Solution.z_box`.
+    def multipliers(self, rows: Matrix, tol: float) -> tuple[Matrix, Matrix]:
+        """Return the multipliers of active bounds, (..., dof), and inequality rows, (..., m).
 
-        A bound or row is active where its multiplier is above the tolerance `tol` and its part of
-        the duality gap, multiplier times slack, is not; above one, the slack itself. Without a
-        smaller multiplier the residuals were still within the tolerance, and in continuous mode one
-        that is left from earlier takes a while to decay.
+        They are those of `Solution.z_box` and `Solution.z`, 0 where none is active: where the
+        multiplier is not above the tolerance `tol`, or its part of the duality gap is, multiplier
+        times slack; above one, the slack itself. Without a smaller multiplier the residuals were
+        still within the tolerance, and in continuous mode one that is left from earlier takes a
+        while to decay.
         """
-        n, _, _ = self.sizes
-        point = self.view(rows, "point")
-        multipliers = point[..., -n:]
-        bounds = self.view(rows, "program")[..., -2 * n :]
-        nearest = np.where(multipliers > 0.0, bounds[..., n:], bounds[..., :n])
-        return _active(multipliers, np.abs(nearest - point[..., :n]), tol)[..., : self.dof]
-
-    def row_multipliers(self, rows: Matrix, tol: float) -> Matrix:
-        """Return the multipliers of the active inequality rows, (..., m), as `Solution.z`."""
         n, m, p = self.sizes
-        return _active(self.view(rows, "point")[..., n + p : n + p + m], self._slacks(rows), tol)
+        point = self.view(rows, "point")
+        of_bounds = point[..., -n:]
+        of_rows = point[..., n + p : n + p + m]
+        bounds = self.view(rows, "program")[..., -2 * n :]
+        nearest = np.where(of_bounds > 0.0, bounds[..., n:], bounds[..., :n])
+        at_bounds = _active(of_bounds, np.abs(nearest - point[..., :n]), tol)
+        return at_bounds[..., : self.dof], _active(of_rows, self._slacks(rows), tol)
 
     def excess(self, rows: Matrix) -> Vector:
         """Compute by how much commands are beyond the bounds of their steps [rad/s], (k,).
@@ -172,10 +170,10 @@ class RowLayout:
         """
         dq = self.view(rows, "dq")
         lower, upper = np.split(self.view(rows, "bounds"), 2, axis=1)
-        excess = np.maximum(lower - dq, dq - upper).max(axis=1, initial=0.0)
-        of_rows = (-self._slacks(rows)).max(axis=1, initial=0.0)
-        free = self.view(rows, "decision")[:, 3] < ProgramKind.HELD
-        return np.where(free, np.maximum(excess, of_rows), excess)
+        free = self.view(rows, "decision")[:, 3:] < ProgramKind.HELD
+        of_rows = np.where(free, -self._slacks(rows), 0.0)
+        excess: Vector = np.hstack([lower - dq, dq - upper, of_rows]).max(axis=1, initial=0.0)
+        return excess
 
     def _slacks(self, rows: Matrix) -> Matrix:
         """Compute h - G x at the answers x of rows (..., width), (..., m)."""
@@ -222,27 +220,17 @@ class Command:
         return float(self._part("decision")[1])
 
     @property
-    def sides(self) -> Vector:
-        """Bounds that stood in the way, (n,): 1 upper, -1 lower, 0 neither; a view."""
-        return self._part("blocking")[: self._layout.sizes[0]]
-
-    @property
-    def rows(self) -> Vector:
-        """Inequality rows that stood in the way, (m,): 1 or 0; a view."""
-        return self._part("blocking")[self._layout.sizes[0] :]
+    def blocking(self) -> Vector:
+        """Bounds and rows that stood in the way, as in `RowViews`, (n + m,), a view."""
+        return self._part("blocking")
 
     @property
     def against(self) -> tuple[str, ...]:
         """Bounds and rows that keep the command from what the tasks and the cost ask, in words."""
-        names = self._layout.names
-        if names is None:
-            return ()
-        sides = self.sides
-        rows = self.rows
+        sides, rows = np.split(self.blocking, [self._layout.sizes[0]])
         if self.action is Action.NONE:
-            sides = self._layout.bound_multipliers(self.row, ACTIVE)
-            rows = self._layout.row_multipliers(self.row, ACTIVE)
-        return tuple(names.in_words(self.bounds, sides, rows, self.past))
+            sides, rows = self._layout.multipliers(self.row, ACTIVE)
+        return tuple(self._layout.names.in_words(self.bounds, sides, rows, self.past))
 
     @property
     def qp(self) -> QP:
@@ -301,20 +289,16 @@ class Command:
         Then the arm is on its way there, or noise asks for more than it may follow; a command that
         is neither `ok` nor limited cannot do it.
         """
-        names = self._layout.names
-        if self.action is Action.NONE or names is None or self.rows.any():
+        if self.action is Action.NONE or self.blocking[self._layout.sizes[0] :].any():
             return False
-        codes = np.abs(names.codes(self.bounds, self.sides, self.past))
+        codes = np.abs(self._layout.names.codes(self.bounds, self.blocking, self.past))
         return bool(codes.any()) and bool((codes[codes > 0] >= ACCELERATION).all())
 
     def __repr__(self) -> str:
         dq = np.array2string(self.dq, precision=4, separator=", ")
-        words = _WORDS[self.action]
-        if self.action is Action.NONE and not self.ok:
-            words = "not settled"
-        against = ", ".join(self.against)
-        if against and self.action is not Action.NONE:
-            words += f", against {against}"
+        words = _WORDS[self.action] if self.action or self.ok else "not settled"
+        if self.action and self.against:
+            words += f", against {', '.join(self.against)}"
         return f"<Command dq = {dq} rad/s, {words}; ok = {self.ok}>"
 
 

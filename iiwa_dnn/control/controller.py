@@ -72,14 +72,6 @@ class Controller:
         delay: Time by which the reference's clock is behind, since a policy slowed it [s].
     """
 
-    robot: Robot
-    scheme: Scheme
-    reference: References | None
-    dt: float
-    mode: Mode
-    policy: Policy
-    solver: DNNSolver
-
     def __init__(
         self,
         robot: Robot,
@@ -141,10 +133,6 @@ class Controller:
     def delay(self) -> float:
         """Time by which the reference's clock is behind [s]."""
         return float(self._state.past[DELAY, 0])
-
-    @delay.setter
-    def delay(self, seconds: float) -> None:
-        self._state.past[DELAY, 0] = seconds
 
     def step(
         self,
@@ -249,8 +237,8 @@ class Controller:
             q: Joint positions [rad], (n,).
             dq: Velocity that the program's bounds and rows allow [rad/s], (n,).
         """
-        step = self._laid_out()
-        if step.yields or not step.plan.yielding.stop:
+        step = self.control_step
+        if step.plan.yielding.limits.size or not step.plan.yielding.stop:
             return 1.0
         step.program.kinematics.update(q)
         past = np.zeros_like(self._state.past)
@@ -272,10 +260,11 @@ class Controller:
         self.anchor(start)
         if not begun:
             self.warn_of_start(start, t, own, stacklevel=5)
-        return self._laid_out()
+        return self.control_step
 
-    def _laid_out(self) -> ControlStep:
-        """Return the control step, laid out anew after a change of the settings."""
+    @property
+    def control_step(self) -> ControlStep:
+        """The control step, laid out anew after a change of the settings."""
         step = self._derived
         if step is None:
             program = self.scheme.program(self.robot)
@@ -286,29 +275,19 @@ class Controller:
         return step
 
     @property
-    def begun(self) -> bool:
-        """Test whether a first step was taken."""
-        return self._state.begun
-
-    @property
     def positions(self) -> Vector:
-        """Joint positions of the last step [rad], (n,), a copy."""
-        return np.array(self._state.past[Q])
-
-    @property
-    def control_step(self) -> ControlStep:
-        """The control step, laid out for scheme, references and network."""
-        return self._laid_out()
+        """Joint positions of the last step [rad], (n,); before the first the robot's start."""
+        return np.array(self._state.past[Q] if self._state.begun else self.robot.start_posture())
 
     @property
     def program(self) -> StepProgram:
         """The scheme laid out for the robot."""
-        return self._laid_out().program
+        return self.control_step.program
 
     @property
     def layout(self) -> RowLayout:
         """Columns of the commands' rows."""
-        return self._laid_out().layout
+        return self.control_step.layout
 
     @property
     def last(self) -> Vector:
@@ -367,7 +346,7 @@ class Controller:
         """
         begun = self._state.begun
         self.anchor(Configuration(self.robot, q))
-        self._laid_out()
+        self._derived = self.control_step
         self._state.begun = begun
 
     def targets(

@@ -39,6 +39,7 @@ from iiwa_dnn.schemes import (
     CollisionAvoidance,
     JointCouplingTask,
     JointLimits,
+    Limit,
     PoseTask,
     Scheme,
 )
@@ -167,16 +168,13 @@ def solve_pose(
 
 def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -> StepProgram:
     """Lay out a program whose step of 1 s is an iteration: velocities are changes of joints."""
-    limits: list[JointLimits | CollisionAvoidance] = [JointLimits(gain=1.0)]
     slowed = robot.with_limits(velocity=_STEP)
-    avoidance: CollisionAvoidance | None = None
+    limits: list[Limit] = [JointLimits(gain=1.0)]
+    if not isinstance(obstacles, CollisionAvoidance) and obstacles != ():
+        obstacles = CollisionAvoidance(obstacles)
     if isinstance(obstacles, CollisionAvoidance):
-        avoidance = obstacles
-    elif obstacles != ():
-        avoidance = CollisionAvoidance(obstacles)
-    if avoidance is not None:
-        pairs = len(avoidance.scene(slowed).pairs)
-        limits.append(replace(avoidance, gain=1.0, nearest=pairs))
+        pairs = len(obstacles.scene(slowed).pairs)
+        limits.append(replace(obstacles, gain=1.0, nearest=pairs))
     return StepProgram(slowed, Scheme([], [PoseTask(gain=1.0)], limits))
 
 

@@ -87,7 +87,6 @@ class ControlStep:
     Attributes:
         program: The scheme laid out for the robot.
         layout: Columns of the rows that are written.
-        names: Names of the limits.
         dt: Control period [s].
         plan: Arrays and settings that stay the same from step to step.
         has_network: Whether the network is compiled.
@@ -114,9 +113,9 @@ class ControlStep:
             policy: Action of a step without a solution; `BRAKE`: in continuous mode.
         """
         self.program = program
-        self.names = LimitNames(program, dt)
         frames = len(program.target_frames)
-        self.layout = RowLayout(program.sizes, program.robot.dof, frames, self.names)
+        names = LimitNames(program, dt)
+        self.layout = RowLayout(program.sizes, program.robot.dof, frames, names)
         self.relaxed = np.zeros(relaxed_size(program.sizes))
         self.has_network = self._add_network(solver, dt, policy == BRAKE)
         self.samples = self._add_paths(references, dt) and not program.reads_targets
@@ -136,16 +135,11 @@ class ControlStep:
         if program.rate_limits is not None:
             check_ranges(program.rate_limits.constants(program.robot), 1.0 / dt)
         self.dt = dt
-        self.names.dt = dt
+        self.layout.names.dt = dt
         arrays = self.plan.arrays._replace(rate=1.0 / dt)
         yielding = self.plan.yielding._replace(dt=dt)
         self.plan = self.plan._replace(arrays=arrays, yielding=yielding)
         program.constants[self._duration_at] = dt * self._duration_rate
-
-    @property
-    def yields(self) -> bool:
-        """Test whether the task yields to acceleration or jerk limits."""
-        return self.plan.yielding.limits.size > 0
 
     def _add_network(self, solver: DNNSolver, dt: float, lags: bool) -> bool:
         """Add the network's entry to the table; return whether the network is compiled."""
@@ -332,13 +326,11 @@ def sample_targets(arrays: ProgramArrays, t: float, targets: Matrix) -> None:
     for k in range(first, table.shape[0]):
         own = arrays.constants[table[k, 4] : table[k, 5]]
         target = targets[k - first]
+        base = own[: target.size]
         move = own[target.size :]
-        for i in range(target.size):
-            target[i] = own[i]
+        copied(target, base)
         enter_path(table[k, 1], t, move, target)
         if table[k, 2] != 0:
-            then = np.empty(target.size)
-            for i in range(target.size):
-                then[i] = own[i]
+            then = base.copy()
             enter_path(table[k, 1], t + period, move, then)
             set_mean_twist(target, then, period)

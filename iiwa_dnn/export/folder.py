@@ -71,9 +71,7 @@ def c99(
 def _anchored(controller: Controller, q0: ArrayLike | None) -> tuple[Controller, Configuration]:
     """Return a copy of a controller at rest in its first posture, and that posture."""
     twin = copy.copy(controller)
-    posture: ArrayLike = twin.robot.start_posture() if q0 is None else q0
-    if q0 is None and controller.begun:
-        posture = controller.positions
+    posture: ArrayLike = controller.positions if q0 is None else q0
     q = checks.finite_array("q0", posture, (twin.robot.dof,))
     start = Configuration(twin.robot, q)
     twin.reset()

@@ -133,7 +133,7 @@ class Record:
         FloatArray,
         Column(
             "Multipliers of the joint velocity bounds: positive at an upper one, negative at a "
-            "lower one, 0 at an inactive one (`RowLayout.bound_multipliers`); the decrease of the "
+            "lower one, 0 at an inactive one (`RowLayout.multipliers`); the decrease of the "
             "objective per rad/s by which the bound is relaxed",
             ("N", "n"),
         ),

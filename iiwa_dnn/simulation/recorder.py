@@ -95,9 +95,10 @@ class Recorder:
             self._done, self.layout.view(first, "placement"), self.layout.view(first, "targets")
         )
         tol = self._controller.solver.tol
+        of_bounds, of_rows = self.layout.multipliers(first, tol)
         for name, values in (
-            ("bound_multiplier", self.layout.bound_multipliers(first, tol)),
-            ("row_multiplier", self.layout.row_multipliers(first, tol)),
+            ("bound_multiplier", of_bounds),
+            ("row_multiplier", of_rows),
             ("kind", self.layout.view(first, "decision")[:, 3]),
             ("excess", self.layout.excess(first)),
         ):
@@ -175,15 +176,16 @@ class Recorder:
         if command.action is Action.NONE:
             return
         self._array("fraction")[k] = command.fraction
-        blocking = self._names.codes(command.bounds, command.sides, command.past)
-        self._array("blocking")[k] = blocking
-        if command.rows.any():
-            self._array("blocking_rows", m=command.rows.size)[k] = command.rows
+        codes = self._names.codes(command.bounds, command.blocking, command.past)
+        self._array("blocking")[k] = codes
+        rows = command.blocking[self.layout.sizes[0] :]
+        if rows.any():
+            self._array("blocking_rows", m=rows.size)[k] = rows
 
     def _add_kinds(self, k: int, command: Command) -> None:
         """Note of what kind the active bounds are in step k."""
         tol = self._controller.solver.tol
-        multipliers = self.layout.bound_multipliers(command.row, tol)
+        multipliers, _ = self.layout.multipliers(command.row, tol)
         if multipliers.any():
             qp = command.qp
             kinds = self._names.codes(np.array([qp.lb, qp.ub]), multipliers, command.past)

@@ -151,4 +151,4 @@ def test_the_excess_of_an_answer_counts_its_rows_and_a_multiplier_needs_its_boun
         layout.view(row, "decision")[:, 3] = kind
         counts = kind < ProgramKind.HELD
         np.testing.assert_allclose(layout.excess(row), 1.0 if counts else 0.0)
-    np.testing.assert_array_equal(layout.bound_multipliers(row, 1e-9), [[0.0, 3.0]])
+    np.testing.assert_array_equal(layout.multipliers(row, 1e-9)[0], [[0.0, 3.0]])

@@ -83,22 +83,17 @@ def test_a_command_says_in_words_what_it_is() -> None:
     assert repr(controller.step(PAPER_Q0, 0.0, there)).endswith("rad/s, solved; ok = True>")
 
 
-def test_targets_sampled_ahead_follow_a_changed_period_and_delay() -> None:
+def test_targets_sampled_ahead_follow_a_changed_period() -> None:
     robot = load_robot("iiwa7")
     start = Configuration(robot, robot.start_posture())
     reference = Heart().anchored(start)
     controller = Controller(robot, DoubleIndicator(), reference, dt=1e-3)
     for k in range(10):
         controller.step(start.q, k * 1e-3)
-    controller.delay = 0.5
-    late = controller.step(start.q, 0.51)
-    controller.delay, controller.dt = 0.0, 2e-3
+    controller.dt = 2e-3
     for k in range(10):
         early = controller.step(start.q, 2e-3 * k)
-    fresh = Controller(robot, DoubleIndicator(), dt=1e-3)
-    want = fresh.step(start.q, 0.0, reference.at(0.01)).dq
-    np.testing.assert_allclose(late.dq, want, rtol=0, atol=1e-7)
-    fresh.dt = 2e-3
+    fresh = Controller(robot, DoubleIndicator(), dt=2e-3)
     want = fresh.step(start.q, 0.0, reference.at(0.018)).dq
     np.testing.assert_allclose(early.dq, want, rtol=0, atol=1e-7)
 
@@ -146,8 +141,7 @@ def test_too_few_joints_for_a_pose_are_warned_of_once() -> None:
             warnings.simplefilter("always")
             controller.step(q0, 0.0)
             controller.step(q0, 1e-2)
-        expected = "5 joints cannot hold a pose: orientation='none' leaves it free"
-        assert [str(warning.message) for warning in caught] == [expected] * said
+        assert ["5 joints cannot fulfil" in str(each.message) for each in caught] == [True] * said
     # The paper's four rows have rank 3: six joints fulfil all seven rows.
     six = load_robot("iiwa7", locked=("iiwa7_joint_3",))
     with warnings.catch_warnings():
@@ -366,14 +360,12 @@ def test_the_reference_is_judged_at_the_time_of_the_first_step() -> None:
         warnings.simplefilter("error")
         again.warm_up(q)
         again.step(q, half * DT)
-    with pytest.warns(UserWarning, match=r"begins 0\.07\d* m from the tip;"):
+    with pytest.warns(UserWarning, match=r"begins 0\.07\d* m and 0 rad from"):
         Controller(paper_robot(), DoubleIndicator(), heart(2.0), dt=DT).step(PAPER_Q0, half * DT)
     elsewhere = Controller(paper_robot(), DoubleIndicator(), Circle(), dt=DT)
     elsewhere.warm_up(PAPER_Q0)
     with pytest.warns(UserWarning, match="the reference begins"):
         elsewhere.step(PAPER_Q0, 0.0)
-    with pytest.warns(UserWarning, match="the reference begins"):
-        Controller(paper_robot(), DoubleIndicator(), Circle(), dt=DT).warm_up(PAPER_Q0, 0.0)
 
 
 @pytest.mark.parametrize("mode", ["converged", "continuous"])

@@ -79,7 +79,7 @@ def test_the_scaled_program_in_closed_form(sign: float) -> None:
     assert (command.action, command.kind) == (Action.SLOW, ProgramKind.SCALED)
     assert command.fraction == pytest.approx(0.999 * 0.25, abs=1e-9)
     assert command.qp.b[0] == pytest.approx(command.fraction * 12.0 * sign, rel=1e-12)
-    assert command.sides.tolist() == [sign, sign]
+    assert command.blocking[:2].tolist() == [sign, sign]
 
 
 def test_the_scaling_factor_is_the_linear_programs() -> None:
@@ -138,8 +138,8 @@ def test_the_bounds_in_the_way_are_those_that_help_when_widened() -> None:
             wider.lb[i] -= 1e-3
             wider.ub[i] += 1e-3
             gain = linear_factor(wider) - linear_factor(qp)
-            assert (gain > 1e-8) == (command.sides[i] != 0)
-            blamed += int(command.sides[i] != 0)
+            assert (gain > 1e-8) == (command.blocking[i] != 0)
+            blamed += int(command.blocking[i] != 0)
     assert blamed > 10
 
 
@@ -164,7 +164,7 @@ def test_no_policy_goes_through_a_wall(policy: Policy, h: float) -> None:
     assert command.dq.sum() <= h + 1e-9
     assert (np.abs(command.dq) <= 1.0).all()
     np.testing.assert_array_equal(command.qp.h, [h])
-    assert command.rows.tolist() == [1]
+    assert command.blocking[-1] == 1
 
 
 @pytest.mark.parametrize(("asked", "given"), [(-0.5, -0.5), (-2.0, -2.0), (-5.0, -2.0)])
@@ -178,7 +178,7 @@ def test_a_row_that_asks_for_motion_gets_what_the_joints_can(
     part = 1.0 if asked == given else 0.999
     assert command.qp.h[0] == pytest.approx(part * given, abs=1e-8)
     assert command.dq.sum() <= part * given + 1e-8
-    assert command.rows.tolist() == [1]
+    assert command.blocking[-1] == 1
 
 
 @pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
@@ -189,7 +189,7 @@ def test_limits_that_contradict_each_other_stop_the_arm(policy: Policy) -> None:
     assert (command.action, command.kind) == (Action.STOP, ProgramKind.STOPPED)
     assert not command.dq.any()
     np.testing.assert_array_equal(command.qp.data, qp.data)  # its own program is handed out
-    assert command.rows.tolist() == [1]
+    assert command.blocking[-1] == 1
 
 
 def test_a_reference_at_rest_is_gone_to_directly() -> None:
@@ -205,7 +205,7 @@ def test_stop_is_no_velocity_and_names_the_bounds() -> None:
     assert (command.action, command.fraction) == (Action.STOP, 0.0)
     assert not command.dq.any()
     assert not command.solution.found
-    assert command.sides.tolist() == [1, 1]
+    assert command.blocking[:2].tolist() == [1, 1]
 
 
 @pytest.mark.parametrize(

@@ -169,7 +169,7 @@ def test_the_braking_motion_in_hand_is_that_of_the_last_command() -> None:
     for k in range(100):
         dq = controller.step(q, k * 4e-3, target).dq
         q = q + 4e-3 * dq
-        noted.append(controller._kept.now.past[REST, 0])
+        noted.append(controller._state.past[REST, 0])
         least.append(np.ceil(np.abs(dq / (4e-3 * ROBOT.ddq_max)).max() - 1e-9))
     np.testing.assert_array_equal(noted, least)
     assert max(noted) > 10.0

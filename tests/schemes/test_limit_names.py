@@ -58,8 +58,8 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(
             ]
         )
         names = repr(command)
-        for joint in np.flatnonzero(command.sides):
-            bound = command.bounds[int(command.sides[joint] > 0), joint]
+        for joint in np.flatnonzero(command.blocking[: command.dq.size]):
+            bound = command.bounds[int(command.blocking[joint] > 0), joint]
             if abs(command.dq[joint] - bound) > 1e-9:
                 continue
             word = names.split(f"joint {joint + 1} ")[1].split()[1]

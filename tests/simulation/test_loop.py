@@ -307,7 +307,7 @@ def test_a_kinetic_index_of_ones_own_is_recorded() -> None:
 
 
 def test_a_reference_that_was_not_anchored_is_told_at_once() -> None:
-    with pytest.warns(UserWarning, match=r"begins 0\.\d+ m from the tip.*anchored"):
+    with pytest.warns(UserWarning, match=r"begins 0\.\d+ m and .* rad from.*anchored"):
         run(reference=Heart(), duration=0.002)
 
 
@@ -318,9 +318,8 @@ def test_a_path_of_poses_that_begins_elsewhere_is_refused_unless_asked_for() -> 
     turns = np.tile(pin.Quaternion(start.rotation).coeffs()[[3, 0, 1, 2]], (2, 1))
     path = Waypoints([0.0, 0.2], points, quaternions=turns)
     arguments = {"dt": 1e-3, "duration": 0.05, "check": CrossCheck(())}
-    with pytest.raises(InvalidInputError, match=r"begins 0\.141 m.*solve_pose.*far_start") as info:
+    with pytest.raises(InvalidInputError, match=r"begins 0\.141 m.*solve_pose.*far_start"):
         simulate(robot, DoubleIndicator(), path, start.q, **arguments)
-    assert "anchored" not in str(info.value)
     with pytest.warns(UserWarning, match="solve_pose"):
         record = simulate(robot, DoubleIndicator(), path, start.q, far_start=True, **arguments)
     assert record.steps == 50

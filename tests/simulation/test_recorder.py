@@ -59,8 +59,9 @@ def test_an_active_limit_has_a_multiplier_and_no_slack() -> None:
         row = np.zeros(layout.width)
         layout.view(row, "program")[:] = qp.data
         layout.view(row, "point")[:] = point
-        assert_array_equal(layout.row_multipliers(row, 1e-9), active_rows)
-        assert_array_equal(layout.bound_multipliers(row[np.newaxis], 1e-9), [active_bounds])
+        of_bounds, of_rows = layout.multipliers(row, 1e-9)
+        assert_array_equal(of_rows, active_rows)
+        assert_array_equal(of_bounds, active_bounds)
 
 
 def test_too_quick_a_path_in_continuous_mode_names_the_limits_that_the_arm_is_at() -> None:
