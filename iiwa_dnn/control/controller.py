@@ -121,7 +121,7 @@ class Controller:
             self._state.rest(value.dof)
 
     def __getstate__(self) -> dict[str, Any]:
-        own = {"_state": copy.deepcopy(self._state), "solver": copy.copy(self.solver)}
+        own = {"_state": copy.deepcopy(self._state), "solver": copy.deepcopy(self.solver)}
         return {**vars(self), **own, "_lock": None, "_derived": None}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -125,7 +125,7 @@ def far_targets(
         if distance <= FAR and angle <= TURNED:
             continue
         message = (
-            f"begins {distance:.3g} m and {angle:.3g} rad from {name}; start at "
+            f"begins {distance:.3g} m and {angle:.3f} rad from {name}; start at "
             "iiwa_dnn.solve_pose(robot, reference.at(0.0)).q, or use reference.anchored(start)"
         )
         if refuses and getattr(reference, "quaternions", None) is not None:

@@ -37,9 +37,6 @@ from iiwa_dnn import (
     Target,
     load_robot,
 )  # fmt: skip
-from iiwa_dnn.control.command import ADVANCED, NOT_FINITE, NOT_SETTLED, SOLVED
-from iiwa_dnn.control.step import status_of
-from iiwa_dnn.networks.integrators.base import DURATION, TOLERANCE
 
 SCHEME = DoubleIndicator(home=PAPER_Q0)
 
@@ -131,22 +128,19 @@ def test_a_network_that_lags_says_that_it_keeps_bounds_alone() -> None:
         controller.step(PAPER_Q0, 0.0, near_target(np.array(PAPER_Q0), 0, size=2e-3))
 
 
-def test_too_few_joints_for_a_pose_are_warned_of_once() -> None:
-    robot = load_robot("iiwa7", locked=("iiwa7_joint_3", "iiwa7_joint_5"))
-    q0 = robot.start_posture()
-    circle = Circle(0.01).anchored(Configuration(robot, q0))
-    for orientation, said in (("so3", 1), ("block", 1), ("none", 0)):
+@pytest.mark.parametrize(("orientation", "said"), [("so3", 1), ("block", 1), ("none", 0)])
+def test_too_few_joints_for_a_pose_are_warned_of_once(orientation: Any, said: int) -> None:
+    # The paper's four rows have rank 3: six joints fulfil all seven rows.
+    for locked, times in ((("iiwa7_joint_3", "iiwa7_joint_5"), said), (("iiwa7_joint_3",), 0)):
+        robot = load_robot("iiwa7", locked=locked)
+        q0 = robot.start_posture()
+        circle = Circle(0.01).anchored(Configuration(robot, q0))
         controller = Controller(robot, DoubleIndicator(orientation=orientation), circle, dt=1e-2)
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             controller.step(q0, 0.0)
             controller.step(q0, 1e-2)
-        assert ["5 joints cannot fulfil" in str(each.message) for each in caught] == [True] * said
-    # The paper's four rows have rank 3: six joints fulfil all seven rows.
-    six = load_robot("iiwa7", locked=("iiwa7_joint_3",))
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        Controller(six, DoubleIndicator(orientation="block"), circle).warm_up(six.start_posture())
+        assert [str(each.message)[:23] for each in caught] == ["5 joints cannot fulfil "] * times
 
 
 SCHEMES: dict[str, Scheme] = {
@@ -197,18 +191,6 @@ def test_a_compiled_step_is_its_parts_one_after_the_other(
         np.testing.assert_array_equal(one.placement[9:], conf.position)
         np.testing.assert_array_equal(one.targets[0], target.data)
     np.testing.assert_allclose(compiled.solver.state, asked.solver.state, rtol=0, atol=1e-9)
-
-
-def test_compiled_code_answers_every_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    controller = Controller(paper_robot(), SCHEMES["so3"], heart(), dt=1e-4)
-    solved = []
-    ask = DNNSolver.solve
-    monkeypatch.setattr(
-        DNNSolver, "solve", lambda self, qp: solved.append(qp) or ask(self, qp)
-    )  # fmt: skip
-    for k in range(5):
-        assert controller.step(PAPER_Q0, 1e-4 * k).ok
-    assert not solved
 
 
 class Fixed(DNNSolver):
@@ -278,38 +260,15 @@ def test_an_answer_that_diverged_says_so() -> None:
     assert command.solution.status is Status.NOT_FINITE
 
 
-def test_a_stiff_program_takes_shorter_sub_steps_in_compiled_code(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_stiff_program_takes_shorter_sub_steps() -> None:
     # P = 400 I: explicit Euler is stable up to 2 / 400 of rho.
-    controller = Controller(
-        paper_robot(), Scheme([KineticEnergy(weight=400.0)], [PositionTask()]), heart(),
-        dt=1e-4, mode="continuous",
-    )  # fmt: skip
-    advanced = []
-    ask = DNNSolver.advance
-    monkeypatch.setattr(
-        DNNSolver, "advance", lambda self, *args: advanced.append(args) or ask(self, *args)
-    )
+    stiff = Scheme([KineticEnergy(weight=400.0)], [PositionTask()])
+    controller = Controller(paper_robot(), stiff, heart(), dt=1e-4, mode="continuous")
     commands = [controller.step(PAPER_Q0, 1e-4 * k) for k in range(4)]
-    assert not advanced
     assert all(command.ok for command in commands)
     ahead = 1e-4 / controller.solver.network.rho
     assert commands[-1].solution.iterations >= ahead * 400.0 / 2.0
     assert commands[-1].solution.network_time == pytest.approx(ahead)
-
-
-@pytest.mark.parametrize("duration", [0.0, 1.0])
-def test_no_residual_may_be_infinite(duration: float) -> None:
-    own = np.zeros(DURATION + 1)
-    own[TOLERANCE] = 1e-9
-    own[DURATION] = duration
-    state = np.zeros(2)
-    assert status_of(0.0, 0.0, 0.0, own, state) == (ADVANCED if duration else SOLVED)
-    assert status_of(1.0, 1.0, 1.0, own, state) == (ADVANCED if duration else NOT_SETTLED)
-    for wrong in (np.inf, np.nan):
-        for residuals in ((wrong, 0.0, 0.0), (0.0, wrong, 0.0), (0.0, 0.0, wrong)):
-            assert status_of(*residuals, own, state) == NOT_FINITE
 
 
 DT = 1e-3
@@ -350,18 +309,13 @@ def test_warm_up_at_a_posture_leaves_nothing_to_be_laid_out() -> None:
 
 def test_the_reference_is_judged_at_the_time_of_the_first_step() -> None:
     """A run that is taken up later begins where the path is then, wherever it began."""
-    controller = Controller(paper_robot(), DoubleIndicator(), heart(2.0), dt=DT)
-    q = np.array(PAPER_Q0)
     half = round(1.0 / DT)  # 7.6 cm from where the path began
-    for k in range(half):
-        q = q + DT * controller.step(q, k * DT).dq
-    again = Controller(paper_robot(), DoubleIndicator(), heart(2.0), dt=DT)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        again.warm_up(q)
-        again.step(q, half * DT)
-    with pytest.warns(UserWarning, match=r"begins 0\.07\d* m and 0 rad from"):
-        Controller(paper_robot(), DoubleIndicator(), heart(2.0), dt=DT).step(PAPER_Q0, half * DT)
+    q = loop(Controller(paper_robot(), DoubleIndicator(), heart(2.0), dt=DT), half)[-1]
+    again, late = (Controller(paper_robot(), DoubleIndicator(), heart(2.0), dt=DT) for _ in "12")
+    again.warm_up(q)
+    again.step(q, half * DT)  # a warning would be an error
+    with pytest.warns(UserWarning, match=r"begins 0\.07\d* m and 0\.000 rad from"):
+        late.step(PAPER_Q0, half * DT)
     elsewhere = Controller(paper_robot(), DoubleIndicator(), Circle(), dt=DT)
     elsewhere.warm_up(PAPER_Q0)
     with pytest.warns(UserWarning, match="the reference begins"):
@@ -379,7 +333,7 @@ def test_a_loop_that_jitters_says_the_period_of_each_step(mode) -> None:
     t = 0.0
     for period in DT * random.uniform(0.5, 1.5, 300):
         anew = Controller(paper_robot(), scheme, heart(), dt=period, mode=mode)
-        anew.solver = copy.copy(told.solver)
+        anew.solver = copy.deepcopy(told.solver)
         command = told.step(q, t, dt=period)
         expected = anew.step(q, t)
         np.testing.assert_allclose(command.dq, expected.dq, rtol=0, atol=1e-12)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -15,6 +17,7 @@ from iiwa_dnn import (
     HalfSpace,
     JerkLimits,
     Limit,
+    Robot,
     Sphere,
     Target,
     load_robot,
@@ -111,63 +114,81 @@ def test_the_way_along_a_motion_is_the_sum_of_its_velocities(cubic: bool) -> Non
         assert way_along(motion, x, b, M, 1e-3) == pytest.approx(ways[-1], abs=1e-12)
 
 
-def pressed(
-    limits: tuple[Limit, ...], obstacle: HalfSpace | Sphere, steps: int, dt: float
-) -> tuple[np.ndarray, float, float]:
-    """Press the arm against an obstacle, then ask it back; joint positions and least distances."""
-    start = Configuration(ROBOT, ROBOT.start_posture())
-    avoidance = CollisionAvoidance([obstacle], distance=0.02, self_collision=False)
-    scene = avoidance.scene(ROBOT)
-    scheme = DoubleIndicator(orientation="none", extra_limits=(*limits, avoidance))
-    controller = Controller(ROBOT, scheme, dt=dt)
-    q = start.q
+START = Configuration(ROBOT, ROBOT.start_posture())
+
+
+def beside(distance: float, *obstacles: Any) -> CollisionAvoidance:
+    return CollisionAvoidance(obstacles, distance=distance, self_collision=False)
+
+
+def driven(
+    parts: tuple[Limit, ...],
+    target: Any,
+    steps: int,
+    dt: float = 4e-3,
+    q: Any = START.q,
+    robot: Robot = ROBOT,
+) -> tuple[np.ndarray, float]:
+    """Joint positions of an arm on its way to a target, or one a step, and what is left [m]."""
+    scheme = DoubleIndicator(orientation="none", extra_limits=parts)
+    controller = Controller(robot, scheme, dt=dt)
     path = [q]
     for k in range(steps):
-        ahead = 2.0 if k < steps // 3 else 0.0
-        target = Target(start.position + [ahead, 0.0, 0.0], start.rotation)
-        command = controller.step(q, k * dt, target)
+        goal = target(k) if callable(target) else target
+        command = controller.step(path[-1], k * dt, goal)
         # A braking motion leaves the bounds of a step: the program in the record has them wider.
         assert command.solution.residuals.primal < 1e-8
-        q = q + dt * command.dq
-        path.append(q)
-    found = np.array(path)
-    half = 0.5 * (found[1:] + found[:-1])
-    distances = [scene.nearest(each, np.zeros(len(each)))[0].min() for each in (found, half)]
-    left = np.linalg.norm(Configuration(ROBOT, q).position - start.position)
-    return found, min(distances), left
+        path.append(path[-1] + dt * command.dq)
+    left = np.linalg.norm(Configuration(robot, path[-1]).position - goal.position)
+    assert breaches_of(np.array(path), robot, dt, parts) == []
+    return np.array(path), float(left)
 
 
-@pytest.mark.parametrize("limits", [ACCELERATION, JERK], ids=["acceleration", "jerk"])
-@pytest.mark.parametrize("kind", ["wall", "ball"])
+def breaches_of(path: np.ndarray, robot: Robot, dt: float, parts: tuple[Limit, ...]) -> list[Any]:
+    jerk = 500.0 if any(isinstance(part, JerkLimits) for part in parts) else np.inf
+    kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, jerk)
+    return breaches(path, dt, *kinds)
+
+
+def distances(avoidance: CollisionAvoidance, path: np.ndarray, robot: Robot = ROBOT) -> np.ndarray:
+    return avoidance.scene(robot).nearest(path, np.zeros(len(path)))[0]
+
+
+def tip_at(*away: float) -> Target:
+    return Target(START.position + away, START.rotation)
+
+
+WALL = HalfSpace([-1, 0, 0], float(-START.position[0] - 0.35))
+BALL = Sphere(START.position + [0.4, 0.05, 0.0], 0.15)
+BOTH = pytest.mark.parametrize("limits", [ACCELERATION, JERK], ids=["acceleration", "jerk"])
+
+
+@BOTH
+@pytest.mark.parametrize("obstacle", [WALL, BALL], ids=["wall", "ball"])
 def test_an_arm_pressed_against_an_obstacle_stays_clear_and_comes_back(
-    limits: tuple[Limit, ...], kind: str
+    limits: tuple[Limit, ...], obstacle: Any
 ) -> None:
     # The wall was entered by 30 mm, and the arm stayed there for good.
-    tip = Configuration(ROBOT, ROBOT.start_posture()).position
-    wall = HalfSpace([-1, 0, 0], float(-tip[0] - 0.35))
-    obstacle = wall if kind == "wall" else Sphere(tip + [0.4, 0.05, 0.0], 0.15)
-    path, least, left = pressed(limits, obstacle, 1800, 4e-3)
-    assert least >= 0.02 - 1e-9
-    assert least < 0.03  # it was near
+    avoidance = beside(0.02, obstacle)
+    steps = 1800
+    path, left = driven(
+        (*limits, avoidance), lambda k: tip_at(2.0 * (k < steps // 3), 0.0, 0.0), steps
+    )
+    between = 0.5 * (path[1:] + path[:-1])
+    least = distances(avoidance, np.vstack([path, between])).min()
+    assert 0.02 - 1e-9 <= least < 0.03
     assert left < 1e-3
-    jerk = 500.0 if len(limits) == 2 else np.inf
-    robot = (ROBOT.q_lower, ROBOT.q_upper, ROBOT.dq_max, ROBOT.ddq_max)
-    assert breaches(path, 4e-3, *robot, jerk) == []
 
 
 def test_the_braking_motion_in_hand_is_that_of_the_last_command() -> None:
     """The state notes its periods, the least that the accelerations allow from the command."""
-    start = Configuration(ROBOT, ROBOT.start_posture())
-    wall = HalfSpace([-1, 0, 0], float(-start.position[0] - 0.35))
-    avoidance = CollisionAvoidance([wall], distance=0.02, self_collision=False)
-    scheme = DoubleIndicator(orientation="none", extra_limits=(*ACCELERATION, avoidance))
+    scheme = DoubleIndicator(orientation="none", extra_limits=(*ACCELERATION, beside(0.02, WALL)))
     controller = Controller(ROBOT, scheme, dt=4e-3)
-    target = Target(start.position + [2.0, 0.0, 0.0], start.rotation)
-    q = start.q
+    q = START.q
     noted = []
     least = []
     for k in range(100):
-        dq = controller.step(q, k * 4e-3, target).dq
+        dq = controller.step(q, k * 4e-3, tip_at(2.0, 0.0, 0.0)).dq
         q = q + 4e-3 * dq
         noted.append(controller._state.past[REST, 0])
         least.append(np.ceil(np.abs(dq / (4e-3 * ROBOT.ddq_max)).max() - 1e-9))
@@ -175,81 +196,50 @@ def test_the_braking_motion_in_hand_is_that_of_the_last_command() -> None:
     assert max(noted) > 10.0
 
 
-@pytest.mark.parametrize("limits", [ACCELERATION, JERK], ids=["acceleration", "jerk"])
+@BOTH
 def test_an_arm_that_obstacles_came_upon_goes_away_from_them(limits: tuple[Limit, ...]) -> None:
     # A capsule that had come to a resting arm kept it there for good.
-    start = Configuration(ROBOT, ROBOT.start_posture())
-    balls = [Sphere(start.position + [x, 0.0, z], 0.1) for x, z in ((0.3, 0.0), (0.28, -0.12))]
-    bare = CollisionAvoidance(balls, distance=0.02, self_collision=False)
-    scene = bare.scene(ROBOT)
-    near = float(scene.nearest(start.q[None], np.zeros(1))[0][0])
-    avoidance = CollisionAvoidance(balls, distance=near + 5e-3, self_collision=False)
-    scheme = DoubleIndicator(orientation="none", extra_limits=(*limits, avoidance))
-    controller = Controller(ROBOT, scheme, dt=4e-3)
-    target = Target(start.position - [0.2, 0.0, 0.0], start.rotation)
-    q = start.q
-    path = [q]
-    for k in range(1000):
-        q = q + 4e-3 * controller.step(q, 4e-3 * k, target).dq
-        path.append(q)
-    assert scene.nearest(np.array(path), np.zeros(len(path)))[0].min() >= near - 1e-9
-    assert np.linalg.norm(Configuration(ROBOT, q).position - target.position) < 1e-3
+    balls = [Sphere(START.position + [x, 0.0, z], 0.1) for x, z in ((0.3, 0.0), (0.28, -0.12))]
+    near = distances(beside(0.02, *balls), START.q[None])[0]
+    path, left = driven((*limits, beside(near + 5e-3, *balls)), tip_at(-0.2, 0.0, 0.0), 1000)
+    assert distances(beside(0.02, *balls), path).min() >= near - 1e-9
+    assert left < 1e-3
 
 
-@pytest.mark.parametrize("limits", [ACCELERATION, JERK], ids=["acceleration", "jerk"])
+@BOTH
 def test_an_arm_beside_which_an_obstacle_lies_goes_away_from_it(limits: tuple[Limit, ...]) -> None:
     # A hand along a capsule stayed there: its nearest point went away, others came nearer.
     robot = load_robot("panda").with_limits(acceleration=10.0)
     q = np.array([0.505, -0.875, 0.621, -2.218, 0.223, 1.534, 1.903])
-    capsule = Capsule([0.133, 0.415, 0.308], [0.15, 0.235, 0.695], 0.05)
-    avoidance = CollisionAvoidance([capsule], distance=0.02, self_collision=False)
-    scene = avoidance.scene(robot)
-    assert scene.nearest(q[None], np.zeros(1))[0][0] < -5e-3
+    avoidance = beside(0.02, Capsule([0.133, 0.415, 0.308], [0.15, 0.235, 0.695], 0.05))
     home = Configuration(robot, robot.start_posture())
-    scheme = DoubleIndicator(orientation="none", extra_limits=(*limits, avoidance))
-    controller = Controller(robot, scheme, dt=4e-3)
     target = Target(home.position, home.rotation)
-    path = [q]
-    for k in range(1500):
-        q = q + 4e-3 * controller.step(q, 4e-3 * k, target).dq
-        path.append(q)
-    distances, _ = scene.nearest(np.array(path), np.zeros(len(path)))
-    assert np.diff(distances[distances < 0.02]).min() > -1e-9
-    assert np.linalg.norm(Configuration(robot, q).position - home.position) < 1e-3
-    jerk = 500.0 if len(limits) == 2 else np.inf
-    kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, jerk)
-    assert breaches(np.array(path), 4e-3, *kinds) == []
+    path, left = driven((*limits, avoidance), target, 1500, q=q, robot=robot)
+    found = distances(avoidance, path, robot)
+    assert found[0] < -5e-3
+    assert np.diff(found[found < 0.02]).min() > -1e-9
+    assert left < 1e-3
 
 
 def test_an_arm_just_outside_the_distance_is_in_no_trap() -> None:
     # With acceleration limits an arm 10 um above the distance never moved again.
-    start = Configuration(ROBOT, ROBOT.start_posture())
-    bare = CollisionAvoidance([Sphere(start.position + [0.3, 0.0, 0.0], 0.1)], distance=0.02,
-                              self_collision=False)  # fmt: skip
-    near = float(bare.scene(ROBOT).nearest(start.q[None], np.zeros(1))[0][0])
-    avoidance = CollisionAvoidance(bare.obstacles, distance=near - 1e-5, self_collision=False)
-    scheme = DoubleIndicator(orientation="none", extra_limits=(*ACCELERATION, avoidance))
-    controller = Controller(ROBOT, scheme)
-    q = start.q
-    for k in range(1500):
-        target = Target(start.position + [-0.1, 0.0, 0.0], start.rotation)
-        q = q + 1e-3 * controller.step(q, 1e-3 * k, target).dq
-    assert np.linalg.norm(Configuration(ROBOT, q).position - target.position) < 1e-3
+    ball = Sphere(START.position + [0.3, 0.0, 0.0], 0.1)
+    near = distances(beside(0.02, ball), START.q[None])[0]
+    _, left = driven((*ACCELERATION, beside(near - 1e-5, ball)), tip_at(-0.1, 0.0, 0.0), 1500, 1e-3)
+    assert left < 1e-3
 
 
 def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:
     # Upright, no joint moves the arm away from above: the row was weakened to 0 dq <= 0.
-    upright = np.zeros(7)
-    conf = Configuration(ROBOT, upright)
+    q = np.zeros(7)
+    conf = Configuration(ROBOT, q)
     falling = Sphere(conf.position + [0.0, 0.0, 0.4], 0.1, velocity=[0.0, 0.0, -0.1])
-    avoidance = CollisionAvoidance([falling], distance=0.02, self_collision=False)
-    scene = avoidance.scene(ROBOT)
+    avoidance = beside(0.02, falling)
     controller = Controller(ROBOT, DoubleIndicator(orientation="none", extra_limits=(avoidance,)))
-    q = upright
     for k in range(4000):
         command = controller.step(q, 1e-3 * k, Target(conf.position, conf.rotation))
         q = q + 1e-3 * command.dq
-        if scene.nearest(q[None], np.array([1e-3 * (k + 1)]))[0][0] < 0.02:
+        if avoidance.scene(ROBOT).nearest(q[None], np.array([1e-3 * (k + 1)]))[0][0] < 0.02:
             break
     assert k < 3999
     assert not command.ok
@@ -274,27 +264,23 @@ def test_joints_that_slide_and_turn_bend_a_way(
 
 
 def test_a_velocity_that_others_chose_is_shortened_until_it_is_clear() -> None:
-    ball = Sphere(Configuration(ROBOT, ROBOT.start_posture()).position + [0.0, 0.2, 0.0], 0.1)
-    avoidance = CollisionAvoidance([ball], self_collision=False, distance=0.05)
-    scene = avoidance.scene(ROBOT)
-    controller = Controller(ROBOT, DoubleIndicator(extra_limits=(avoidance,)), dt=2e-2)
-    coming = CollisionAvoidance(
-        [Sphere(ball.center, 0.1, velocity=[0.0, -0.5, 0.0])], self_collision=False, distance=0.05
+    center = START.position + [0.0, 0.2, 0.0]
+    still = beside(0.05, Sphere(center, 0.1))
+    coming = beside(0.05, Sphere(center, 0.1, velocity=[0.0, -0.5, 0.0]))
+    controller, chased = (
+        Controller(ROBOT, DoubleIndicator(extra_limits=(avoidance,)), dt=2e-2)
+        for avoidance in (still, coming)
     )
-    chased = Controller(ROBOT, DoubleIndicator(extra_limits=(coming,)), dt=2e-2)
     random = np.random.default_rng(0)
     shares = []
-    others = []
     for _ in range(400):
-        q = ROBOT.start_posture() + random.uniform(-0.3, 0.3, 7)
+        q = START.q + random.uniform(-0.3, 0.3, 7)
         dq = ROBOT.dq_max * random.uniform(-1.0, 1.0, 7)
         share = controller.clear_share(q, dq)
-        before, after = (
-            scene.nearest(at[None], np.zeros(1))[0][0] for at in (q, q + 2e-2 * share * dq)
-        )
+        before, after = distances(still, np.array([q, q + 2e-2 * share * dq]))
         assert after >= min(before, 0.05) - 1e-12
-        shares.append(share)
-        others.append(chased.clear_share(q, dq))
-    assert (np.array(others) <= shares).all()
-    assert (np.array(others) < shares).any()
-    assert 0 < np.sum(np.array(shares) < 1.0) < 300
+        shares.append((share, chased.clear_share(q, dq)))
+    found, others = np.array(shares).T
+    assert (others <= found).all()
+    assert (others < found).any()
+    assert 0 < np.sum(found < 1.0) < 300
