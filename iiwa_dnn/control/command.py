@@ -210,19 +210,15 @@ class Command:
         self.action = action
         self._layout = layout
 
-    def _part(self, name: str) -> Vector:
-        """Return the part of a name of `RowViews`, a view."""
-        return self.row[self._layout.columns[name]]
-
     @property
     def fraction(self) -> float:
         """Share of the control period by which the reference's clock advances, in [0, 1]."""
-        return float(self._part("decision")[1])
+        return float(self._layout.view(self.row, "decision")[1])
 
     @property
     def blocking(self) -> Vector:
         """Bounds and rows that stood in the way, as in `RowViews`, (n + m,), a view."""
-        return self._part("blocking")
+        return self._layout.view(self.row, "blocking")
 
     @property
     def against(self) -> tuple[str, ...]:
@@ -235,29 +231,29 @@ class Command:
     @property
     def qp(self) -> QP:
         """The program that was answered; `kind` says how it differs from the step's own."""
-        return QP.from_data(self._part("program"), self._layout.sizes)
+        return QP.from_data(self._layout.view(self.row, "program"), self._layout.sizes)
 
     @property
     def kind(self) -> ProgramKind:
         """Kind of the program that was answered."""
-        return ProgramKind(int(self._part("decision")[3]))
+        return ProgramKind(int(self._layout.view(self.row, "decision")[3]))
 
     @property
     def bounds(self) -> Matrix:
         """Lower and upper bounds of the command [rad/s], those of the step, (2, n), a view."""
-        return self._part("bounds").reshape(BOUNDS, -1)
+        return self._layout.view(self.row, "bounds").reshape(BOUNDS, -1)
 
     @property
     def limits(self) -> QP:
         """The program that was answered, with the bounds of the step: what the command keeps."""
-        qp = QP.from_data(self._part("program").copy(), self._layout.sizes)
+        qp = QP.from_data(self._layout.view(self.row, "program").copy(), self._layout.sizes)
         qp.lb[: self.dq.size], qp.ub[: self.dq.size] = self.bounds
         return qp
 
     @property
     def past(self) -> Matrix:
         """Joint positions [rad], last command and the one before it [rad/s], (3, n), a view."""
-        return self._part("past").reshape(PAST, -1)
+        return self._layout.view(self.row, "past").reshape(PAST, -1)
 
     @property
     def targets(self) -> Matrix:
@@ -267,20 +263,20 @@ class Command:
     @property
     def placement(self) -> Vector:
         """Placement of the first tracked frame, as `Kinematics.placements`, (12,), a view."""
-        return self._part("placement")
+        return self._layout.view(self.row, "placement")
 
     @property
     def solution(self) -> Solution:
         """The network's answer to `qp`; where the command is held back, it is on the way there."""
-        iterations, time, *residuals = self._part("figures").tolist()
-        status = STATUSES[int(self._part("decision")[2])]
-        point = self._part("point")
+        iterations, time, *residuals = self._layout.view(self.row, "figures").tolist()
+        status = STATUSES[int(self._layout.view(self.row, "decision")[2])]
+        point = self._layout.view(self.row, "point")
         return Solution(point, self._layout.sizes, status, int(iterations), time, *residuals)
 
     @property
     def ok(self) -> bool:
         """True if the command does all that the tasks ask."""
-        return self.action is Action.NONE and self._part("decision")[2] <= ADVANCED
+        return self.action is Action.NONE and self._layout.view(self.row, "decision")[2] <= ADVANCED
 
     @property
     def limited(self) -> bool:

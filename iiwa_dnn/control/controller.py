@@ -118,7 +118,7 @@ class Controller:
             self._derived = None
         object.__setattr__(self, name, value)
         if name == "robot" and self._state.past.shape[1] != value.dof:
-            self._state.rest(value.dof)
+            self._state = ControllerState(value.dof)
 
     def __getstate__(self) -> dict[str, Any]:
         own = {"_state": copy.deepcopy(self._state), "solver": copy.deepcopy(self.solver)}

@@ -9,17 +9,9 @@ import pytest
 import qpsolvers
 from scipy.optimize import linprog
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import fixed, near_target, paper_robot, paper_start
-from iiwa_dnn import (
-    QP,
-    Command,
-    Configuration,
-    Controller,
-    DoubleIndicator,
-    Target,
-    robot_from_dh,
-)
 from iiwa_dnn.control.policies import Action, Policy, ProgramKind
 from iiwa_dnn.results.metrics import ACTIONS
 
@@ -27,29 +19,29 @@ WEIGHTS = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])
 """Weights of a pose's rows where they yield: a metre counts twice as much as a radian."""
 
 
-def decide(qp: QP, policy: Policy, moves: bool = True) -> Command:
+def decide(qp: d.QP, policy: Policy, moves: bool = True) -> d.Command:
     """The command of a step with this program; `moves`: the reference does."""
     n = qp.sizes[0]
-    robot = robot_from_dh([[0.3, 0.0, 0.0, 0.0]] * n, lower=-3.0, upper=3.0, velocity=1.0)
+    robot = d.robot_from_dh([[0.3, 0.0, 0.0, 0.0]] * n, lower=-3.0, upper=3.0, velocity=1.0)
     twist = [0.01 * moves, 0.0, 0.0]
-    target = Target([0.3, 0.0, 0.0], np.eye(3), twist)
-    return Controller(robot, fixed(qp), policy=policy).step(np.zeros(n), 0.0, target)
+    target = d.Target([0.3, 0.0, 0.0], np.eye(3), twist)
+    return d.Controller(robot, fixed(qp), policy=policy).step(np.zeros(n), 0.0, target)
 
 
-def posed(seed: int, velocity: float = 0.3) -> tuple[Controller, np.ndarray, Target]:
+def posed(seed: int, velocity: float = 0.3) -> tuple[d.Controller, np.ndarray, d.Target]:
     """An iiwa whose target is far off, its posture, and the target."""
     rng = np.random.default_rng(seed)
     q = np.clip(np.array(PAPER_Q0) + 0.3 * rng.standard_normal(7), -2.4, 2.4)
     robot = paper_robot().with_limits(velocity=velocity)
-    scheme = DoubleIndicator(home=PAPER_Q0, orientation=("so3", "block", "none")[seed % 3])
-    return Controller(robot, scheme), q, near_target(q, seed, 0.3)
+    scheme = d.DoubleIndicator(home=PAPER_Q0, orientation=("so3", "block", "none")[seed % 3])
+    return d.Controller(robot, scheme), q, near_target(q, seed, 0.3)
 
 
-def own_program(controller: Controller, q: np.ndarray, target: Target) -> QP:
-    return controller.scheme.build_qp(Configuration(controller.robot, q), target)
+def own_program(controller: d.Controller, q: np.ndarray, target: d.Target) -> d.QP:
+    return controller.scheme.build_qp(d.Configuration(controller.robot, q), target)
 
 
-def linear_factor(qp: QP) -> float:
+def linear_factor(qp: d.QP) -> float:
     """The largest share of b within the limits, by scipy's linear program."""
     n, m, p = qp.sizes
     found = linprog(
@@ -64,9 +56,9 @@ def linear_factor(qp: QP) -> float:
     return float(found.x[-1]) if found.status == 0 else -1.0
 
 
-def two_joints(b: float, **others: Any) -> QP:
+def two_joints(b: float, **others: Any) -> d.QP:
     """Both joints push the same way: x1 + 2 x2 = b inside a box of one."""
-    return QP(
+    return d.QP(
         np.eye(2), np.zeros(2), A=[[1.0, 2.0]], b=[b], lb=-np.ones(2), ub=np.ones(2), **others
     )
 
@@ -104,7 +96,7 @@ def test_the_softened_program_is_the_pages(policy: Policy) -> None:
         controller, q, target = posed(seed)
         controller.policy = policy
         own = own_program(controller, q, target)
-        still = Target(target.position, target.rotation)  # where the reference rests, both soften
+        still = d.Target(target.position, target.rotation)  # where the reference rests, both soften
         own.b[:] = own_program(controller, q, still).b
         command = controller.step(q, 0.0, still)
         assert (command.action, command.kind) == (Action.RELAX, ProgramKind.SOFTENED)
@@ -119,7 +111,7 @@ def test_the_softened_program_is_the_pages(policy: Policy) -> None:
             np.testing.assert_array_equal(getattr(command.qp, name), getattr(own, name))
         assert not command.qp.A.any()
         assert not command.qp.b.any()
-        problem = QP(cost, linear, lb=own.lb, ub=own.ub).to_qpsolvers()
+        problem = d.QP(cost, linear, lb=own.lb, ub=own.ub).to_qpsolvers()
         found = qpsolvers.solve_problem(problem, solver="daqp")
         np.testing.assert_allclose(command.dq, found.x, rtol=0, atol=1e-7)
 
@@ -133,7 +125,7 @@ def test_the_bounds_in_the_way_are_those_that_help_when_widened() -> None:
         if command.kind is not ProgramKind.SCALED:
             continue
         for i in range(7):
-            wider = QP.from_data(qp.data.copy(), qp.sizes)
+            wider = d.QP.from_data(qp.data.copy(), qp.sizes)
             wider.lb[i] -= 1e-3
             wider.ub[i] += 1e-3
             gain = linear_factor(wider) - linear_factor(qp)
@@ -199,7 +191,7 @@ def test_limits_that_contradict_each_other_stop_the_arm(policy: Policy) -> None:
 def test_slow_softens_where_the_joints_race_for_next_to_nothing(
     row: float, kind: ProgramKind
 ) -> None:
-    qp = QP(np.eye(1), np.zeros(1), A=[[row]], b=[1.5 * row], lb=[-1.0], ub=[1.0])
+    qp = d.QP(np.eye(1), np.zeros(1), A=[[row]], b=[1.5 * row], lb=[-1.0], ub=[1.0])
     command = decide(qp, "slow")
     assert (command.action, command.kind) == (Action.SLOW, kind)
     if kind is ProgramKind.SOFTENED:
@@ -210,7 +202,7 @@ def test_slow_softens_where_the_joints_race_for_next_to_nothing(
 
 def test_the_clock_never_rests() -> None:
     """A thousandth of b is left: the damped task is followed, and the clock goes on by a tenth."""
-    qp = QP(np.eye(2), [0.0, -9.0], A=[[1e-3, 0.0]], b=[5.0], lb=[-1.0] * 2, ub=[1.0] * 2)
+    qp = d.QP(np.eye(2), [0.0, -9.0], A=[[1e-3, 0.0]], b=[5.0], lb=[-1.0] * 2, ub=[1.0] * 2)
     command = decide(qp, "slow")
     assert (command.action, command.fraction) == (Action.SLOW, 0.1)
     # And towards the posture that the cost wishes for; the cost itself counts 1e-4.
@@ -222,8 +214,8 @@ def test_the_clock_never_rests() -> None:
 def test_a_target_that_is_out_of_all_proportion_is_gone_towards(policy: Policy) -> None:
     for far in (1e3, 1e6, 1e9):
         start = paper_start()
-        target = Target(start.position + [far, 0.0, 0.0], start.rotation, [0.01, 0.0, 0.0])
-        command = Controller(paper_robot(), DoubleIndicator(), policy=policy).step(
+        target = d.Target(start.position + [far, 0.0, 0.0], start.rotation, [0.01, 0.0, 0.0])
+        command = d.Controller(paper_robot(), d.DoubleIndicator(), policy=policy).step(
             PAPER_Q0, 0.0, target
         )
         assert command.action in (Action.SLOW, Action.RELAX)
@@ -241,7 +233,7 @@ def test_the_codes_in_a_record_stay_what_they_are() -> None:
 @pytest.mark.parametrize("acceleration", [None, 10.0])
 def test_the_residuals_of_an_answer_are_its_own(policy: Policy, acceleration: float | None) -> None:
     robot = paper_robot().with_limits(velocity=0.3, acceleration=acceleration)
-    controller = Controller(robot, DoubleIndicator(home=PAPER_Q0), policy=policy)
+    controller = d.Controller(robot, d.DoubleIndicator(home=PAPER_Q0), policy=policy)
     for k in range(3):
         command = controller.step(PAPER_Q0, 1e-3 * k, near_target(PAPER_Q0, 3, 0.3))
         assert command.action in (Action.SLOW, Action.RELAX, Action.STOP)

@@ -9,29 +9,20 @@ import pinocchio as pin
 import pytest
 import qpsolvers
 
-from iiwa_dnn import (
-    Configuration,
-    Heart,
-    InvalidInputError,
-    NotFoundError,
-    Robot,
-    Shield,
-    Sphere,
-    load_robot,
-)
+import iiwa_dnn as d
 from iiwa_dnn.control.shield import ShieldCommand
 from judge_limits import breaches
 
 DT = 1e-3
 START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
-PLAIN = load_robot("iiwa7")
+PLAIN = d.load_robot("iiwa7")
 ROBOT = PLAIN.with_limits(acceleration=10.0)
 SMOOTH = PLAIN.with_limits(acceleration=10.0, jerk=500.0)
-BALL = Sphere([0.36, 0.16, 0.64], 0.05)
+BALL = d.Sphere([0.36, 0.16, 0.64], 0.05)
 
 
 def drive(
-    shield: Shield, steps: int, q: np.ndarray = START, **wish: Any
+    shield: d.Shield, steps: int, q: np.ndarray = START, **wish: Any
 ) -> tuple[np.ndarray, list[ShieldCommand]]:
     """Follow every command from q; return the joint positions (steps + 1, n) and the commands."""
     path = [q]
@@ -42,7 +33,7 @@ def drive(
     return np.array(path), commands
 
 
-def limits_broken(path: np.ndarray, robot: Robot) -> list[Any]:
+def limits_broken(path: np.ndarray, robot: d.Robot) -> list[Any]:
     kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, robot.dddq_max)
     return breaches(path, DT, *kinds)
 
@@ -50,10 +41,10 @@ def limits_broken(path: np.ndarray, robot: Robot) -> list[Any]:
 @pytest.mark.parametrize("robot", [PLAIN, ROBOT, SMOOTH])
 @pytest.mark.parametrize("obstacles", [None, [BALL]])
 def test_an_admissible_wish_goes_through_to_the_last_bit(
-    robot: Robot, obstacles: list[Sphere] | None
+    robot: d.Robot, obstacles: list[d.Sphere] | None
 ) -> None:
     """A slow sum of sines from rest breaks no limit, and stays away from all of them."""
-    shield = Shield(robot, DT, obstacles)
+    shield = d.Shield(robot, DT, obstacles)
     random = np.random.default_rng(0)
     speed = random.uniform(-0.1, 0.1, 7)
     rate = random.uniform(0.5, 3.0, 7)
@@ -68,9 +59,9 @@ def test_an_admissible_wish_goes_through_to_the_last_bit(
 
 
 @pytest.mark.parametrize("robot", [PLAIN, ROBOT, SMOOTH])
-def test_a_clipped_command_is_the_nearest_one_by_another_solver(robot: Robot) -> None:
+def test_a_clipped_command_is_the_nearest_one_by_another_solver(robot: d.Robot) -> None:
     """Where the arm can stop from the program's answer, that is the command, by ProxQP too."""
-    shield = Shield(robot, DT, [BALL])
+    shield = d.Shield(robot, DT, [BALL])
     random = np.random.default_rng(1)
     q = START
     compared = 0
@@ -94,7 +85,7 @@ def test_a_clipped_command_is_the_nearest_one_by_another_solver(robot: Robot) ->
 
 def test_a_wish_that_is_held_is_reached_and_not_passed() -> None:
     wish = np.array([0.3, -0.2, 0.1, 0.4, -0.3, 0.2, 0.1])
-    shield = Shield(SMOOTH, DT)
+    shield = d.Shield(SMOOTH, DT)
     path, commands = drive(shield, 400, dq=wish)
     dq = np.diff(path, axis=0) / DT
     assert (np.abs(dq) <= np.abs(wish) + 1e-9).all()
@@ -106,7 +97,7 @@ def test_a_wish_that_is_held_is_reached_and_not_passed() -> None:
 
 def test_a_wish_that_changes_is_followed_without_swinging() -> None:
     """A jump to a slow sine: the jerk limit lets the acceleration die out where it is met."""
-    shield = Shield(SMOOTH, DT)
+    shield = d.Shield(SMOOTH, DT)
     q = START
     beyond = []
     for k in range(400):
@@ -119,10 +110,10 @@ def test_a_wish_that_changes_is_followed_without_swinging() -> None:
 
 
 @pytest.mark.parametrize("robot", [PLAIN, ROBOT, SMOOTH])
-def test_positions_are_reached_and_not_passed(robot: Robot) -> None:
+def test_positions_are_reached_and_not_passed(robot: d.Robot) -> None:
     """From a single wish, as a chunk of a policy brings it."""
     goal = START + np.array([0.4, 0.2, -0.3, -0.5, 0.1, 0.6, -0.2])
-    shield = Shield(robot, DT, timeout=np.inf)
+    shield = d.Shield(robot, DT, timeout=np.inf)
     first = shield.step(START, position=goal)
     path, commands = drive(shield, 3000, START + DT * first.dq)
     np.testing.assert_allclose(path[-1], goal, atol=2e-7)
@@ -134,9 +125,9 @@ def test_positions_are_reached_and_not_passed(robot: Robot) -> None:
 
 def test_the_heart_of_another_loop_goes_through_to_the_last_bit() -> None:
     pink = pytest.importorskip("pink")
-    heart = Heart(period=10.0).anchored(Configuration(SMOOTH, START))
+    heart = d.Heart(period=10.0).anchored(d.Configuration(SMOOTH, START))
     task = pink.tasks.FrameTask(SMOOTH.tip, position_cost=1.0, orientation_cost=0.3)
-    shield = Shield(SMOOTH, 4e-3, [])
+    shield = d.Shield(SMOOTH, 4e-3, [])
     q = START
     for k in range(1, 500):
         target = heart.at(k * shield.dt)
@@ -147,22 +138,22 @@ def test_the_heart_of_another_loop_goes_through_to_the_last_bit() -> None:
         np.testing.assert_array_equal(command.dq, wish)
         assert not command.clipped
         q = q + shield.dt * command.dq
-        tip = Configuration(SMOOTH, q).position
+        tip = d.Configuration(SMOOTH, q).position
         np.testing.assert_allclose(tip, target.position, atol=1e-6)
 
 
 def test_a_twist_moves_its_frame() -> None:
     """Far from singular poses the damping costs less than a hundredth."""
     robot = ROBOT
-    shield = Shield(robot, DT)
+    shield = d.Shield(robot, DT)
     frame = robot.frame_names[len(robot.frame_names) // 2]
     for name in (None, frame):
         twist = np.array([0.0, 0.0, 0.05, 0.0, 0.0, 0.0])
-        J = Configuration(robot, START).frame(name or robot.tip).jacobian
+        J = d.Configuration(robot, START).frame(name or robot.tip).jacobian
         reachable = J @ np.linalg.pinv(J) @ twist
         shield.reset()
         path, commands = drive(shield, 100, twist=twist, frame=name)
-        J = Configuration(robot, path[-2]).frame(name or robot.tip).jacobian
+        J = d.Configuration(robot, path[-2]).frame(name or robot.tip).jacobian
         np.testing.assert_allclose(J @ commands[-1].dq, reachable, atol=2e-3)
 
 
@@ -177,7 +168,7 @@ def test_a_twist_moves_its_frame() -> None:
 def test_without_a_wish_the_arm_brakes_and_goes_on_without_a_jump(
     wish: dict[str, Any], reason: str
 ) -> None:
-    shield = Shield(SMOOTH, DT, timeout=0.05)
+    shield = d.Shield(SMOOTH, DT, timeout=0.05)
     speed = np.full(7, 0.2)
     begun, _ = drive(shield, 300, dq=speed)
     braked, commands = drive(shield, 400, begun[-1], **wish)
@@ -196,24 +187,24 @@ def test_without_a_wish_the_arm_brakes_and_goes_on_without_a_jump(
 
 @pytest.mark.parametrize("size", [1e6, 1e100, 1e300])
 @pytest.mark.parametrize("obstacles", [None, [BALL]])
-def test_wishes_of_any_size_are_answered(size: float, obstacles: list[Sphere] | None) -> None:
+def test_wishes_of_any_size_are_answered(size: float, obstacles: list[d.Sphere] | None) -> None:
     """The arm goes where a wish of 900 rad/s leads, and limits are named."""
     paths = []
     for speed in (900.0, size):
-        shield = Shield(ROBOT, DT, obstacles)
+        shield = d.Shield(ROBOT, DT, obstacles)
         path, commands = drive(shield, 30, dq=np.full(7, speed))
         assert commands[-1].limits
         paths.append(path)
     np.testing.assert_allclose(paths[1], paths[0], atol=1e-6)
     assert np.ptp(paths[1], axis=0).max() > 1e-3
     for wish in ({"position": np.full(7, size)}, {"twist": np.full(6, size)}):
-        path, commands = drive(Shield(PLAIN, DT, obstacles), 30, **wish)
+        path, commands = drive(d.Shield(PLAIN, DT, obstacles), 30, **wish)
         assert np.ptp(path, axis=0).max() > 1e-3
         assert breaches(path, DT, PLAIN.q_lower, PLAIN.q_upper, PLAIN.dq_max) == []
 
 
 def test_a_halt_lasts_until_the_reset() -> None:
-    shield = Shield(ROBOT, DT)
+    shield = d.Shield(ROBOT, DT)
     path, _ = drive(shield, 100, dq=np.full(7, 0.2))
     shield.halt()
     rest, commands = drive(shield, 100, path[-1], dq=np.full(7, 0.2))
@@ -226,7 +217,7 @@ def test_a_halt_lasts_until_the_reset() -> None:
 
 
 def test_measured_positions_count_only_where_they_are_far() -> None:
-    shield = Shield(ROBOT, DT, tracking_error=0.01)
+    shield = d.Shield(ROBOT, DT, tracking_error=0.01)
     shield.step(START, np.zeros(7))
     near = shield.step(START + 0.009, np.zeros(7))
     np.testing.assert_array_equal(near.command.past[0], START)
@@ -237,17 +228,17 @@ def test_measured_positions_count_only_where_they_are_far() -> None:
 
 def test_margin_and_stopping_time_are_those_of_closed_forms() -> None:
     """The distance of a resting arm from a ball grows with the ball's way; v / a is the time."""
-    at = Configuration(ROBOT, START).position
+    at = d.Configuration(ROBOT, START).position
     margins = []
     for away in (0.5, 0.6):
-        ball = Sphere(at + np.array([0.0, 0.0, away]), 0.05)
-        shield = Shield(ROBOT, DT, [ball], distance=0.03)
+        ball = d.Sphere(at + np.array([0.0, 0.0, away]), 0.05)
+        shield = d.Shield(ROBOT, DT, [ball], distance=0.03)
         margins.append(shield.step(START, np.zeros(7)).margin)
     assert margins[0].distance <= margins[1].distance < 0.6
     robot = ROBOT
     room = np.minimum(START - robot.q_lower, robot.q_upper - START).min()
     assert margins[0].joint == pytest.approx(room, abs=1e-12)
-    shield = Shield(ROBOT, DT)
+    shield = d.Shield(ROBOT, DT)
     _, commands = drive(shield, 100, dq=np.full(7, 0.5))
     assert commands[-1].stopping_time == pytest.approx(0.05, abs=DT)
 
@@ -263,16 +254,16 @@ def test_margin_and_stopping_time_are_those_of_closed_forms() -> None:
     ],
 )
 def test_wrong_wishes_are_refused_and_change_nothing(arguments: dict[str, Any], words: str) -> None:
-    shield = Shield(ROBOT, DT)
+    shield = d.Shield(ROBOT, DT)
     shield.step(START, np.full(7, 0.01))
-    with pytest.raises(InvalidInputError, match=words):
+    with pytest.raises(d.InvalidInputError, match=words):
         shield.step(**{"q": START} | arguments)
     np.testing.assert_array_equal(shield.step(START, np.full(7, 0.02)).dq, np.full(7, 0.02))
 
 
 def test_wrong_settings_are_refused() -> None:
     for arguments in ({"dt": 0.0}, {"timeout": -1.0}, {"tracking_error": np.nan}):
-        with pytest.raises(InvalidInputError, match=next(iter(arguments))):
-            Shield(ROBOT, **arguments)
-    with pytest.raises(NotFoundError):
-        Shield(ROBOT).step(START, twist=np.zeros(6), frame="nose")
+        with pytest.raises(d.InvalidInputError, match=next(iter(arguments))):
+            d.Shield(ROBOT, **arguments)
+    with pytest.raises(d.NotFoundError):
+        d.Shield(ROBOT).step(START, twist=np.zeros(6), frame="nose")

@@ -11,33 +11,23 @@ from typing import Any
 import numpy as np
 import pytest
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, paper_start
-from iiwa_dnn import (
-    AccelerationLimits,
-    Controller,
-    DNNSolver,
-    DoubleIndicator,
-    Heart,
-    JerkLimits,
-    Reference,
-    Target,
-    simulate,
-)
 from iiwa_dnn.qp.crosscheck import CrossCheck
 
 DT = 1e-3
 ACCELERATION = 5.0
-LIMITED = DoubleIndicator(extra_limits=(AccelerationLimits(ACCELERATION),), home=PAPER_Q0)
+LIMITED = d.DoubleIndicator(extra_limits=(d.AccelerationLimits(ACCELERATION),), home=PAPER_Q0)
 
 
-def fast_heart() -> Reference:
-    return Heart(period=2.0).anchored(paper_start())
+def fast_heart() -> d.Reference:
+    return d.Heart(period=2.0).anchored(paper_start())
 
 
-def moving() -> tuple[Controller, np.ndarray, int]:
+def moving() -> tuple[d.Controller, np.ndarray, int]:
     """A controller in motion, the joint positions and the number of the next step."""
-    controller = Controller(paper_robot(), LIMITED, fast_heart(), dt=DT)
+    controller = d.Controller(paper_robot(), LIMITED, fast_heart(), dt=DT)
     q = np.array(PAPER_Q0)
     for k in range(400):
         q = q + DT * controller.step(q, k * DT).dq
@@ -50,10 +40,10 @@ CHANGES: dict[str, Any] = {
     "scheme": lambda controller: setattr(
         controller,
         "scheme",
-        DoubleIndicator(weight=0.9, extra_limits=LIMITED.extra_limits, home=PAPER_Q0),
+        d.DoubleIndicator(weight=0.9, extra_limits=LIMITED.extra_limits, home=PAPER_Q0),
     ),
     "robot": lambda controller: setattr(controller, "robot", paper_robot().with_limits(velocity=1)),
-    "solver": lambda controller: setattr(controller, "solver", DNNSolver()),
+    "solver": lambda controller: setattr(controller, "solver", d.DNNSolver()),
     "dt": lambda controller: setattr(controller, "dt", 0.9 * DT),
 }
 
@@ -104,8 +94,8 @@ def test_a_copy_goes_its_own_way() -> None:
     controller, q, k = moving()
     twin = copy.copy(controller)
     expected = controller.step(q, k * DT).dq.copy()
-    far = Target(paper_start().position + [0.1, 0.0, 0.0], paper_start().rotation)
-    other = Controller(paper_robot(), LIMITED, fast_heart(), dt=DT)
+    far = d.Target(paper_start().position + [0.1, 0.0, 0.0], paper_start().rotation)
+    other = d.Controller(paper_robot(), LIMITED, fast_heart(), dt=DT)
     for _ in range(5):
         other.step(q, 0.0, far)
         controller.step(q, k * DT, far)
@@ -149,13 +139,13 @@ def test_two_threads_keep_the_acceleration_limit_between_them() -> None:
 
 
 @pytest.mark.parametrize("scale", [3.45e-3, 0.02], ids=["fits", "too quick"])
-@pytest.mark.parametrize("limits", [(), (AccelerationLimits(5.0), JerkLimits(500.0))])
+@pytest.mark.parametrize("limits", [(), (d.AccelerationLimits(5.0), d.JerkLimits(500.0))])
 def test_a_simulation_is_a_loop_of_steps_to_the_last_bit(scale: float, limits: Any) -> None:
-    scheme = DoubleIndicator(extra_limits=limits)
-    path = Heart(scale=scale, period=3.0).anchored(paper_start())
+    scheme = d.DoubleIndicator(extra_limits=limits)
+    path = d.Heart(scale=scale, period=3.0).anchored(paper_start())
     run = {"dt": 2e-3, "duration": 1.2, "check": CrossCheck(())}
-    record = simulate(paper_robot(), scheme, path, PAPER_Q0, **run)
-    controller = Controller(paper_robot(), scheme, path, dt=2e-3)
+    record = d.simulate(paper_robot(), scheme, path, PAPER_Q0, **run)
+    controller = d.Controller(paper_robot(), scheme, path, dt=2e-3)
     q = np.array(PAPER_Q0)
     for k in range(record.steps):
         np.testing.assert_array_equal(q, record.q[k])
@@ -166,8 +156,8 @@ def test_a_simulation_is_a_loop_of_steps_to_the_last_bit(scale: float, limits: A
 @pytest.mark.parametrize("times", [1, 2])
 def test_what_was_sent_in_place_of_a_command_is_what_the_jerk_is_counted_from(times: int) -> None:
     jerk = 200.0
-    limits = (AccelerationLimits(5.0), JerkLimits(jerk))
-    controller = Controller(paper_robot(), DoubleIndicator(extra_limits=limits), heart(), dt=DT)
+    limits = (d.AccelerationLimits(5.0), d.JerkLimits(jerk))
+    controller = d.Controller(paper_robot(), d.DoubleIndicator(extra_limits=limits), heart(), dt=DT)
     q = np.array(PAPER_Q0)
     for k in range(100):
         command = controller.step(q, k * DT)

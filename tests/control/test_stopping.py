@@ -7,21 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from iiwa_dnn import (
-    AccelerationLimits,
-    Capsule,
-    CollisionAvoidance,
-    Configuration,
-    Controller,
-    DoubleIndicator,
-    HalfSpace,
-    JerkLimits,
-    Limit,
-    Robot,
-    Sphere,
-    Target,
-    load_robot,
-)
+import iiwa_dnn as d
 from iiwa_dnn.control.state import REST
 from iiwa_dnn.control.stopping import (
     Motion,
@@ -36,9 +22,9 @@ from iiwa_dnn.control.stopping import (
 from iiwa_dnn.schemes.scene import second_order
 from judge_limits import breaches
 
-ROBOT = load_robot("iiwa7")
-ACCELERATION = (AccelerationLimits(),)
-JERK = (AccelerationLimits(), JerkLimits(500.0))
+ROBOT = d.load_robot("iiwa7")
+ACCELERATION = (d.AccelerationLimits(),)
+JERK = (d.AccelerationLimits(), d.JerkLimits(500.0))
 
 
 def limits_of(jerk: float) -> np.ndarray:
@@ -114,24 +100,24 @@ def test_the_way_along_a_motion_is_the_sum_of_its_velocities(cubic: bool) -> Non
         assert way_along(motion, x, b, M, 1e-3) == pytest.approx(ways[-1], abs=1e-12)
 
 
-START = Configuration(ROBOT, ROBOT.start_posture())
+START = d.Configuration(ROBOT, ROBOT.start_posture())
 
 
-def beside(distance: float, *obstacles: Any) -> CollisionAvoidance:
-    return CollisionAvoidance(obstacles, distance=distance, self_collision=False)
+def beside(distance: float, *obstacles: Any) -> d.CollisionAvoidance:
+    return d.CollisionAvoidance(obstacles, distance=distance, self_collision=False)
 
 
 def driven(
-    parts: tuple[Limit, ...],
+    parts: tuple[d.Limit, ...],
     target: Any,
     steps: int,
     dt: float = 4e-3,
     q: Any = START.q,
-    robot: Robot = ROBOT,
+    robot: d.Robot = ROBOT,
 ) -> tuple[np.ndarray, float]:
     """Joint positions of an arm on its way to a target, or one a step, and what is left [m]."""
-    scheme = DoubleIndicator(orientation="none", extra_limits=parts)
-    controller = Controller(robot, scheme, dt=dt)
+    scheme = d.DoubleIndicator(orientation="none", extra_limits=parts)
+    controller = d.Controller(robot, scheme, dt=dt)
     path = [q]
     for k in range(steps):
         goal = target(k) if callable(target) else target
@@ -139,34 +125,38 @@ def driven(
         # A braking motion leaves the bounds of a step: the program in the record has them wider.
         assert command.solution.residuals.primal < 1e-8
         path.append(path[-1] + dt * command.dq)
-    left = np.linalg.norm(Configuration(robot, path[-1]).position - goal.position)
+    left = np.linalg.norm(d.Configuration(robot, path[-1]).position - goal.position)
     assert breaches_of(np.array(path), robot, dt, parts) == []
     return np.array(path), float(left)
 
 
-def breaches_of(path: np.ndarray, robot: Robot, dt: float, parts: tuple[Limit, ...]) -> list[Any]:
-    jerk = 500.0 if any(isinstance(part, JerkLimits) for part in parts) else np.inf
+def breaches_of(
+    path: np.ndarray, robot: d.Robot, dt: float, parts: tuple[d.Limit, ...]
+) -> list[Any]:
+    jerk = 500.0 if any(isinstance(part, d.JerkLimits) for part in parts) else np.inf
     kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, jerk)
     return breaches(path, dt, *kinds)
 
 
-def distances(avoidance: CollisionAvoidance, path: np.ndarray, robot: Robot = ROBOT) -> np.ndarray:
+def distances(
+    avoidance: d.CollisionAvoidance, path: np.ndarray, robot: d.Robot = ROBOT
+) -> np.ndarray:
     return avoidance.scene(robot).nearest(path, np.zeros(len(path)))[0]
 
 
-def tip_at(*away: float) -> Target:
-    return Target(START.position + away, START.rotation)
+def tip_at(*away: float) -> d.Target:
+    return d.Target(START.position + away, START.rotation)
 
 
-WALL = HalfSpace([-1, 0, 0], float(-START.position[0] - 0.35))
-BALL = Sphere(START.position + [0.4, 0.05, 0.0], 0.15)
+WALL = d.HalfSpace([-1, 0, 0], float(-START.position[0] - 0.35))
+BALL = d.Sphere(START.position + [0.4, 0.05, 0.0], 0.15)
 BOTH = pytest.mark.parametrize("limits", [ACCELERATION, JERK], ids=["acceleration", "jerk"])
 
 
 @BOTH
 @pytest.mark.parametrize("obstacle", [WALL, BALL], ids=["wall", "ball"])
 def test_an_arm_pressed_against_an_obstacle_stays_clear_and_comes_back(
-    limits: tuple[Limit, ...], obstacle: Any
+    limits: tuple[d.Limit, ...], obstacle: Any
 ) -> None:
     # The wall was entered by 30 mm, and the arm stayed there for good.
     avoidance = beside(0.02, obstacle)
@@ -182,8 +172,8 @@ def test_an_arm_pressed_against_an_obstacle_stays_clear_and_comes_back(
 
 def test_the_braking_motion_in_hand_is_that_of_the_last_command() -> None:
     """The state notes its periods, the least that the accelerations allow from the command."""
-    scheme = DoubleIndicator(orientation="none", extra_limits=(*ACCELERATION, beside(0.02, WALL)))
-    controller = Controller(ROBOT, scheme, dt=4e-3)
+    scheme = d.DoubleIndicator(orientation="none", extra_limits=(*ACCELERATION, beside(0.02, WALL)))
+    controller = d.Controller(ROBOT, scheme, dt=4e-3)
     q = START.q
     noted = []
     least = []
@@ -197,9 +187,9 @@ def test_the_braking_motion_in_hand_is_that_of_the_last_command() -> None:
 
 
 @BOTH
-def test_an_arm_that_obstacles_came_upon_goes_away_from_them(limits: tuple[Limit, ...]) -> None:
+def test_an_arm_that_obstacles_came_upon_goes_away_from_them(limits: tuple[d.Limit, ...]) -> None:
     # A capsule that had come to a resting arm kept it there for good.
-    balls = [Sphere(START.position + [x, 0.0, z], 0.1) for x, z in ((0.3, 0.0), (0.28, -0.12))]
+    balls = [d.Sphere(START.position + [x, 0.0, z], 0.1) for x, z in ((0.3, 0.0), (0.28, -0.12))]
     near = distances(beside(0.02, *balls), START.q[None])[0]
     path, left = driven((*limits, beside(near + 5e-3, *balls)), tip_at(-0.2, 0.0, 0.0), 1000)
     assert distances(beside(0.02, *balls), path).min() >= near - 1e-9
@@ -207,13 +197,15 @@ def test_an_arm_that_obstacles_came_upon_goes_away_from_them(limits: tuple[Limit
 
 
 @BOTH
-def test_an_arm_beside_which_an_obstacle_lies_goes_away_from_it(limits: tuple[Limit, ...]) -> None:
+def test_an_arm_beside_which_an_obstacle_lies_goes_away_from_it(
+    limits: tuple[d.Limit, ...],
+) -> None:
     # A hand along a capsule stayed there: its nearest point went away, others came nearer.
-    robot = load_robot("panda").with_limits(acceleration=10.0)
+    robot = d.load_robot("panda").with_limits(acceleration=10.0)
     q = np.array([0.505, -0.875, 0.621, -2.218, 0.223, 1.534, 1.903])
-    avoidance = beside(0.02, Capsule([0.133, 0.415, 0.308], [0.15, 0.235, 0.695], 0.05))
-    home = Configuration(robot, robot.start_posture())
-    target = Target(home.position, home.rotation)
+    avoidance = beside(0.02, d.Capsule([0.133, 0.415, 0.308], [0.15, 0.235, 0.695], 0.05))
+    home = d.Configuration(robot, robot.start_posture())
+    target = d.Target(home.position, home.rotation)
     path, left = driven((*limits, avoidance), target, 1500, q=q, robot=robot)
     found = distances(avoidance, path, robot)
     assert found[0] < -5e-3
@@ -223,7 +215,7 @@ def test_an_arm_beside_which_an_obstacle_lies_goes_away_from_it(limits: tuple[Li
 
 def test_an_arm_just_outside_the_distance_is_in_no_trap() -> None:
     # With acceleration limits an arm 10 um above the distance never moved again.
-    ball = Sphere(START.position + [0.3, 0.0, 0.0], 0.1)
+    ball = d.Sphere(START.position + [0.3, 0.0, 0.0], 0.1)
     near = distances(beside(0.02, ball), START.q[None])[0]
     _, left = driven((*ACCELERATION, beside(near - 1e-5, ball)), tip_at(-0.1, 0.0, 0.0), 1500, 1e-3)
     assert left < 1e-3
@@ -232,12 +224,14 @@ def test_an_arm_just_outside_the_distance_is_in_no_trap() -> None:
 def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:
     # Upright, no joint moves the arm away from above: the row was weakened to 0 dq <= 0.
     q = np.zeros(7)
-    conf = Configuration(ROBOT, q)
-    falling = Sphere(conf.position + [0.0, 0.0, 0.4], 0.1, velocity=[0.0, 0.0, -0.1])
+    conf = d.Configuration(ROBOT, q)
+    falling = d.Sphere(conf.position + [0.0, 0.0, 0.4], 0.1, velocity=[0.0, 0.0, -0.1])
     avoidance = beside(0.02, falling)
-    controller = Controller(ROBOT, DoubleIndicator(orientation="none", extra_limits=(avoidance,)))
+    controller = d.Controller(
+        ROBOT, d.DoubleIndicator(orientation="none", extra_limits=(avoidance,))
+    )
     for k in range(4000):
-        command = controller.step(q, 1e-3 * k, Target(conf.position, conf.rotation))
+        command = controller.step(q, 1e-3 * k, d.Target(conf.position, conf.rotation))
         q = q + 1e-3 * command.dq
         if avoidance.scene(ROBOT).nearest(q[None], np.array([1e-3 * (k + 1)]))[0][0] < 0.02:
             break
@@ -265,10 +259,10 @@ def test_joints_that_slide_and_turn_bend_a_way(
 
 def test_a_velocity_that_others_chose_is_shortened_until_it_is_clear() -> None:
     center = START.position + [0.0, 0.2, 0.0]
-    still = beside(0.05, Sphere(center, 0.1))
-    coming = beside(0.05, Sphere(center, 0.1, velocity=[0.0, -0.5, 0.0]))
+    still = beside(0.05, d.Sphere(center, 0.1))
+    coming = beside(0.05, d.Sphere(center, 0.1, velocity=[0.0, -0.5, 0.0]))
     controller, chased = (
-        Controller(ROBOT, DoubleIndicator(extra_limits=(avoidance,)), dt=2e-2)
+        d.Controller(ROBOT, d.DoubleIndicator(extra_limits=(avoidance,)), dt=2e-2)
         for avoidance in (still, coming)
     )
     random = np.random.default_rng(0)

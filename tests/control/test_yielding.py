@@ -6,37 +6,15 @@ import numpy as np
 import pytest
 
 import hostile
+import iiwa_dnn as d
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, run
-from iiwa_dnn import (
-    AccelerationLimits,
-    Circle,
-    Configuration,
-    Controller,
-    DoubleIndicator,
-    Heart,
-    JerkLimits,
-    JointLimits,
-    KineticEnergy,
-    Limit,
-    MovingTarget,
-    OrientationTask,
-    PositionTask,
-    Record,
-    Reference,
-    Robot,
-    Scheme,
-    Target,
-    compute_metrics,
-    failures,
-    simulate,
-)
 from iiwa_dnn.control.policies import Action, Policy
 from iiwa_dnn.schemes.tasks import ROTATION_LENGTH
 from judge_limits import Breach, breaches
 
 JERK = 500.0
-LIMITS = (AccelerationLimits(), JerkLimits(JERK))
-LIMITED = DoubleIndicator(extra_limits=LIMITS)
+LIMITS = (d.AccelerationLimits(), d.JerkLimits(JERK))
+LIMITED = d.DoubleIndicator(extra_limits=LIMITS)
 
 
 def judged(q: np.ndarray, dt: float = 1e-3, jerk: float = JERK) -> list[Breach]:
@@ -51,8 +29,8 @@ def test_hostile_targets_break_no_limit(kind: str, filtered: bool) -> None:
     """And no arm stands for longer than 0.5 s before a target within its reach."""
     robot, dt = paper_robot(), 4e-3
     stream = hostile.streams(robot, np.random.default_rng(5))[kind]
-    hand = MovingTarget(paper_start())
-    controller = Controller(robot, LIMITED, hand if filtered else None, dt=dt)
+    hand = d.MovingTarget(paper_start())
+    controller = d.Controller(robot, LIMITED, hand if filtered else None, dt=dt)
     path = [paper_start().q]
     frozen = 0.0
     for k in range(600):
@@ -70,10 +48,10 @@ def test_hostile_targets_break_no_limit(kind: str, filtered: bool) -> None:
 
 
 @pytest.mark.parametrize("limits", [LIMITS, LIMITS[:1]])
-def test_a_jump_is_made_good_without_swinging(limits: tuple[Limit, ...]) -> None:
+def test_a_jump_is_made_good_without_swinging(limits: tuple[d.Limit, ...]) -> None:
     start = paper_start()
-    controller = Controller(paper_robot(), DoubleIndicator(extra_limits=limits))
-    target = Target(start.position + [0.0, -0.05, 0.0], start.rotation)
+    controller = d.Controller(paper_robot(), d.DoubleIndicator(extra_limits=limits))
+    target = d.Target(start.position + [0.0, -0.05, 0.0], start.rotation)
     q, path = start.q, [start.q]
     distance = []
     for k in range(1500):
@@ -88,10 +66,10 @@ def test_a_jump_is_made_good_without_swinging(limits: tuple[Limit, ...]) -> None
 
 
 def followed(
-    robot: Robot, scheme: Scheme, path: Reference, q: np.ndarray, steps: int
-) -> tuple[list[Action], np.ndarray, Controller]:
+    robot: d.Robot, scheme: d.Scheme, path: d.Reference, q: np.ndarray, steps: int
+) -> tuple[list[Action], np.ndarray, d.Controller]:
     """Actions and commands of a controller at 2 ms from q."""
-    controller = Controller(robot, scheme, path, dt=2e-3)
+    controller = d.Controller(robot, scheme, path, dt=2e-3)
     actions = []
     commands = []
     for k in range(steps):
@@ -106,28 +84,28 @@ def test_near_a_singular_pose_a_path_that_fits_is_caught_up_with() -> None:
     """A circle begins at full speed. Damped for good, it was 0.2 % too slow in all 600 steps."""
     robot, home = paper_robot(), paper_robot().start_posture()
     home[3] = -0.25
-    start = Configuration(robot, home)
-    tasks = [PositionTask(gain=5.0), OrientationTask(gain=5.0)]
-    limits = [JointLimits(gain=10.0), AccelerationLimits(10.0), JerkLimits(300.0)]
-    circle = Circle(radius=0.02, period=4.0).anchored(start)
-    actions, *_ = followed(robot, Scheme([KineticEnergy()], tasks, limits), circle, home, 200)
+    start = d.Configuration(robot, home)
+    tasks = [d.PositionTask(gain=5.0), d.OrientationTask(gain=5.0)]
+    limits = [d.JointLimits(gain=10.0), d.AccelerationLimits(10.0), d.JerkLimits(300.0)]
+    circle = d.Circle(radius=0.02, period=4.0).anchored(start)
+    actions, *_ = followed(robot, d.Scheme([d.KineticEnergy()], tasks, limits), circle, home, 200)
     weighted = np.repeat([1.0, ROTATION_LENGTH], 3)[:, np.newaxis] * start.jacobian
     assert np.linalg.svd(weighted, compute_uv=False)[-1] < 0.05
     assert Action.SLOW in actions[:50]
     assert set(actions[50:]) == {Action.NONE}
 
 
-@pytest.mark.parametrize("limits", [(), (AccelerationLimits(10.0), JerkLimits(300.0))])
+@pytest.mark.parametrize("limits", [(), (d.AccelerationLimits(10.0), d.JerkLimits(300.0))])
 def test_a_joint_at_its_velocity_limit_leaves_no_path_slowed_that_fits(
-    limits: tuple[Limit, ...],
+    limits: tuple[d.Limit, ...],
 ) -> None:
     """The other joints do what joint 1 cannot; it was 0.2 % too slow in all 600 steps."""
     home = paper_robot().start_posture()
     fastest = paper_robot().dq_max.copy()
     fastest[0] = 0.02
     robot = paper_robot().with_limits(velocity=fastest)
-    circle = Circle(radius=0.05, period=4.0).anchored(Configuration(robot, home))
-    scheme = DoubleIndicator(orientation="so3", home=home, extra_limits=limits)
+    circle = d.Circle(radius=0.05, period=4.0).anchored(d.Configuration(robot, home))
+    scheme = d.DoubleIndicator(orientation="so3", home=home, extra_limits=limits)
     actions, commands, _ = followed(robot, scheme, circle, home, 300)
     assert np.mean(np.abs(commands[100:, 0]) > 0.02 - 1e-6) > 0.5
     assert set(actions[100:]) == {Action.NONE}
@@ -136,8 +114,8 @@ def test_a_joint_at_its_velocity_limit_leaves_no_path_slowed_that_fits(
 def test_a_path_beside_position_limits_is_braked_for_in_time() -> None:
     """A velocity wanted up to the limits themselves cost 0.61 s of the path in place of 0.51 s."""
     robot = paper_robot().with_limits(lower=-2.5, upper=2.5)
-    scheme = DoubleIndicator(extra_limits=(AccelerationLimits(10.0),))
-    path = Heart(scale=0.02, period=6.0).anchored(paper_start())
+    scheme = d.DoubleIndicator(extra_limits=(d.AccelerationLimits(10.0),))
+    path = d.Heart(scale=0.02, period=6.0).anchored(paper_start())
     *_, controller = followed(robot, scheme, path, paper_start().q, 4000)
     assert controller.delay < 0.55
 
@@ -145,9 +123,9 @@ def test_a_path_beside_position_limits_is_braked_for_in_time() -> None:
 @pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
 def test_a_path_that_is_too_quick(policy: Policy) -> None:
     robot, start = paper_robot(), paper_start()
-    limited = DoubleIndicator(extra_limits=LIMITS[:1])
-    fast = Heart(scale=0.02, period=6.0).anchored(start)
-    record = simulate(
+    limited = d.DoubleIndicator(extra_limits=LIMITS[:1])
+    fast = d.Heart(scale=0.02, period=6.0).anchored(start)
+    record = d.simulate(
         robot, limited, fast, start.q, dt=1e-3, duration=2.0, policy=policy, check=UNCHECKED
     )
     assert judged(record.q, jerk=np.inf) == []
@@ -156,7 +134,7 @@ def test_a_path_that_is_too_quick(policy: Policy) -> None:
         assert record.settings["status"].startswith("stopped")
         assert (record.dq[-1] == 0.0).all()
         assert np.abs(record.dq).max() > 0.01  # it was moving, and braked
-        assert failures(record)
+        assert d.failures(record)
     else:
         assert record.settings["status"] == "completed"
         expected = Action.SLOW if policy == "slow" else Action.RELAX
@@ -180,9 +158,9 @@ def test_a_path_that_is_too_quick(policy: Policy) -> None:
     ],
 )
 def test_commands_that_something_alters_keep_the_limits(options: dict[str, object]) -> None:
-    record: Record = run(LIMITED, heart(1.0), duration=0.3, **options)
+    record: d.Record = run(LIMITED, heart(1.0), duration=0.3, **options)
     assert judged(record.q) == []
-    metrics = compute_metrics(record)
+    metrics = d.compute_metrics(record)
     assert metrics["acceleration_limit_violation_rad_s2"] == 0.0
     assert metrics["jerk_limit_violation_rad_s3"] == 0.0
     assert np.abs(record.dq).max() > 0.0
@@ -190,19 +168,19 @@ def test_commands_that_something_alters_keep_the_limits(options: dict[str, objec
 
 @pytest.mark.parametrize("limits", [(), LIMITS[:1]], ids=["none", "acceleration"])
 def test_a_stopped_arm_goes_on_where_the_task_has_a_solution_again(
-    limits: tuple[Limit, ...],
+    limits: tuple[d.Limit, ...],
 ) -> None:
     start = paper_start()
-    scheme = DoubleIndicator(extra_limits=limits)
-    controller = Controller(paper_robot(), scheme, policy="stop")
-    far = Target(start.position + [0.5, 0.0, 0.0], start.rotation)
+    scheme = d.DoubleIndicator(extra_limits=limits)
+    controller = d.Controller(paper_robot(), scheme, policy="stop")
+    far = d.Target(start.position + [0.5, 0.0, 0.0], start.rotation)
     for k in range(3):
         command = controller.step(start.q, 1e-3 * k, far)
         assert command.action is Action.STOP
         assert not command.dq.any()
         assert "against joint" in repr(command)
         np.testing.assert_array_equal([command.qp.lb, command.qp.ub], command.bounds)
-    near = Target(start.position + [1e-5, 0.0, 0.0], start.rotation)
+    near = d.Target(start.position + [1e-5, 0.0, 0.0], start.rotation)
     again = [controller.step(start.q, 3e-3, near), controller.step(start.q, 4e-3, near)]
     for command in again:
         assert command.ok
