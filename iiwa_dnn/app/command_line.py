@@ -1,22 +1,34 @@
-"""A command from its call to its exit code, and the folder that it writes."""
+"""The words that all commands share, their exit codes, and the folder that a command writes."""
 
 import os
 import signal
 import sys
-import threading
 import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Annotated, Any
 
 import tomli_w
 import tyro
+from tyro.conf import arg
 
 from iiwa_dnn.errors import FileError, IiwaDnnError, NoSolutionError
-from iiwa_dnn.files import one_line, prepare_folder
+from iiwa_dnn.files import one_line, prepare_folder, write_text
 
 SETTINGS_FILE = "settings.toml"
 """Name of the settings in a run's folder."""
+
+
+def shown(metavar: str, about: str = "") -> Any:
+    """Describe a word whose default, None or (), the help need not show."""
+    return arg(metavar=metavar, help_behavior_hint="", help=about or None)
+
+
+Number = Annotated[float | None, shown("X")]
+Count = Annotated[int | None, shown("N")]
+Flag = Annotated[bool, arg(help_behavior_hint="")]
+Quiet = Annotated[bool, arg(aliases=["-q"], help_behavior_hint="")]
+Folder = Annotated[Path | None, shown("FOLDER")]
 
 
 def guard(prog: str, run: Callable[[], int | None]) -> int:
@@ -33,8 +45,7 @@ def guard(prog: str, run: Callable[[], int | None]) -> int:
     Raises:
         SystemExit: After ``--help`` or a wrong word, and after SIGTERM, with code 143.
     """
-    if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, _terminate)
+    signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
     with warnings.catch_warnings():
         warnings.simplefilter("always", UserWarning)
         warnings.showwarning = lambda message, *_: print(f"{prog}: {message}", file=sys.stderr)
@@ -54,12 +65,6 @@ def guard(prog: str, run: Callable[[], int | None]) -> int:
             return 1 if isinstance(error, NoSolutionError) else 2
 
 
-def _terminate(number: int, frame: object) -> NoReturn:
-    """End the process in order: half-written files are removed, worker processes end."""
-    warnings.simplefilter("ignore")  # of work that is given up
-    sys.exit(128 + signal.SIGTERM)
-
-
 def run_script(main: Callable[..., int | None]) -> int:
     """Call a script's function with the words of the command line, as `guard` does.
 
@@ -69,19 +74,18 @@ def run_script(main: Callable[..., int | None]) -> int:
     return guard(Path(sys.argv[0]).stem, lambda: tyro.cli(main))
 
 
-def claim_folder(
-    folder: Path, settings: Mapping[str, Any], overwrite: bool, product: str = SETTINGS_FILE
-) -> Path:
-    """Prepare the folder of a run with these settings, which leaves a file of the name `product`.
+def claim_folder(folder: Path, settings: Mapping[str, Any], overwrite: bool) -> Path:
+    """Make a folder that of the run with these settings, which are written into it.
 
     Raises:
         FileError: The folder holds other files, or another run and `overwrite` is not set, or
             cannot be written to.
     """
     file = folder / SETTINGS_FILE
-    is_same = file.is_file() and file.read_text(encoding="utf-8") == tomli_w.dumps(settings)
-    mine = overwrite or (is_same and (folder / product).exists())
-    if folder.is_dir() and any(folder.glob("[!.]*")) and not mine:
+    text = tomli_w.dumps(settings)
+    is_same = file.is_file() and file.read_text(encoding="utf-8") == text
+    if any(folder.glob("[!.]*")) and not (is_same or overwrite):
         problem = "holds another run or other files: choose another --out, or --overwrite"
         raise FileError(folder, problem)
-    return prepare_folder(folder)
+    write_text(prepare_folder(folder) / SETTINGS_FILE, text)
+    return folder

@@ -1,37 +1,31 @@
-"""The replay of a run in the browser, with its path, errors and verdict."""
-
-from __future__ import annotations
+"""``view``: the replay of a run in the browser, with its path, errors and verdict."""
 
 import socket
-from contextlib import redirect_stdout, suppress
-from io import StringIO
+import time
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import pinocchio as pin
+from tyro.conf import Positional
 
-from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import SETTINGS_FILE
+from iiwa_dnn import InvalidInputError, Record, Robot, failures
+from iiwa_dnn.app.command_line import SETTINGS_FILE, shown
 from iiwa_dnn.app.track import load
-from iiwa_dnn.errors import FileError, InvalidInputError, import_extra
+from iiwa_dnn.errors import import_extra
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp.program import Matrix, Vector
-from iiwa_dnn.results.failures import failures
-from iiwa_dnn.results.metrics import ACTIONS, position_error, rotation_angle
+from iiwa_dnn.results.metrics import ACTIONS, orientation_error, position_error
 from iiwa_dnn.results.pictures import obstacles_of
 from iiwa_dnn.results.plots import envelope
-from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot import Robot
+from iiwa_dnn.results.report import markdown_table
 from iiwa_dnn.robot.obstacles import outline
 from iiwa_dnn.robot.shapes import read_shapes
 
 PIECES = 300
 """Straight pieces of a drawn path, points of the curve, and parts of the time bar."""
-
-LEAST = 1e-15
-"""Least value of the curve [m]: smaller ones are rounding errors."""
 
 _STYLE = """<style>
 [style*="max-height: 60%"] { max-height: 40% !important }
@@ -41,35 +35,44 @@ _STYLE = """<style>
 """On a phone viser's controls would cover 60 % of the height, and leave a strip beside them."""
 
 
-def open_replay(run: Path, robot: str | None, host: str, port: int) -> Replay:
-    """Serve the page of a run, by its folder or its record.
+def view(
+    run: Positional[Path],
+    *,
+    robot: Annotated[str | None, shown("NAME")] = None,
+    host: str = "127.0.0.1",
+    port: int = 8080,
+) -> int:
+    """Replay a run in the browser.
 
-    Raises:
-        FileError: There is no record.
-        IiwaDnnError: As of `robot_of` and `serve`.
+    Args:
+        run: folder or record of a run
+        robot: robot of the run, by name or file, if its own is elsewhere now
+        host: address of the page; 0.0.0.0 lets other machines in
+        port: port of the page; 0 takes a free one
     """
     file = run / "record.npz" if run.is_dir() else run
-    if not file.exists():
-        raise FileError(file, "no such file: not the folder of a run")
     record = Record.load(file)
-    return Replay(robot_of(record, file.with_name(SETTINGS_FILE), robot), record, host, port)
+    replay = Replay(robot_of(record, file.with_name(SETTINGS_FILE), robot), record, host, port)
+    print(f"open http://{host}:{replay.server.get_port()} in a browser; Ctrl-C ends it", flush=True)
+    while True:
+        time.sleep(1 / 30)
+        replay.tick(1 / 30)
 
 
 def robot_of(record: Record, settings: Path, name: str | None = None) -> Robot:
     """Load the robot of a record as a settings file describes it, else the record itself.
 
     Raises:
-        InvalidInputError: The robot does not have as many joints as the record.
+        InvalidInputError: The robot's joints are not those of the record.
     """
     kept = record.settings
     table = {"name": kept["robot"], "tip": kept.get("tip"), "locked": list(kept["locked"] or ())}
     if settings.is_file():
-        table = {"name": kept["robot"], **read_toml(settings).get("robot", {})}
-    robot = load({**table, "name": name or table["name"]})
-    if robot.dof != record.dof:
-        problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
+        table |= read_toml(settings).get("robot", {})
+    robot: Robot = load({**table, "name": name or table["name"]})
+    if list(robot.joint_names) != kept["joints"]:
+        problem = f"{robot.name} has other joints than the record: {' '.join(robot.joint_names)}"
         raise InvalidInputError("--robot", problem, name)
-    checks.finite_array("q0", table.get("q0", record.q[0]), (robot.dof,))
     return robot
 
 
@@ -82,16 +85,13 @@ def serve(title: str, host: str, port: int) -> Any:
     """
     viser = import_extra("viser", "pip install 'iiwa-dnn[view]'")
     try:
-        with socket.create_server((host, port)) as probe:  # viser would take another one silently
-            free = probe.getsockname()[1]
+        socket.create_server((host, port)).close()  # viser would take another one silently
     except (OSError, OverflowError) as error:
         problem = f"cannot listen on {host}:{port}: {one_line(error)}"
         raise InvalidInputError("--host, --port", problem, (host, port)) from error
-    with redirect_stdout(StringIO()):  # its banner
-        server = viser.ViserServer(host=host, port=free, label=title, verbose=False)
+    server = viser.ViserServer(host=host, port=port, label=title, verbose=False)
     server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
     server.gui.add_html(_STYLE)
-    server.scene.set_up_direction("+z")
     server.scene.add_grid("/floor", width=3.0, height=3.0, cell_size=0.1, section_size=0.5)
     return server
 
@@ -113,17 +113,16 @@ def show_robot(server: Any, robot: Robot) -> Any:
 def aim(server: Any, point: Vector) -> None:
     """Aim the cameras at the arm and a point in front of it (3,) [m]; on a phone from afar."""
     middle = 0.6 * point + [0.0, 0.0, 0.2]
-    side = np.array([point[1], -point[0], 0.0])  # across the way from the base to the point
-    view = 1.6 * side + 0.4 * point + [0.0, 0.0, 0.4]
+    # The first vector lies across the way from the base to the point.
+    view = 1.6 * np.array([point[1], -point[0], 0.0]) + 0.4 * point + [0.0, 0.0, 0.4]
     server.initial_camera.look_at = tuple(middle)
     server.initial_camera.position = tuple(middle + view)
 
+    @server.on_client_connect  # type: ignore[untyped-decorator]
     def step_back(client: Any) -> None:
         if client.camera.aspect < 1.0:
             client.camera.position = tuple(middle + 1.8 * view)
             client.camera.look_at = tuple(middle - [0.0, 0.0, 0.4])
-
-    server.on_client_connect(step_back)
 
 
 def draw_path(server: Any, name: str, points: Matrix, color: tuple[int, int, int]) -> None:
@@ -153,26 +152,24 @@ class Replay:
         self.record = record
         self.server = serve(f"{robot.name} · iiwa_dnn", host, port)
         self._visualizer = show_robot(self.server, robot)
-        path = record.position_desired
         scene = self.server.scene
-        draw_path(self.server, "desired", path, (70, 80, 100))
-        self._target = scene.add_frame("/target", axes_length=0.06, axes_radius=0.002)
+        draw_path(self.server, "desired", record.position_desired, (70, 80, 100))
         self.obstacles = [
             (obstacle, scene.add_mesh_simple(f"/obstacle_{i}", *outline(obstacle)))
             for i, obstacle in enumerate(obstacles_of(record))
         ]
-        aim(self.server, path.mean(axis=0))
+        aim(self.server, record.position_desired.mean(axis=0))
         gui = self.server.gui
-        start = float(record.t[0])
-        end = max(float(record.t[-1]), start + 1e-6)
+        end = max(float(record.t[-1]), 1e-6)
         self.playing = gui.add_checkbox("play", False)
-        self.clock = gui.add_slider("time [s]", start, end, 1e-3 * (end - start), start)
+        self.clock = gui.add_slider("time [s]", 0.0, end, 1e-3 * end, 0.0)
         self.marks = gui.add_html(self._bar())
         self.speed = gui.add_dropdown("speed", ("0.1", "0.5", "1", "2", "5"), initial_value="1")
         verdict = failures(record) or ["completed within all limits"]
         gui.add_markdown("\n".join(f"- {line}" for line in verdict))
         self._readout = gui.add_markdown("")
-        self._errors = np.linalg.norm(position_error(record), axis=1)
+        self._distances = np.linalg.norm(position_error(record), axis=1)
+        self._angles = orientation_error(record)
         self._add_curve()
         self.show()
 
@@ -187,7 +184,8 @@ class Replay:
         """Draw the largest position error of each stretch of time, by its decimal logarithm."""
         from viser import uplot  # of an extra
 
-        times, _, _, errors = envelope(self.record.t, np.maximum(self._errors, LEAST), PIECES)
+        shown = np.maximum(self._distances, 1e-15)  # less is rounding
+        times, _, _, errors = envelope(self.record.t, shown, PIECES)
         self.server.gui.add_uplot(
             (times, np.log10(errors)),
             (uplot.Series(), uplot.Series(stroke="#d6001c", width=1)),
@@ -200,8 +198,8 @@ class Replay:
     def tick(self, elapsed: float) -> None:
         """Let `elapsed` seconds pass, and show the state if the time has changed."""
         if self.playing.value:
-            passed = self.clock.value - self.clock.min + float(self.speed.value) * elapsed
-            self.clock.value = self.clock.min + passed % (self.clock.max - self.clock.min)
+            passed = self.clock.value + float(self.speed.value) * elapsed
+            self.clock.value = passed % self.clock.max
         if self.clock.value != self._shown:
             self.show()
 
@@ -211,24 +209,19 @@ class Replay:
         self._shown = self.clock.value
         k = int(np.searchsorted(record.t, self._shown).clip(0, record.steps))
         self._visualizer.display(record.q[k])
-        self._target.position = record.position_desired[k]
-        self._target.wxyz = pin.Quaternion(record.rotation_desired[k]).coeffs()[[3, 0, 1, 2]]
         for obstacle, mesh in self.obstacles:
             mesh.position = obstacle.shift(self._shown)
         draw_path(self.server, "drawn", record.position[: k + 2], (220, 0, 30))
-        angle = rotation_angle(record.rotation[k], record.rotation_desired[k])
         step = min(k, record.steps - 1)
         acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
-        against = map(describe, in_the_way(record.settings, *acting))
         action = ACTIONS.get(int(record.filled("action")[step]), "none")
         rows = [
-            f"position error | {self._errors[k]:.3g} m",
-            "---|---",
-            f"orientation error | {float(angle):.3g} rad",
-            f"KKT residual | {record.kkt_residual[step]:.1e}",
-            f"gap to the reference | {record.crosscheck_gap[step]:.1e} rad/s",
-            f"policy | {', '.join([action, *against])}",
+            ("position error", f"{self._distances[k]:.3g} m"),
+            ("orientation error", f"{self._angles[k]:.3g} rad"),
+            ("KKT residual", f"{record.kkt_residual[step]:.1e}"),
+            ("gap to the reference", f"{record.crosscheck_gap[step]:.1e} rad/s"),
+            ("policy", ", ".join([action, *map(describe, in_the_way(record.settings, *acting))])),
         ]
-        for name, q in zip(record.settings["joints"], record.q[k], strict=True):
-            rows.append(f"{name} [rad] | {q:+.3f}")
-        self._readout.content = "\n".join(f"| {row} |" for row in rows)
+        joints = zip(record.settings["joints"], record.q[k], strict=True)
+        rows += [(f"{name} [rad]", f"{q:+.3f}") for name, q in joints]
+        self._readout.content = markdown_table(rows[0], rows[1:])

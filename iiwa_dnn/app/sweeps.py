@@ -1,84 +1,120 @@
-"""``paper`` and ``atlas``: many runs in one sweep, with tables, figures and a report."""
+"""``paper`` and ``atlas``: many runs in one sweep, with tables, figures and a report.
 
-import sys
-import time
-from collections.abc import Sequence
+The studies are imported only for these two commands: SciPy's statistics take a second.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-import tomli_w
+from tyro.conf import arg
 
-from iiwa_dnn.app.command_line import SETTINGS_FILE, claim_folder
-from iiwa_dnn.app.words import SweepWords
+from iiwa_dnn import checks
+from iiwa_dnn.app.command_line import (
+    Count,
+    Flag,
+    Folder,
+    Number,
+    Quiet,
+    claim_folder,
+    shown,
+)
 from iiwa_dnn.files import write_json, write_text
 from iiwa_dnn.results.plots import overview_figure, write_figures
 from iiwa_dnn.results.report import made
-from iiwa_dnn.studies import atlas as league, atlas_report, paper_report
-from iiwa_dnn.studies.paper_tables import EXPERIMENTS, figure_runs
-from iiwa_dnn.studies.runs import HeartRun, Scope, measure
-from iiwa_dnn.studies.sweeps import PACKAGES, Task, sweep
+
+Names = Annotated[tuple[str, ...], shown("NAME ...")]
 
 
-def run_sweep(
-    words: SweepWords, name: str, task: Task, cells: Sequence[Any]
-) -> tuple[Path, list[Any]]:
-    """Compute the cells of a sweep in a command's folder, but for those that are there.
+@dataclass(frozen=True)
+class SweepWords:
+    """Words of a command that carries out many runs, and goes on where it was interrupted."""
 
-    Returns the folder and the results; errors as of `claim_folder` and `sweep`.
+    out: Folder = None  # folder of the results (runs/ and the command's name)
+    overwrite: Flag = False  # write over a folder that holds something else
+    workers: Count = None  # number of processes (one for each core)
+    dask: Annotated[str | None, shown("ADDRESS")] = None  # Dask scheduler that runs them
+    quiet: Quiet = False  # print nothing but the reasons of a failure
+
+
+Sweeping = Annotated[SweepWords, arg(help="")]  # its title says enough
+EVERY = SweepWords()
+
+
+def start_sweep(words: SweepWords, name: str) -> tuple[Path, Callable[..., list[Any]]]:
+    """Claim the folder of a command; return it, and a function that computes cells by a task.
+
+    Cells that are there already are not computed again.
     """
+    from iiwa_dnn.studies.sweeps import sweep
+
+    checks.integer("workers", 1 if words.workers is None else words.workers, 1)
     settings = {"command": name}
     folder = claim_folder(words.out or Path("runs") / name, settings, words.overwrite)
-    write_text(folder / SETTINGS_FILE, tomli_w.dumps(settings))
-    how: dict[str, Any] = {"workers": words.workers, "dask": words.dask, "quiet": words.quiet}
-    return folder, sweep(task, cells, folder / "cells", **how)
+    compute = partial(sweep, workers=words.workers, dask=words.dask, quiet=words.quiet)
+    return folder, partial(compute, folder=folder / "cells")
 
 
-def paper(words: SweepWords, scope: Scope, name: str | None = None) -> int:
-    """Run every experiment, or the one of a name; write tables, figures and report.
+def paper(
+    sweep: Sweeping = EVERY,
+    *,
+    quick: Flag = False,
+    seeds: Count = None,
+    duration: Number = None,
+    table: Annotated[int | None, shown("N")] = None,
+    weights: Annotated[tuple[float, ...], shown("X ...")] = (),
+) -> int:
+    """Run every experiment of the paper, each number beside the paper's.
 
-    Returns the exit code: 1 if a run ended early.
+    Args:
+        sweep: words of all sweeps
+        quick: run 1 s and 5 seeds only, to see that all works
+        seeds: number of noises in Table II (100)
+        duration: length of each run [s] (10)
+        table: table of the paper to run alone, 1 or 2 (everything)
+        weights: weights xi in [0, 1] of the columns of Table I (all)
     """
-    began = time.perf_counter()
-    parts = {key: EXPERIMENTS[key].runs(scope) for key in ([name] if name else EXPERIMENTS)}
-    cells = [run for part in parts.values() for run in part.values()]
-    folder, results = run_sweep(words, "paper", measure, cells)
-    remaining = iter(results)
-    tables = {
-        key: EXPERIMENTS[key].tabulate(scope, dict(zip(part, remaining, strict=False)))
-        for key, part in parts.items()
-    }
-    for file, table in tables.items():
-        write_json(folder / f"{file}.json", table)
-    caveats = _caveats(scope)
+    from iiwa_dnn.studies import paper_report, paper_tables, runs, sweeps
+
+    given = {"seeds": seeds, "duration": duration, "weights": weights or None}
+    scope = replace(runs.QUICK if quick else runs.FULL, **_chosen(given))
+    names = [*paper_tables.EXPERIMENTS]
+    if table is not None:
+        names = [f"table{checks.one_of('table', str(table), ('1', '2'))}"]
+    folder, compute = start_sweep(sweep, "paper")
+    tables = {}
+    early: list[str] = []
+    for name in names:
+        experiment = paper_tables.EXPERIMENTS[name]
+        planned = experiment.runs(scope)
+        results = compute(runs.measure, [*planned.values()])
+        tables[name] = experiment.tabulate(scope, dict(zip(planned, results, strict=True)))
+        write_json(folder / f"{name}.json", tables[name])
+        early += [values["status"] for values in results if values["status"] != "completed"]
     head = {
-        **made({package: version(package) for package in PACKAGES}),
-        "runs": f"{len(cells):,} of {scope.duration:g} s at {scope.dt:g} s; {scope.seeds} seeds",
-        "wall time": f"{time.perf_counter() - began:.0f} s but for runs that were found finished",
-        **caveats,
+        **made({package: version(package) for package in sweeps.PACKAGES}),
+        "runs": f"{scope.duration:g} s each (the paper's: 10 s) at {scope.dt:g} s",
+        "seeds": str(scope.seeds),
+        "ended early": "; ".join(early) or "none",
     }
-    text = paper_report.report(tables, head, [] if name else _figures(words, scope))
+    figures = _figures(compute, scope, folder) if table is None else []
+    text = paper_report.report(tables, head, figures)
     write_text(folder / "report.md", text)
-    if not words.quiet:
-        said = [text] if name else [*paper_report.summary(tables), *caveats.values()]
+    if not sweep.quiet:
+        said = paper_report.summary(tables) if table is None else [text]
         print(*said, f"written to {folder}", sep="\n\n")
-    return _early(results)
-
-
-def _early(results: Sequence[Any]) -> int:
-    """Tell of runs that ended early, and return the exit code."""
-    early = [values["status"] for values in results if values["status"] != "completed"]
-    if early:
-        print(f"{len(early)} runs ended early, the first: {early[0]}", file=sys.stderr)
     return int(bool(early))
 
 
-def _figures(words: SweepWords, scope: Scope) -> list[str]:
+def _figures(compute: Callable[..., list[Any]], scope: Any, folder: Path) -> list[str]:
     """Draw the paper's Fig. 1 and 2; return the names of the PNG files."""
-    runs = figure_runs(scope)
-    folder, found = run_sweep(words, "paper", HeartRun.run, list(runs.values()))
-    records = dict(zip(runs, found, strict=True))
+    from iiwa_dnn.studies import paper_report, paper_tables, runs
+
+    panels = paper_tables.figure_runs(scope)
+    records = dict(zip(panels, compute(runs.HeartRun.run, list(panels.values())), strict=True))
     figures = {
         "fig1": partial(overview_figure, records["noise, filter"]),
         "fig2": partial(paper_report.error_figure, records),
@@ -86,32 +122,61 @@ def _figures(words: SweepWords, scope: Scope) -> list[str]:
     return [path.name for path in write_figures(figures, folder) if path.suffix == ".png"]
 
 
-def _caveats(scope: Scope) -> dict[str, str]:
-    """Say of runs that are shorter than the heart that no figure of theirs is the paper's."""
-    period = HeartRun().reference().period
-    if scope.duration >= period:
-        return {}
-    text = f"Runs of {scope.duration:g} s: less than the heart's {period:g} s does not close it, so"
-    return {"caveat": f"{text} the drift is another, and no figure is the paper's."}
+def atlas(
+    sweep: Sweeping = EVERY,
+    *,
+    whole: Flag = False,
+    seeds: Count = None,
+    other_seeds: Count = None,
+    networks: Names = (),
+    schemes: Names = (),
+    disturbances: Names = (),
+    work: Annotated[float, shown("X")] = 1e4,
+) -> int:
+    """Compare the networks of the field, and yours, at equal work.
 
+    A network of one's own is named as module:NAME or file.py:NAME.
 
-def atlas(words: SweepWords, size: league.Size) -> int:
-    """Run the atlas, write tables and report, and return the exit code."""
-    began = time.perf_counter()
+    Args:
+        sweep: words of all sweeps
+        whole: run 100 seeds and all schemes: hours in place of minutes
+        seeds: number of noises with the first scheme (5, whole: 100)
+        other_seeds: number of noises with the other schemes (3)
+        networks: networks (every one; beside your own too)
+        schemes: schemes (the first; whole: every one)
+        disturbances: disturbances beside the undisturbed runs (every one)
+        work: work a control period [operations] (1e4)
+    """
+    from iiwa_dnn.studies import atlas as league, atlas_report
+
+    if league.NETWORKS.keys().isdisjoint(networks):  # one's own beside all others
+        networks = (*league.NETWORKS, *networks)
+    given = {
+        "networks": networks,
+        "schemes": schemes or (tuple(league.SCHEMES) if whole else None),
+        "disturbances": disturbances or None,
+        "work": work,
+        "seeds": 100 if whole and seeds is None else seeds,
+        "others": other_seeds,
+    }
+    size = league.Size(**_chosen(given))
+    folder, compute = start_sweep(sweep, "atlas")
     trials = league.gain_cells(size)
-    gains = league.best_gains(trials, run_sweep(words, "atlas", league.measure, trials)[1])
-    cells = league.cells(size, gains)
-    folder, results = run_sweep(words, "atlas", league.measure, cells)
-    rows = atlas_report.tabulate(cells, results)
+    cells = league.cells(size, league.best_gains(trials, compute(league.measure, trials)))
+    rows = atlas_report.tabulate(cells, compute(league.measure, cells))
     write_json(folder / "atlas.json", rows)
-    runs = sum(cell.seeds for cell in cells) + len(trials)
     head = (
-        f"{runs} runs of {league.DURATION:g} s in {time.perf_counter() - began:.0f} s; "
+        f"{sum(cell.seeds for cell in cells) + len(trials)} runs of {league.DURATION:g} s; "
         f"{size.seeds} seeds with the first scheme, {size.others} with the others, "
         "on heart, circle and Lissajous figure in turn; errors of each run's second half."
     )
     text = atlas_report.report(folder, size, rows, head)
     write_text(folder / "report.md", text)
-    if not words.quiet:
+    if not sweep.quiet:
         print(text)
     return 0
+
+
+def _chosen(words: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the words that were given, those that are not None."""
+    return {name: value for name, value in words.items() if value is not None}

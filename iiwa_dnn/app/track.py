@@ -1,22 +1,20 @@
 """``track``, ``physics`` and ``export``: a run, or its controller, from words and tables.
 
-The keys of the tables are the arguments of the package's functions and classes.
+The keys of the tables are the arguments of the package's functions and classes. What has no word is
+set by its table and key.
 """
 
-import json
 import sys
-import warnings
 from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
-from dataclasses import asdict
-from functools import partial
+from dataclasses import asdict, dataclass, make_dataclass
+from functools import partial, reduce
 from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
-import numpy as np
-import tomli_w
 from tqdm import tqdm
+from tyro.conf import Positional, UseAppendAction, arg
 
 from iiwa_dnn import (
     AccelerationLimits,
@@ -34,7 +32,6 @@ from iiwa_dnn import (
     Lissajous,
     MujocoPlant,
     NotFoundError,
-    Reference,
     Robot,
     Tilting,
     TipSpeedLimit,
@@ -45,11 +42,10 @@ from iiwa_dnn import (
     load_robot,
     simulate,
 )
-from iiwa_dnn.app.command_line import SETTINGS_FILE, claim_folder
-from iiwa_dnn.app.words import TABLES, WORDS
+from iiwa_dnn.app.command_line import Flag, Folder, Quiet, claim_folder, shown
 from iiwa_dnn.control.estimation import NoiseModel
-from iiwa_dnn.files import parse_toml, read_toml, write_text
-from iiwa_dnn.results.pictures import save_moments, save_video
+from iiwa_dnn.files import parse_toml, read_toml
+from iiwa_dnn.results.pictures import save_pictures
 from iiwa_dnn.results.report import save_run, summary
 from iiwa_dnn.robot.offscreen import prepare_renderer
 from iiwa_dnn.simulation import Disturbances, IdealPlant, Push, count_steps
@@ -58,14 +54,14 @@ from iiwa_dnn.studies.paper import JOINT_LIMIT, published
 Tables = dict[str, Any]
 Choices = Mapping[str, Callable[..., Any]]
 
-CHECKS = {"both": ("proxqp", "osqp"), "none": ()}
-LIMITS: Choices = {
-    "acceleration": AccelerationLimits,
-    "jerk": JerkLimits,
-    "tip_speed": TipSpeedLimit,
-    "obstacles": CollisionAvoidance.from_toml,
-}
+TABLES = ("robot", "reference", "scheme", "limits", "run", "plant")
+"""Tables of the settings file."""
+
 BOUNDS = ("position", "speed", "lower", "upper", "velocity")
+"""Keys of the table [limits] that change the robot's own limits; all others are parts."""
+
+CHECKS = {"both": ("proxqp", "osqp"), "none": ()}
+PLANTS: Choices = {"ideal": IdealPlant, "mujoco": MujocoPlant}
 PATHS: Choices = {
     "heart": Heart,
     "circle": Circle,
@@ -74,16 +70,184 @@ PATHS: Choices = {
     "cone": Cone,
     "tilting-circle": Tilting,
 }
-PLANTS: Choices = {"ideal": IdealPlant, "mujoco": MujocoPlant}
+PARTS: Choices = {
+    "limits.acceleration": AccelerationLimits,
+    "limits.jerk": JerkLimits,
+    "limits.tip_speed": TipSpeedLimit,
+    "limits.obstacles": CollisionAvoidance.from_toml,
+    "run.estimator": NoiseModel,
+    "plant.disturbances": Disturbances,
+    "plant.disturbances.push": Push,
+}
+"""Settings that stand for objects, by table and key: what makes the object."""
+
+WORDS: dict[str, tuple[str, Any, str, str]] = {
+    "path": (
+        "reference.name",
+        Positional[str | None],  # type: ignore[misc] # an alias of Annotated
+        "[PATH]",
+        "heart, circle, line, lissajous, cone, tilting-circle or FILE.csv (heart)",
+    ),
+    "robot": ("robot.name", str | None, "NAME", "iiwa7, panda, ... or a URDF file (iiwa7)"),
+    "tip": ("robot.tip", str | None, "FRAME", "frame that follows the path"),
+    "lock": ("robot.locked", tuple[str, ...] | None, "JOINT ...", "joints held still"),
+    "q0": ("robot.q0", tuple[float, ...] | None, "X ...", "joint positions at the start [rad]"),
+    "reference": ("reference.name", str | None, "NAME", "the path, as PATH"),
+    "scale": (
+        "reference.scale",
+        float | None,
+        "X",
+        "factor a of the heart, whose width is 32 a [m]",
+    ),
+    "period": ("reference.period", float | None, "X", "time of one round [s]"),
+    "stretch": (
+        "reference.stretch",
+        float | None,
+        "X",
+        "ratio of the path's times to those in a file [1]",
+    ),
+    "weight": (
+        "scheme.weight",
+        float | None,
+        "X",
+        "weight xi of the kinetic index, in [0, 1] (0.2)",
+    ),
+    "orientation": (
+        "scheme.orientation",
+        str | None,
+        "WORD",
+        "orientation rows: so3, block or none (so3)",
+    ),
+    "tracking": (
+        "scheme.tracking",
+        str | None,
+        "WORD",
+        "target of a step: paper, or next, at its end",
+    ),
+    "joint_limit": (
+        "limits.position",
+        float | Literal["datasheet"] | None,
+        "X",
+        "position limit of all joints [rad], or datasheet (iiwa7: 2.5)",
+    ),
+    "speed": (
+        "limits.speed",
+        float | None,
+        "X",
+        "ratio of the velocity limits to the data sheet's [1]",
+    ),
+    "acceleration_limit": (
+        "limits.acceleration",
+        float | Literal["robot"] | None,
+        "X",
+        "acceleration limit [rad/s^2], or robot: its own",
+    ),
+    "jerk_limit": (
+        "limits.jerk",
+        float | Literal["robot"] | None,
+        "X",
+        "jerk limit [rad/s^3], or robot: its own",
+    ),
+    "obstacles": (
+        "limits.obstacles",
+        str | None,
+        "FILE",
+        "obstacles in TOML; the arm avoids them and itself",
+    ),
+    "mode": (
+        "run.mode",
+        str | None,
+        "WORD",
+        "network at a step: converged or continuous (converged)",
+    ),
+    "dt": ("run.dt", float | None, "X", "control period [s] (1e-3; the paper's heart 1e-4)"),
+    "duration": ("run.duration", float | None, "X", "length of the run [s] (one round)"),
+    "policy": (
+        "run.policy",
+        str | None,
+        "WORD",
+        "at a step without solution: slow, relax or stop (slow)",
+    ),
+    "motion": (
+        "run.motion",
+        str | None,
+        "WORD",
+        "integrator of the motion: euler, midpoint or rk4 (euler)",
+    ),
+    "noise": (
+        "run.noise",
+        float | None,
+        "X",
+        "standard deviation of the joint velocity's noise [rad/s]",
+    ),
+    "filter_window": (
+        "run.filter_window",
+        int | None,
+        "N",
+        "samples in the moving average of the joint velocity",
+    ),
+    "seed": ("run.seed", int | None, "N", "seed of the random numbers (0)"),
+    "check": (
+        "run.check",
+        str | None,
+        "NAME",
+        "reference of a step: proxqp, osqp, both, proof, none, ...",
+    ),
+    "tolerance": (
+        "run.tolerance",
+        float | None,
+        "X",
+        "largest gap to the reference [rad/s] (1e-6)",
+    ),
+    "plant": ("plant.name", str | None, "NAME", "arm that moves: ideal or mujoco (ideal)"),
+    "push": (
+        "plant.disturbances.push.force",
+        tuple[float, ...] | None,
+        "X Y Z",
+        "force on the tip at 5 s, in MuJoCo [N]",
+    ),
+}
+"""Words of the commands with an arm: table and key, type, name of the value, and help."""
 
 
-def track(options: Any) -> int:
-    """Draw the path, check every step, write the run, and return the exit code."""
+@dataclass(frozen=True)
+class Run:
+    """Words of a command with an arm that stand for no setting."""
+
+    config: Annotated[Path | None, shown("FILE")] = None
+    """settings in TOML: tables robot, reference, scheme, limits, run, plant"""
+    set: UseAppendAction[Annotated[tuple[str, ...], shown("KEY=VALUE")]] = ()
+    """one further setting, as scheme.drift_gain=5"""
+    disturb: Flag = False
+    """apply errors of mass, friction, encoders and a delay, in MuJoCo"""
+    out: Folder = None
+    """folder of the results (runs/PATH, or that of --config; controller for export)"""
+    overwrite: Flag = False
+    """write over a folder that holds another run"""
+    plots: Flag = True
+    """draw no figures, pictures or video"""
+    quiet: Quiet = False
+    """print nothing but the reasons of a failure"""
+
+
+_FIELDS = [
+    (name, Annotated[kind, shown(metavar, about)], None)
+    for name, (_, kind, metavar, about) in WORDS.items()
+]
+Words: Any = Annotated[make_dataclass("Words", _FIELDS, bases=(Run,), frozen=True), arg(name="")]
+
+
+def track(options: Words) -> int:
+    """Draw a path with a robot arm, every step checked; by default the paper's heart.
+
+    All further settings are arguments of the Python classes, given by --config or --set.
+    Exit code 0: every step solved, within limits and in agreement; 1: not so; 2: bad input.
+    """
     return _draw(options, {})
 
 
-def physics(options: Any) -> int:
-    """Draw the path in MuJoCo, with pictures and a video, and return the exit code."""
+def physics(options: Words) -> int:
+    """Draw a path with an arm that has masses and motors, in MuJoCo, with pictures and a video."""
     return _draw(options, {"plant": {"name": "mujoco"}})
 
 
@@ -91,27 +255,25 @@ def _draw(options: Any, more: Tables) -> int:
     """Carry out a run, write it into its folder, print its summary, and return the exit code."""
     tables = read_tables(options, more)
     arguments = build(tables)
-    robot = arguments["robot"]
     steps = count_steps(arguments["reference"], arguments["dt"], arguments.get("duration"))
     name = "physics" if more else Path(tables["reference"]["name"]).stem
-    folder = Path("runs") / name if options.config is None else options.config.parent
-    folder = claim_folder(options.out or folder, tables, options.overwrite, "record.npz")
-    pictured = options.plots and tables["plant"].get("name") == "mujoco"
-    if pictured:  # before the run, what draws them is asked for
-        prepare_renderer()
-    try:
-        # Hidden if standard error is no terminal.
-        with tqdm(total=steps, unit="step", disable=True if options.quiet else None) as bar:
-            record = simulate(**arguments, progress=bar.update, far_start=True)
-        draw_more = partial(save_moments, robot) if pictured else None
-        beside = published(record.settings)
-        metrics = save_run(record, folder, plots=options.plots, more=draw_more, paper=beside)
-        write_text(folder / SETTINGS_FILE, tomli_w.dumps(tables))
-        if pictured:
-            save_video(robot, record, folder / "video.mp4")
-    finally:
-        with suppress(OSError):  # it goes only if it is empty: the run was given up
-            folder.rmdir()
+    usual = Path("runs") / name if options.config is None else options.config.parent
+    folder = options.out or usual
+    draw_more = None
+    if options.plots and tables["plant"].get("name") == "mujoco":
+        prepare_renderer()  # what it needs is asked for before the run
+        draw_more = partial(save_pictures, arguments["robot"])
+    # Hidden if standard error is no terminal.
+    with tqdm(total=steps, unit="step", disable=options.quiet or None) as bar:
+
+        def proceed(done: int) -> None:
+            """Claim the folder once all arguments are found to be right; move the bar."""
+            if done == 0:
+                claim_folder(folder, tables, options.overwrite)
+            bar.update(done)
+
+        record = simulate(**arguments, progress=proceed, far_start=True)
+    metrics = save_run(record, folder, options.plots, draw_more, published(record.settings))
     reasons = failures(metrics)
     if not options.quiet:
         print(summary(metrics), f"written to {folder}", sep="\n")
@@ -120,22 +282,14 @@ def _draw(options: Any, more: Tables) -> int:
     return 1 if reasons else 0
 
 
-def export(options: Any) -> int:
-    """Write the controller of a run as C, and return 0."""
+def export(options: Words) -> int:
+    """Write the controller of a run as C99: one file without dependencies, and its tests."""
     tables = read_tables(options, {})
     arguments = build(tables)
-    for name in ("filter_window", "motion"):
-        if name in tables["run"]:
-            raise InvalidInputError(name, "is no part of a controller and is not exported")
     known = signature(Controller).parameters
     controller = Controller(**{key: arguments[key] for key in arguments if key in known})
-    folder = options.out or Path("controller")
-    folder = claim_folder(folder, tables, options.overwrite, "controller.c")
+    folder = claim_folder(options.out or Path("controller"), tables, options.overwrite)
     exports.c99(controller, folder, arguments["q0"])
-    write_text(folder / SETTINGS_FILE, tomli_w.dumps(tables))
-    if controller.robot.name == "iiwa7" and "position" not in tables["limits"]:
-        line = "position limits of 2.5 rad are the paper's, wider than those of joints 2, 4 and 6"
-        print(f"{line}; for a real arm take --joint-limit datasheet", file=sys.stderr)
     if not options.quiet:
         print(f"written to {folder}; to test it: make -C {folder}")
     return 0
@@ -146,21 +300,19 @@ def read_tables(options: Any, more: Tables) -> Tables:
 
     Raises:
         FileError: The file cannot be read.
-        NotFoundError: There is no table of a name.
-        InvalidInputError: A setting cannot be read.
+        InvalidInputError: There is no such table.
     """
     typical = asdict(Disturbances.typical()) if options.disturb else {}
-    disturbances = {key: value for key, value in typical.items() if value is not None}
-    words = [(word.place, getattr(options, name)) for name, word in WORDS.items()]
-    tables: Tables = {name: {} for name in TABLES}
-    for source in (
+    words = [(f"plant.disturbances.{key}", value) for key, value in typical.items()]
+    words += [(place, getattr(options, name)) for name, (place, *_) in WORDS.items()]
+    sources = [
+        {name: {} for name in TABLES},
         more,
         {} if options.config is None else read_toml(options.config),
-        {"plant": {"disturbances": disturbances}} if disturbances else {},
         *(_nested(place, value) for place, value in words if value is not None),
         *map(_read_setting, options.set),
-    ):
-        tables = _merge(tables, _checked(source))
+    ]
+    tables = _checked(reduce(_merge, sources))
     for table, key in (("robot", "name"), ("reference", "name"), ("limits", "obstacles")):
         if Path(tables[table].get(key, "")).suffix:
             tables[table][key] = str(Path(tables[table][key]).resolve())
@@ -168,28 +320,25 @@ def read_tables(options: Any, more: Tables) -> Tables:
 
 
 def _checked(tables: Tables) -> Tables:
-    """Return the tables; raise NotFoundError or InvalidInputError if one is none of a run's."""
+    """Return the tables; raise InvalidInputError if one is none of a run's."""
     for name, values in tables.items():
-        if name not in TABLES:
-            raise NotFoundError("table of settings", name, TABLES)
-        if not isinstance(values, dict):
-            raise InvalidInputError(name, "must be a table with keys", values)
+        if name not in TABLES or not isinstance(values, dict):
+            raise InvalidInputError(name, f"must be one of the tables {', '.join(TABLES)}", values)
     return tables
+
+
+def _read_setting(text: str) -> Tables:
+    """Read ``TABLE.KEY=VALUE``, the value in TOML, or a text without quotation marks."""
+    place, _, value = text.partition("=")
+    with suppress(ValueError):
+        value = parse_toml(f"value = {value}")["value"]
+    return _nested(place, value)
 
 
 def _nested(place: str, value: Any) -> Tables:
     """Return tables in which a value stands at ``TABLE.KEY``."""
     table, _, key = place.partition(".")
     return {table: _nested(key, value)} if key else {table: value}
-
-
-def _read_setting(text: str) -> Tables:
-    """Read ``TABLE.KEY=VALUE``, the value in TOML, or a text without quotation marks."""
-    place, _, value = text.partition("=")
-    for written in (value, json.dumps(value)):
-        with suppress(ValueError):
-            return parse_toml(f"{place} = {written}")
-    raise InvalidInputError("--set", f"must be TABLE.KEY=VALUE, not {text!r}", text)
 
 
 def _merge(first: Tables, second: Tables) -> Tables:
@@ -208,101 +357,82 @@ def build(tables: Tables) -> Tables:
     Raises:
         IiwaDnnError: A setting is unknown or out of range.
     """
-    robot_table = tables["robot"]
-    limits = tables["limits"]
-    run = tables["run"]
-    sheet = load(robot_table)
-    robot = limited(sheet, limits)
-    q0 = checks.finite_array("q0", robot_table.get("q0", sheet.start_posture()), (robot.dof,))
-    if "q0" in robot_table and (problem := robot.outside(q0)):
-        raise InvalidInputError("q0", problem, q0)
-    if "q0" not in robot_table and not robot.has_known_start:
-        line = f"no start posture is known of {robot.name!r}: its joints begin near the middle"
-        warnings.warn(f"{line} of their ranges; --q0 chooses another", stacklevel=2)
-    path_name = tables["reference"].setdefault("name", "heart")
-    is_file = path_name.lower().endswith(".csv")
-    from_file = partial(Waypoints.from_csv, path_name if is_file else "FILE.csv")
-    paths: Choices = {**PATHS, path_name if is_file else "FILE.csv": from_file}
-    reference: Reference = choose(paths, "reference", tables["reference"])
+    table = tables["robot"]
+    sheet = load(table)
+    robot, parts = bounded(sheet, tables["limits"])
+    q0 = checks.finite_array("q0", table.get("q0", sheet.start_posture()), (robot.dof,))
+    table |= {"name": table.get("name", "iiwa7"), "q0": q0.tolist()}
+    name = tables["reference"].setdefault("name", "heart")
+    is_file = str(name).lower().endswith(".csv")
+    paths = {name: partial(Waypoints.from_csv, name)} if is_file else PATHS
+    reference = choose(paths, "reference", tables["reference"])
     if getattr(reference, "quaternions", None) is None:
         reference = reference.anchored(Configuration(robot, q0))
-    make_scheme = partial(DoubleIndicator, extra_limits=parts_of(limits))
-    scheme = call(make_scheme, "scheme", tables["scheme"])
-    plant = choose(PLANTS, "plant", {"name": "ideal", **_disturbed(tables["plant"])})
-    is_paper = (robot.name, path_name, plant.exact) == ("iiwa7", "heart", True)
-    robot_table |= {"name": robot_table.get("name", "iiwa7"), "q0": q0.tolist()}
+    scheme = call(partial(DoubleIndicator, extra_limits=tuple(parts)), "scheme", tables["scheme"])
+    tables["plant"].setdefault("name", "mujoco" if tables["plant"] else "ideal")
+    plant = choose(PLANTS, "plant", tables["plant"])
+    run = tables["run"]
+    is_paper = (robot.name, name, plant.exact) == ("iiwa7", "heart", True)
     run.setdefault("dt", 1e-4 if is_paper else 1e-3)
-    options = {key: value for key, value in run.items() if key not in ("check", "tolerance")}
-    check_names(signature(simulate).parameters, "run", options)
-    if "estimator" in run:
-        options["estimator"] = call(NoiseModel, "run.estimator", run["estimator"])
     solver = run.get("check", "proxqp")
     check = CrossCheck(CHECKS.get(solver, (solver,)), run.get("tolerance", 1e-6))
+    given = {key: value for key, value in run.items() if key not in ("check", "tolerance")}
     made = {"robot": robot, "scheme": scheme, "reference": reference, "q0": q0, "plant": plant}
-    return {**made, "check": check, **options}
+    return {**made, "check": check, **objects(signature(simulate).parameters, "run", given)}
 
 
-def _disturbed(table: Tables) -> Tables:
-    """Return a table [plant] with its disturbances and their push made of their tables."""
-    if "disturbances" not in table:
-        return table
-    inner = dict(table["disturbances"])
-    if "push" in inner:
-        inner["push"] = call(Push, "plant.disturbances.push", inner["push"])
-    return {**table, "disturbances": call(Disturbances, "plant.disturbances", inner)}
+def call(function: Callable[..., Any], table: str, values: Tables) -> Any:
+    """Call a function with the values of a table; errors as of `objects`."""
+    arguments = {key: value for key, value in values.items() if key not in ("name", "q0")}
+    return function(**objects(signature(function).parameters, table, arguments))
 
 
-def check_names(known: Collection[str], table: str, values: Tables) -> None:
-    """Refuse a key of a table that is none of those known.
+def choose(choices: Choices, table: str, values: Tables) -> Any:
+    """Call the function that the key ``name`` of a table chooses, with its other keys."""
+    name = checks.one_of(table, values["name"], tuple(choices))
+    return call(choices[name], table, values)
+
+
+def objects(known: Collection[str], table: str, values: Tables) -> Tables:
+    """Return the values of a table, those that stand for objects made into them.
 
     Raises:
-        NotFoundError: There is one.
+        NotFoundError: A key is none of those known.
+        InvalidInputError: A value is out of range.
     """
     for name in values:
         if name not in known:
             raise NotFoundError(f"setting in [{table}]", name, known)
+    return {name: _made(f"{table}.{name}", value) for name, value in values.items()}
 
 
-def call(function: Callable[..., Any], table: str, values: Tables) -> Any:
-    """Call a function with the values of a table; errors as of `check_names`."""
-    check_names(signature(function).parameters, table, values)
-    return function(**values)
+def _made(place: str, value: Any) -> Any:
+    """Return what a setting stands for; errors as of `objects`."""
+    if place not in PARTS:
+        return value
+    if isinstance(value, dict):
+        return call(PARTS[place], place, value)
+    try:
+        return PARTS[place](None if value == "robot" else value)
+    except InvalidInputError as error:
+        raise InvalidInputError(place, error.problem, value) from error
 
 
-def choose(choices: Choices, table: str, values: Tables) -> Any:
-    """Call the function that the key ``name`` of a table chooses, with its other keys.
-
-    Raises:
-        NotFoundError: There is no choice of this name, or a key is no argument of it.
-    """
-    arguments = dict(values)
-    name = arguments.pop("name")
-    if name not in choices:
-        raise NotFoundError(f"name in [{table}]", name, choices)
-    return call(choices[name], table, arguments)
-
-
-def load(table: Tables) -> Robot:
+def load(table: Tables) -> Any:
     """Load the robot of a table [robot], with the data sheet's limits."""
-    arguments = {key: value for key, value in table.items() if key not in ("name", "q0")}
-    robot: Robot = call(partial(load_robot, table.get("name", "iiwa7")), "robot", arguments)
-    return robot
+    return call(partial(load_robot, table.get("name", "iiwa7")), "robot", table)
 
 
-def parts_of(table: Tables) -> tuple[Any, ...]:
-    """Make the limits of a table [limits] that are parts of the program."""
-    check_names((*BOUNDS, *LIMITS), "limits", table)
-    chosen = [(make, table[name]) for name, make in LIMITS.items() if name in table]
-    return tuple(make(None if value == "robot" else value) for make, value in chosen)
-
-
-def limited(robot: Robot, table: Tables) -> Robot:
-    """Return the robot with the limits of a table [limits], the paper's for its arm."""
-    position = table.get("position", JOINT_LIMIT if robot.name == "iiwa7" else "datasheet")
-    bounds = {key: table[key] for key in ("lower", "upper") if key in table}
-    if position != "datasheet":
-        angle = checks.positive("joint-limit", position)
-        bounds = {"lower": -angle, "upper": angle, **bounds}
-    speed = checks.positive("speed", table.get("speed", 1.0))
-    velocity = np.asarray(table.get("velocity", robot.dq_max), dtype=float)
-    return robot.with_limits(velocity=speed * velocity, **bounds)
+def bounded(sheet: Robot, table: Tables) -> tuple[Robot, list[Any]]:
+    """Return a robot with the bounds of a table [limits], by default the paper's, and its parts."""
+    parts = [key.removeprefix("limits.") for key in PARTS if key.startswith("limits.")]
+    values = objects((*BOUNDS, *parts), "limits", table)
+    bounds = {key: values[key] for key in ("lower", "upper", "velocity") if key in values}
+    angle = values.get("position", JOINT_LIMIT if sheet.name == "iiwa7" else "datasheet")
+    if angle != "datasheet":
+        upper = checks.positive("joint-limit", angle)
+        bounds = {"lower": -upper, "upper": upper, **bounds}
+    robot = sheet.with_limits(**bounds)
+    speed = checks.positive("speed", values.get("speed", 1.0))
+    robot = robot.with_limits(velocity=speed * robot.dq_max)
+    return robot, [values[key] for key in parts if key in values]

@@ -69,13 +69,14 @@ _SCENERY = f"""
 """
 
 
-def save_moments(robot: Robot, record: Record, folder: str | os.PathLike[str]) -> list[Path]:
-    """Write ``moments.png`` and ``moments.pdf`` into a folder, made if need be; return the files.
+def save_pictures(robot: Robot, record: Record, folder: Path) -> list[Path]:
+    """Write the figure ``moments`` and ``video.mp4`` into a folder; return the figure's files.
 
     Raises:
         MissingDependencyError: MuJoCo or an OpenGL library is not installed.
         FileError: The folder cannot be written.
     """
+    save_video(robot, record, folder / "video.mp4")
     return write_figures({"moments": partial(moments_figure, robot, record)}, folder)
 
 
@@ -104,7 +105,6 @@ def save_video(robot: Robot, record: Record, path: str | os.PathLike[str]) -> No
         MissingDependencyError: MuJoCo, an OpenGL library or the encoder is not installed.
         FileError: The file cannot be written.
     """
-    import_extra("imageio_ffmpeg", "pip install 'iiwa-dnn[sim]'")
     encoder = import_extra("imageio.v2", "pip install 'iiwa-dnn[sim]'")
 
     count = max(1, round(float(record.t[-1] - record.t[0]) * FRAME_RATE)) + 1

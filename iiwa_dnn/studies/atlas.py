@@ -325,7 +325,8 @@ def entry_of(name: str) -> Entry:
         found = resolve_name(name.replace(".py:", ":"))
         found = found() if isinstance(found, type) else found
     except Exception as error:  # whatever the file of others raises
-        raise InvalidInputError("network", f"{name} cannot be had: {one_line(error)}") from error
+        problem = f"{name} cannot be had in {Path.cwd()}: {one_line(error)}"
+        raise InvalidInputError("network", problem) from error
     if not isinstance(found, Entry | Network):
         raise InvalidInputError("network", f"{name} is no Network: {found!r}", found)
     return still(found) if isinstance(found, Network) else found
