@@ -112,8 +112,7 @@ def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     except (TypeError, ValueError) as error:
         raise InvalidInputError(argument, "must be numbers", value) from error
     lengths = zip(shape, numbers.shape, strict=False)
-    fits = numbers.shape == shape or all(n in (-1, m) for n, m in lengths)
-    if not fits or numbers.ndim != len(shape):
+    if numbers.ndim != len(shape) or not all(n in (-1, m) for n, m in lengths):
         wanted = str(shape).replace("-1", "m")
         raise InvalidInputError(argument, f"must have shape {wanted}, not {numbers.shape}", value)
     numbers.setflags(write=False)

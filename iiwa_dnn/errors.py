@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copyreg
 import os
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -17,14 +18,7 @@ class IiwaDnnError(Exception):
 
     def __reduce__(self) -> tuple[object, ...]:
         # Not by the constructor, whose arguments are others than the message.
-        return _remake, (type(self), self.args), vars(self)
-
-
-def _remake(kind: type[IiwaDnnError], args: tuple[Any, ...]) -> IiwaDnnError:
-    """Make an error anew that was pickled or copied; its attributes are filled in afterwards."""
-    error = kind.__new__(kind, *args)
-    error.args = args
-    return error
+        return copyreg.__newobj__, (type(self),), {**vars(self), "args": self.args}  # type: ignore[attr-defined]
 
 
 class InvalidInputError(IiwaDnnError, ValueError):
@@ -56,16 +50,11 @@ class NotFoundError(IiwaDnnError, LookupError):
         self.kind = kind
         self.name = name
         self.available = tuple(available)
-        super().__init__(f"no {kind} {name!r}{suggestion(name, self.available)}")
-
-
-def suggestion(name: str, available: Iterable[str]) -> str:
-    """Return ``; did you mean: ...`` with the names nearest to one, else ``; there are: ...``."""
-    names = tuple(available)
-    near = get_close_matches(name, names, n=3)
-    shown = [repr(each) if ", " in each else each for each in near or names[:12]]
-    listed = ", ".join(shown) + (", ..." if not near and names[12:] else "")
-    return f"; {'did you mean' if near else 'there are'}: {listed}" if listed else ""
+        near = get_close_matches(name, self.available, n=3)
+        shown = [repr(each) if ", " in each else each for each in near or self.available[:12]]
+        listed = f"; {'did you mean' if near else 'there are'}: {', '.join(shown)}"
+        more = "" if near or len(self.available) <= 12 else ", ..."
+        super().__init__(f"no {kind} {name!r}{listed if shown else ''}{more}")
 
 
 class FileError(IiwaDnnError, OSError):

@@ -52,25 +52,14 @@ def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], o
 
 
 def prepare_folder(folder: str | os.PathLike[str]) -> Path:
-    """Make a folder with its parents and check that files can be written in it.
-
-    To be called before a long run, lest it end without a folder for its record.
-
-    Args:
-        folder: The folder; it may exist already.
-
-    Returns:
-        The folder.
+    """Make a folder with its parents, unless it exists already, and return it.
 
     Raises:
-        FileError: If it cannot be made or written to.
+        FileError: If it cannot be made.
     """
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / f".{secrets.token_hex(8)}.tmp"
-        probe.touch(exist_ok=False)
-        probe.unlink()
     except (OSError, ValueError) as error:  # ValueError: a name with a NUL in it
         raise FileError(folder, f"cannot be written to ({one_line(error)})") from error
     return folder

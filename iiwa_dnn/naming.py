@@ -62,16 +62,10 @@ def describe(limit: Mapping[str, Any]) -> str:
     return f"{joint} {limit['side']} {limit['limit']}{end}"
 
 
-def joint_name(settings: Mapping[str, Any], joint: int) -> str:
-    """Return the name of a joint, counted from 0, in a run of these settings."""
-    names = settings.get("joints") or ()
-    return str(names[joint]) if names else f"joint {joint + 1}"
-
-
-def short_names(settings: Mapping[str, Any], dof: int) -> list[str]:
+def short_names(settings: Mapping[str, Any]) -> list[str]:
     """Return short names of the joints, without the words that all their names have in common."""
-    names = [joint_name(settings, joint).replace("_", " ").split() for joint in range(dof)]
-    common = set(names[0]).intersection(*names) if dof > 1 else set()
+    names = [name.replace("_", " ").split() for name in settings["joints"]]
+    common = set(names[0]).intersection(*names) if len(names) > 1 else set()
     return [" ".join(word for word in name if word not in common) for name in names]
 
 

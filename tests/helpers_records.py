@@ -26,6 +26,7 @@ def make_record(
     references = len(solvers)
     settings: dict[str, Any] = {
         "robot": "iiwa7",
+        "joints": [f"joint {k + 1}" for k in range(dof)],
         "q_lower": [-2.5] * dof,
         "q_upper": [2.5] * dof,
         "dq_max": [1.5] * dof,

@@ -73,7 +73,6 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
     (lambda: d.MujocoPlant(3), "disturbances: must be an iiwa_dnn.Disturbances"),
     (lambda: paper_robot().frame_id(None), "no frame 'None'"),
     (lambda: d.compute_metrics({}), "record: must be an iiwa_dnn.Record"),
-    (lambda: d.failures("runs/heart"), "run: must be a record or its metrics"),
     (lambda: d.Record.load(3), "3: "),
     (lambda: drive(Builder()), "scheme: Builder overrides build_qp"),
     (lambda: drive(d.Scheme([Distant()], [d.PositionTask()])), "no target of frame 'x'"),

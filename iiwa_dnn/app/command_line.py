@@ -32,7 +32,7 @@ Folder = Annotated[Path | None, shown("FOLDER")]
 
 
 def guard(prog: str, run: Callable[[], int | None]) -> int:
-    """Call a command; print errors of the package and warnings as one line each.
+    """Call a command; print warnings, and errors of the package and the system, as one line each.
 
     Args:
         prog: Name of the command in messages.
@@ -60,7 +60,7 @@ def guard(prog: str, run: Callable[[], int | None]) -> int:
         except KeyboardInterrupt:
             print("interrupted", file=sys.stderr)
             return 128 + signal.SIGINT
-        except IiwaDnnError as error:
+        except (IiwaDnnError, OSError) as error:
             print(f"{prog}: error: {one_line(error)}", file=sys.stderr)
             return 1 if isinstance(error, NoSolutionError) else 2
 

@@ -286,10 +286,15 @@ def export(options: Words) -> int:
     """Write the controller of a run as C99: one file without dependencies, and its tests."""
     tables = read_tables(options, {})
     arguments = build(tables)
+    if "filter_window" in arguments:
+        raise InvalidInputError("filter_window", "is no part of a controller and is not exported")
     known = signature(Controller).parameters
     controller = Controller(**{key: arguments[key] for key in arguments if key in known})
     folder = claim_folder(options.out or Path("controller"), tables, options.overwrite)
     exports.c99(controller, folder, arguments["q0"])
+    if controller.robot.name == "iiwa7" and "position" not in tables["limits"]:
+        line = "position limits of 2.5 rad are the paper's, wider than those of joints 2, 4 and 6"
+        print(f"{line}; for a real arm take --joint-limit datasheet", file=sys.stderr)
     if not options.quiet:
         print(f"written to {folder}; to test it: make -C {folder}")
     return 0

@@ -3,13 +3,11 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import percent
 from iiwa_dnn.naming import describe
 from iiwa_dnn.results.metrics import (
     BOUNDS,
     EXCESS_TOLERANCE,
-    FAR,
     JOINT_LIMITS,
     compute_metrics,
 )
@@ -17,9 +15,6 @@ from iiwa_dnn.results.record import Record
 
 LIMIT_SLACK = 1e-9
 """Excess over a limit [rad, rad/s, m] that is forgiven: rounding of the motion's integration."""
-
-INFEASIBLE = "no joint velocity inside the limits fulfils the task"
-"""Beginning of a reason: a program of the continuous mode was shown to have no solution."""
 
 _DONE = {"slow_steps": "slowed", "relax_steps": "relaxed", "stop_steps": "stopped"}
 
@@ -36,14 +31,9 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
 
     Returns:
         The reasons, the gravest first; empty if there is none.
-
-    Raises:
-        InvalidInputError: `run` is neither.
     """
     if isinstance(run, Record):
         return failures(compute_metrics(run))
-    if not hasattr(run, "get") or "settings" not in run:
-        raise InvalidInputError("run", f"must be a record or its metrics, not {run!r:.80}", run)
     converged = run["settings"]["mode"] == "converged"
     check = run["crosscheck"]
     reasons = [
@@ -107,7 +97,10 @@ def _incomplete(metrics: Mapping[str, Any]) -> Iterator[str]:
     step = settings.get("infeasible_step")
     if step is not None:
         where = _at({"step": step, "time_s": step * settings["dt"]})
-        yield f"{INFEASIBLE}, as at {where}: the path is too quick, or out of reach"
+        yield (
+            f"no joint velocity inside the limits fulfils the task, as at {where}: the path is "
+            "too quick, or out of reach"
+        )
     if metrics["max_position_error_m"] is None:
         yield "the tip position is not finite at every step"
 
@@ -125,8 +118,6 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
         f"{counted(sum(done.values()))} without a solution ({counts}), the first at {first}",
         f"most often in the way: {_named(incidents['blocking']) or pose}",
     ]
-    if (metrics["start_distance_m"] or 0.0) > FAR:
-        parts.append(f"the path begins {_show(metrics['start_distance_m'])} m from the tip")
     if "slowed" in done and incidents["path_time_s"]:
         pace = metrics["duration_s"] / incidents["path_time_s"]
         parts.append(f"give the path {_show(pace)} times the time (--period, --stretch) or more")

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.files import plain
-from iiwa_dnn.naming import in_the_way, joint_name
+from iiwa_dnn.naming import in_the_way
 from iiwa_dnn.results.record import RATES, FloatArray, Record
 
 PROOF = "proof"
@@ -18,8 +18,7 @@ PROOF = "proof"
 PROGRAMS = ("own", "scaled", "softened", "held", "stopped")
 """Kinds of a step by their codes in `Record.kind`."""
 
-_HELD = PROGRAMS.index("held")
-_STOPPED = PROGRAMS.index("stopped")
+*_, _HELD, _STOPPED = range(len(PROGRAMS))
 
 EXCESS_TOLERANCE = 1e-9
 """Excess of a command over the bounds and rows of its own step that is rounding."""
@@ -33,9 +32,6 @@ ACTIONS = {2: "slow", 3: "relax", 4: "stop", 5: "euler"}
 SETTLED_AFTER = 0.5
 """Time until an arm in physics has settled [s]; it starts at rest, its weight unknown."""
 
-FAR = 1e-3
-"""Distance between tip and path at the start of a run [m] from which on it is worth a word."""
-
 JOINT_LIMITS = {
     "position_limit_violation_rad": ("position", "rad"),
     "velocity_limit_violation_rad_s": ("velocity", "rad/s"),
@@ -45,8 +41,6 @@ JOINT_LIMITS = {
 """Metrics of the excess over the joints' limits: the limited quantity, and the unit."""
 
 _AT_LIMIT = 1.0 - 1e-9
-
-BoolArray = NDArray[np.bool_]
 
 
 def position_error(record: Record) -> FloatArray:
@@ -184,7 +178,7 @@ def _max(values: NDArray[Any]) -> Any:
     return values.max() if values.size else None
 
 
-def _first(record: Record, acts: np.bool_ | BoolArray) -> dict[str, Any] | None:
+def _first(record: Record, acts: Any) -> dict[str, Any] | None:
     """Count steps (N,), and name the first of them."""
     steps = np.flatnonzero(acts)
     if not steps.size:
@@ -203,8 +197,7 @@ def _worst(record: Record, excess: FloatArray) -> dict[str, Any] | None:
     if not excess.max(initial=0.0) > 0.0:
         return None
     step, joint = np.unravel_index(int(excess.argmax()), excess.shape)
-    name = joint_name(record.settings, int(joint))
-    return {"joint": name, "step": step, "time_s": record.t[step]}
+    return {"joint": record.settings["joints"][joint], "step": step, "time_s": record.t[step]}
 
 
 def _active(record: Record) -> FloatArray:
@@ -259,15 +252,14 @@ def _crosscheck(record: Record) -> dict[str, Any]:
     }
 
 
-def _judged_by(record: Record, asked: BoolArray) -> dict[str, int]:
+def _judged_by(record: Record, asked: NDArray[np.bool_]) -> dict[str, int]:
     """Count the answers that each solver judged: those asked for, and the second ones."""
-    check = record.settings["check"]
     counts: Counter[str] = Counter()
-    judges = zip(check["solvers"], check["second"], strict=True)
-    for pair, codes, was_asked in zip(judges, record.filled("judge").T, asked.T, strict=True):
+    check = record.settings["check"]
+    for column, pair in enumerate(zip(check["solvers"], check["second"], strict=True)):
         for code, solver in enumerate(pair):
-            counts[solver] += int((was_asked & (codes == code)).sum())
-    return {solver: count for solver, count in counts.items() if count}
+            counts[solver] += int((asked & (record.filled("judge") == code))[:, column].sum())
+    return dict(+counts)  # without those of none
 
 
 def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
@@ -277,14 +269,14 @@ def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
     torque = np.abs(record.torque)
     limit = limits(record, "torque_max")
     reached = ~(torque < limit)
-    joints = [joint_name(record.settings, joint) for joint in np.flatnonzero(reached.any(axis=0))]
+    names = np.array(record.settings["joints"])[reached.any(axis=0)]
     first = _first(record, reached.any(axis=1))
     physics = {
         "settled_after_s": SETTLED_AFTER,
         "max_position_error_settled_m": _max(distance[record.t >= record.t[0] + SETTLED_AFTER]),
         "max_torque_n_m": torque.max(axis=0),
         "max_torque_share": (torque.max(axis=0) / limit).max(),
-        "torque_limit_reached": first and first | {"joints": joints},
+        "torque_limit_reached": first and first | {"joints": names},
     }
     return {"physics": physics}
 
@@ -307,7 +299,7 @@ def _collisions(record: Record) -> dict[str, Any]:
         return {}
     least = int(record.distance.argmin())
     stated = record.settings["collisions"]
-    first, second = stated["pairs"][int(record.nearest[least])]
+    first, second = stated["pairs"][record.nearest[least]]
     found = {
         "least_distance_m": record.distance[least],
         "first": first,

@@ -183,7 +183,7 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
         upper = np.full(record.dof, 100.0)
     bounds = np.array([limits(record, "q_lower", -np.inf) if name == "q" else -upper, upper])
     colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, record.dof))
-    names = short_names(record.settings, record.dof)
+    names = short_names(record.settings)
     every = max(min(curves.shape[1], BUCKETS) // 7, 1)
     for joint, curve in enumerate(curves):
         style = {

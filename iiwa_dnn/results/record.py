@@ -1,13 +1,10 @@
 """The record of one run: its settings, its samples, and the judgement of each step."""
 
-from __future__ import annotations
-
 import json
 import os
-from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, get_origin, get_type_hints
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,13 +37,14 @@ class Column(NamedTuple):
 
     def allocate(self, steps: int, **sizes: int) -> NDArray[Any]:
         """Make the array of a run of so many steps, of `fill` alone; further sizes as ``n=7``."""
-        # Zeros take no memory before they are written, unlike np.full.
-        array = np.zeros(self._lengths(sizes | {"N": steps, "N+1": steps + 1}), self.dtype)
+        known = {"N": steps, "N+1": steps + 1, **sizes}
+        lengths = [known.get(size, 0) if isinstance(size, str) else size for size in self.shape]
+        array = np.zeros(lengths, self.dtype)  # no memory before they are written, unlike np.full
         if self.fill:
             array[:] = self.fill
         return array
 
-    def check(self, name: str, value: ArrayLike, sizes: dict[str, int]) -> NDArray[Any]:
+    def check(self, name: str, value: ArrayLike, sizes: dict[str | int, int]) -> NDArray[Any]:
         """Return a read-only copy of an array of this column.
 
         Sizes that this array is the first to have are entered.
@@ -54,28 +52,23 @@ class Column(NamedTuple):
         Raises:
             InvalidInputError: If the array has another type or shape.
         """
-        array = np.asarray(value)
-        for symbol, length in zip(self.shape[1:], array.shape[1:], strict=False):
-            if isinstance(symbol, str) and length:
-                sizes.setdefault(symbol, length)
-        expected = self._lengths(sizes)
-        kinds = "fiu" if self.dtype is np.float64 else "iu"
+        array = np.array(value)
         if name in OPTIONAL and not array.size:
-            array = np.zeros(expected if array.shape == expected else (0, *expected[1:]))
-        elif array.dtype.kind not in kinds or array.shape != expected:
+            return np.zeros((0, *(sizes.get(axis, 0) for axis in self.shape[1:])), self.dtype)
+        axes = zip(self.shape, array.shape, strict=False)
+        expected = tuple(sizes.setdefault(axis, length) for axis, length in axes)
+        fits = array.shape == expected and array.ndim == len(self.shape)
+        if not fits or not np.can_cast(array.dtype, self.dtype, "same_kind"):
             symbols = ", ".join(map(str, self.shape))
             problem = f"{array.dtype} of shape {array.shape}, expected numbers ({symbols})"
             raise InvalidInputError(name, f"{problem} = {expected}", value)
-        array = np.array(array, self.dtype, order="C")
+        array = array.astype(self.dtype, order="C", copy=False)
         array.flags.writeable = False
         return array
 
-    def _lengths(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
-        return tuple(sizes.get(size, 0) if isinstance(size, str) else size for size in self.shape)
 
-
-def _absent() -> Any:
-    return np.empty(0)
+ABSENT: Any = ()
+"""Value of a column of which a run has nothing."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,7 +121,7 @@ class Record:
     torque: Annotated[
         FloatArray,
         Column("Joint torques of a run in physics [N m], the largest of each step", ("N", "n")),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     bound_multiplier: Annotated[
         FloatArray,
         Column(
@@ -137,7 +130,7 @@ class Record:
             "objective per rad/s by which the bound is relaxed",
             ("N", "n"),
         ),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     clipped: Annotated[
         CodeArray,
         Column(
@@ -145,7 +138,7 @@ class Record:
             ("N", "n"),
             np.int8,
         ),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     action: Annotated[
         CodeArray,
         Column(
@@ -154,13 +147,13 @@ class Record:
             ("N",),
             np.int8,
         ),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     fraction: Annotated[
         FloatArray,
         Column(
             "Fraction of a control period by which the reference's clock advanced", ("N",), fill=1.0
         ),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     blocking: Annotated[
         CodeArray,
         Column(
@@ -170,7 +163,7 @@ class Record:
             ("N", "n"),
             np.int8,
         ),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     bound_kind: Annotated[
         CodeArray,
         Column(
@@ -179,7 +172,7 @@ class Record:
             ("N", "n"),
             np.int8,
         ),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     row_multiplier: Annotated[
         FloatArray,
         Column(
@@ -187,13 +180,13 @@ class Record:
             '(``{"part": ..., "row": ...}``, row from 1), 0 of an inactive one',
             ("N", "m"),
         ),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     blocking_rows: Annotated[
         CodeArray,
         Column(
             "1 where an inequality row was in the way of a solution, else 0", ("N", "m"), np.int8
         ),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     kind: Annotated[
         CodeArray,
         Column(
@@ -202,7 +195,7 @@ class Record:
             ("N",),
             np.int8,
         ),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     excess: Annotated[
         FloatArray,
         Column(
@@ -210,7 +203,7 @@ class Record:
             "held back, over its inequality rows",
             ("N",),
         ),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     judge: Annotated[
         CodeArray,
         Column(
@@ -219,49 +212,46 @@ class Record:
             ("N", "k"),
             np.int8,
         ),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     frame_position: Annotated[
         FloatArray,
         Column('Positions of the tracked frames ``settings["frames"]`` [m]', ("N+1", "f", 3)),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     frame_rotation: Annotated[
         FloatArray, Column("Orientations of these frames", ("N+1", "f", 3, 3))
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     frame_position_desired: Annotated[
         FloatArray, Column("Desired positions of these frames [m]", ("N+1", "f", 3))
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     frame_rotation_desired: Annotated[
         FloatArray, Column("Desired orientations of these frames", ("N+1", "f", 3, 3))
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     distance: Annotated[
         FloatArray, Column("Distance of the nearest pair of bodies [m]", ("N+1",))
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     nearest: Annotated[
         IntArray,
         Column('Index of that pair in ``settings["collisions"]["pairs"]``', ("N+1",), np.int64),
-    ] = field(default_factory=_absent)
+    ] = ABSENT
     wall_time_s: float | None = None
 
     def __post_init__(self) -> None:
         samples = np.size(self.t)
-        sizes = {"N": samples - 1, "N+1": samples}
+        sizes: dict[str | int, int] = {"N": samples - 1, "N+1": samples, 3: 3}
         for name, column in COLUMNS.items():
             object.__setattr__(self, name, column.check(name, getattr(self, name), sizes))
         if not (samples and np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
             raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
-        try:
-            object.__setattr__(self, "settings", plain(self.settings))
-        except TypeError as error:
-            raise InvalidInputError("settings", str(error), self.settings) from error
+        object.__setattr__(self, "settings", plain(self.settings))
 
     def __repr__(self) -> str:
         error = np.linalg.norm(self.position - self.position_desired, axis=1).max()
-        text = (
+        status = " ".join(self.settings["status"].split())
+        return (
             f"Record({self.settings['robot']}, {self.steps:,} steps of {self.settings['dt']:g} s, "
-            f"{self.settings['status']}, {percent(self.path_completed)} of the path asked for, "
+            f"{status}, {percent(self.path_completed)} of the path asked for, "
             f"position error max {error:.4g} m)"
         )
-        return " ".join(text.split())
 
     @property
     def steps(self) -> int:
@@ -291,26 +281,23 @@ class Record:
         return float(self.settings["dt"]) * float(self.filled("fraction").sum())
 
     @property
-    def path_duration(self) -> float:
-        """Time of the path once, or of the run if that is shorter, in whole steps [s]."""
-        dt = float(self.settings["dt"])
+    def path_completed(self) -> float:
+        """Fraction of the path's time that the reference's clock covered, 0 to 1.
+
+        That time is the path's once, or the run's if it is shorter, in whole steps.
+        """
+        dt = self.settings["dt"]
         asked = self.settings["duration"]
         duration = min(asked, self.settings.get("path_duration") or asked)
-        return dt * float(max(1, round(duration / dt)))
-
-    @property
-    def path_completed(self) -> float:
-        """Fraction of `path_duration` that the reference's clock covered, 0 to 1."""
-        fraction = self.path_time / self.path_duration
-        return float(np.nan_to_num(np.clip(fraction, 0.0, 1.0)))
+        steps = max(1, round(duration / dt))
+        return float(np.nan_to_num(np.clip(self.path_time / (dt * steps), 0.0, 1.0)))
 
     def filled(self, name: str) -> NDArray[Any]:
         """Return the column of this name, or if the run lacks it one of its fill values."""
         array: NDArray[Any] = getattr(self, name)
-        if len(array):
-            return array
-        sizes = {"n": self.dof, "k": self.references, "m": len(self.settings.get("rows") or ())}
-        return COLUMNS[name].allocate(self.steps, **sizes)
+        rows = len(self.settings.get("rows") or ())
+        sizes = {"n": self.dof, "k": self.references, "m": rows}
+        return array if len(array) else COLUMNS[name].allocate(self.steps, **sizes)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the record as an uncompressed .npz file, atomically and without pickles.
@@ -334,7 +321,7 @@ class Record:
         write_atomically(path, lambda file: np.savez(file, settings=text, **arrays))
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Record:
+    def load(cls, path: str | os.PathLike[str]) -> "Record":
         """Read a record written by `save`.
 
         Args:
@@ -350,11 +337,9 @@ class Record:
         from iiwa_dnn.results.report import summary
 
         try:
+            # Not np.load, which takes any file that is no archive for a pickled object.
             with Path(path).open("rb") as file:
-                stored = np.load(file, allow_pickle=False)
-                missing = [name for name in COLUMNS if name not in stored]
-                if missing:
-                    raise ValueError(f"of another version, without {', '.join(missing)}")
+                stored = np.lib.npyio.NpzFile(file, allow_pickle=False)
                 arrays: dict[str, Any] = {name: stored[name] for name in COLUMNS}
                 settings = json.loads(str(stored["settings"]))
             if not len(arrays["dq_solver"]):
@@ -369,13 +354,15 @@ class Record:
 
 
 COLUMNS: dict[str, Column] = {
-    name: hint.__metadata__[0]
-    for name, hint in get_type_hints(Record, include_extras=True).items()
-    if get_origin(hint) is Annotated
+    item.name: item.type.__metadata__[0]
+    for item in fields(Record)
+    if hasattr(item.type, "__metadata__")
 }
 """The arrays of a record by name: the one list that checks, files and documentation are made of."""
 
-OPTIONAL = frozenset(item.name for item in fields(Record) if item.default_factory is not MISSING)
+OPTIONAL = frozenset(
+    item.name for item in fields(Record) if item.default is not MISSING and item.name in COLUMNS
+)
 """Columns that may have the length zero."""
 
 Record.__doc__ = "\n        ".join(

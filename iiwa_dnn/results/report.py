@@ -14,7 +14,7 @@ from tabulate import tabulate
 
 from iiwa_dnn.files import prepare_folder, write_json, write_text
 from iiwa_dnn.naming import describe, unwatched
-from iiwa_dnn.results.failures import INFEASIBLE, completed, counted, failures, programs_checked
+from iiwa_dnn.results.failures import completed, counted, failures, programs_checked
 from iiwa_dnn.results.metrics import JOINT_LIMITS, PROOF, compute_metrics
 from iiwa_dnn.results.plots import CAPTIONS, save_figures
 from iiwa_dnn.results.record import Record
@@ -27,7 +27,7 @@ _RESULTS = (
     ("mean squared position error", "mse_position_error_m2", "m²"),
     ("largest orientation error", "max_orientation_error_rad", "rad"),
     ("joint drift, start to end", "joint_drift_rad", "rad"),
-    ("largest kinetic index", "max_kinetic_index", "rad²/s²"),
+    ("largest kinetic index", "max_kinetic_index", "rad²/s², with inertia J"),
     ("wall time", "wall_time_s", "s"),
     ("time simulated / wall time", "realtime_factor", ""),
     ("largest KKT residual", "max_kkt_residual", ""),
@@ -126,17 +126,12 @@ def made(versions: Mapping[str, str]) -> dict[str, str]:
 
 
 def summary(metrics: Mapping[str, Any]) -> str:
-    """Sum up a run in aligned lines of ASCII, for the terminal.
-
-    An incomplete path is its first line, or that the path cannot be followed.
-    """
+    """Sum up a run in aligned lines of ASCII, for the terminal, the verdict first."""
     verdict = _verdict(metrics)
-    lines = [(name, f"{value} {unit}") for name, value, unit in rows(metrics)]
-    lines += zip(["verdict", *[""] * len(verdict)], verdict, strict=False)
+    lines = list(zip(["verdict", *[""] * len(verdict)], verdict, strict=False))
+    lines += [(name, f"{value} {unit}") for name, value, unit in rows(metrics)]
     table = tabulate(lines, tablefmt="plain", disable_numparse=True)
-    first = [text for text in verdict[:1] if text.startswith(("path ", INFEASIBLE))]
-    aligned = [line.rstrip() for line in table.splitlines()]
-    return "\n".join([*first, *aligned]).replace("²", "^2").replace("³", "^3")
+    return re.sub(" +$", "", table, flags=re.MULTILINE).replace("²", "^2").replace("³", "^3")
 
 
 def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -> Iterator[Row]:
@@ -153,7 +148,7 @@ def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -
         value = _at(metrics, place)
         if value is not None and (value or not place.startswith("incidents.")):
             beside = f" (the paper's {_text(paper[place])})" if paper and place in paper else ""
-            yield name, _text(value) + beside, _unit(settings, place, unit)
+            yield name, _text(value) + beside, unit
     near = metrics.get("collisions")
     if near is not None:
         least = f"{_text(near['least_distance_m'])}, allowed {_text(near['allowed_m'])}"
@@ -171,12 +166,6 @@ def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -
             yield f"further limits {verb}", str(len(limits) - _MOST), ""
 
 
-def _unit(settings: Mapping[str, Any], place: str, unit: str) -> str:
-    """Return the unit of a metric, which the scheme decides for one of them."""
-    heavy = place == "max_kinetic_index" and "inertia" in str(settings.get("scheme"))
-    return "J" if heavy else unit
-
-
 def _at(metrics: Mapping[str, Any], place: str) -> Any:
     """Return the metric at a place, ``crosscheck.tolerance``; None if there is none."""
     found: Any = metrics
@@ -187,15 +176,13 @@ def _at(metrics: Mapping[str, Any], place: str) -> Any:
 
 def _checked(check: Mapping[str, Any]) -> str:
     """State what was checked, by whom, and with what result."""
-    solver = check["solver"]
-    if solver == "none":
+    if check["solver"] == "none":
         return "not asked for"
+    judges = " or ".join(check["judged_by"]) or check["solver"]
     if not check["judged"]:
-        return f"{solver}: {check['steps_checked']:,} own programs compared, not judged"
+        return f"{judges}: {check['steps_checked']:,} own programs compared, not judged"
     counts = f"{check['disagreements']:,} disagreements, {check['reference_failures']:,} failures"
-    judges = ", ".join(f"{name} {count:,}" for name, count in check["judged_by"].items())
-    judged = f"; judged by {judges}" if set(check["judged_by"]) - set(solver.split("+")) else ""
-    return f"{solver}: {programs_checked(check)}, {counts}{judged}"
+    return f"{judges}: {programs_checked(check)}, {counts}"
 
 
 def _verdict(metrics: Mapping[str, Any]) -> list[str]:
@@ -208,14 +195,13 @@ def _verdict(metrics: Mapping[str, Any]) -> list[str]:
 def _success(metrics: Mapping[str, Any]) -> str:
     """State the verdict on a run without failures, no stronger than the check."""
     check = metrics["crosscheck"]
-    solver = check["solver"]
-    if solver == "none":
-        return "completed within all limits; no reference solver was asked"
     if not check["judged"]:
-        return f"completed within all limits; the gap to {solver} is a lag, not judged"
-    stood_in = set(check["judged_by"]) - set(solver.split("+"))
-    judges = " or ".join([solver, *sorted(stood_in)])
-    agreed = "proven" if solver == PROOF else f"in agreement with {judges}"
+        doubt = f"the gap to {check['solver']} is a lag, not judged"
+        nobody = "no reference solver was asked"
+        return f"completed within all limits; {nobody if check['solver'] == 'none' else doubt}"
+    agreed = f"in agreement with {' or '.join(check['judged_by'])}"
+    if check["solver"] == PROOF:
+        agreed = "proven"
     return f"all {counted(metrics['steps'])} solved, within all limits and {agreed}"
 
 

@@ -6,18 +6,17 @@ from pathlib import Path
 
 import pytest
 
-from helpers_commands import QUICK, call, track
+from helpers_commands import call, track
 from helpers_export import compile_quickly, needs
 from iiwa_dnn.export import load
 
-pytestmark = needs("gcc")
 
-
+@needs("gcc")
 def test_the_settings_of_a_run_become_c(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compile_quickly(monkeypatch)
-    track(tmp_path / "run", "circle", "--check", "none")
+    track(tmp_path / "run", "circle", "--check", "none", "--motion", "rk4")
     capsys.readouterr()
     folder = tmp_path / "controller"
     file = tmp_path / "run" / "settings.toml"
@@ -29,24 +28,10 @@ def test_the_settings_of_a_run_become_c(
     exported = load(folder)
     assert (exported.dof, exported.frames, exported.dt) == (7, 1, 2e-3)
     assert "circle" in (folder / "README.md").read_text(encoding="utf-8")
+    assert call(*words, "--filter-window", "5") == 2
+    assert "is no part of a controller" in capsys.readouterr().err
     # A folder that holds another controller is not overwritten unasked.
     assert call(*words, "--weight", "0.5") == 2
     assert "--overwrite" in capsys.readouterr().err
     assert call(*words, "--weight", "0.5", "--overwrite", "--joint-limit", "datasheet", "-q") == 0
     assert capsys.readouterr() == ("", "")
-
-
-def test_a_runs_folder_takes_no_controller(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert call("track", *QUICK, "-q", "--out", tmp_path) == 0
-    assert call("export", *QUICK[:-1], "--out", tmp_path) == 2
-    assert "holds another run or other files" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("words", [("--filter-window", "5"), ("--motion", "rk4")])
-def test_what_is_no_part_of_a_controller_is_refused(
-    words: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert call("export", "--out", tmp_path / "none", *words) == 2
-    assert "is no part of a controller" in capsys.readouterr().err

@@ -25,7 +25,7 @@ from helpers_browser import needs_browser, open_browser, picture, requested, wai
 from helpers_commands import call
 from helpers_physics import ROOT, START, heart_without_physics, papers_robot
 from helpers_records import make_record
-from iiwa_dnn import InvalidInputError, Record, load_robot
+from iiwa_dnn import IiwaDnnError, InvalidInputError, Record, load_robot
 from iiwa_dnn.app.replay import Replay, robot_of
 
 pytest.importorskip("viser", reason="pip install 'iiwa-dnn[view]'")
@@ -236,21 +236,23 @@ def test_the_command_opens_the_page_of_a_folder_until_ctrl_c(tmp_path: Path) -> 
 
 
 def test_the_robot_is_the_one_of_the_settings_or_the_record(tmp_path: Path) -> None:
-    record = make_record(dof=6, settings={"robot": "iiwa7", "locked": {"iiwa7_joint_3": 0.0}})
+    joints = [f"iiwa7_joint_{k}" for k in (2, 3, 4, 5, 6, 7)]
+    kept = {"robot": "iiwa7", "locked": {"iiwa7_joint_1": 0.0}, "joints": joints}
+    record = make_record(dof=6, settings=kept)
     none = tmp_path / "none.toml"
-    assert robot_of(record, none).locked == ("iiwa7_joint_3",)
-    with pytest.raises(InvalidInputError, match="7 free joints, the record 6"):
-        robot_of(replace(record, settings={**record.settings, "locked": None}), none)
-    urdf = Path(load_robot("iiwa7").path)
+    assert robot_of(record, none).locked == ("iiwa7_joint_1",)
+    for name in ("panda", "iiwa7_dual"):
+        with pytest.raises(IiwaDnnError):
+            robot_of(record, none, name)
+    with pytest.raises(InvalidInputError, match="panda has other joints than the record"):
+        robot_of(make_record(settings={"locked": None}), none, "panda")  # it has seven, too
     file = tmp_path / "settings.toml"
+    urdf = load_robot("iiwa7").path
     file.write_text(
         f'[robot]\nname = "{urdf}"\nlocked = ["iiwa7_joint_1"]\nq0 = [0, 0, 0, 0, 0, 0]\n'
     )
     moved = replace(record, settings={**record.settings, "robot": "my_arm"})
     assert robot_of(moved, file).locked == ("iiwa7_joint_1",)
-    file.write_text("[robot]\nname = 'iiwa7'\nlocked = ['iiwa7_joint_1']\nq0 = [0.0]\n")
-    with pytest.raises(InvalidInputError, match=r"q0: must have shape \(6,\)"):
-        robot_of(moved, file)
     file.write_text('[robot]\nname = "gone.urdf"\nlocked = ["iiwa7_joint_1"]\n')
     assert robot_of(moved, file, "iiwa7").name == "iiwa7"
 
@@ -262,15 +264,10 @@ def test_bad_input_is_one_line_and_2(
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         bad = {
-            "not the folder of a run": (tmp_path / "nowhere",),
+            "nowhere: cannot be read as a record: No such file": (tmp_path / "nowhere",),
+            "cannot be read as a record: File is not a zip file": (ROOT / "README.md",),
             "did you mean: iiwa7": (tmp_path, "--robot", "iiwa8"),
-            "host, --port: cannot listen on no such host:0": (
-                tmp_path,
-                "--host",
-                "no such host",
-                "--port",
-                0,
-            ),
+            "cannot listen on no such host:0": (tmp_path, "--host", "no such host", "--port", 0),
             "cannot listen on 127.0.0.1:70000": (tmp_path, "--port", 70_000),
             f"cannot listen on 127.0.0.1:{port}": (tmp_path, "--port", port),
         }

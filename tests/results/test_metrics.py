@@ -10,7 +10,6 @@ import pytest
 
 from helpers_records import make_record
 from iiwa_dnn import Record
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics, orientation_error, position_error
 
@@ -60,9 +59,6 @@ def test_the_keys_are_there_and_the_values_are_json():
     assert metrics["versions"]["iiwa_dnn"] == "0.1.0"
     assert "versions" not in metrics["settings"]
     assert failures(make_record()) == failures(metrics) == []
-    for wrong in (None, {}, "run"):
-        with pytest.raises(InvalidInputError, match="must be a record or its metrics"):
-            failures(wrong)
 
 
 def test_position_error_is_a_distance_and_its_mean_square_is_over_axes():
@@ -288,8 +284,6 @@ def test_the_policies_are_named_with_their_steps():
     limits += "joint 3 upper position limit and 2 more"
     pace = "give the path 1.92 times the time (--period, --stretch) or more"
     assert failures(half)[1].endswith(f"in the way: {limits}; {pace}")
-    away = sample(half, "position_desired", 0, [0.0, 0.3, 0.4])
-    assert "; the path begins 0.5 m from the tip; " in failures(away)[1]
     lag = make_record(action=action, settings={"mode": "continuous"})
     assert failures(lag) == []
 

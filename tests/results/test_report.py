@@ -13,7 +13,6 @@ from iiwa_dnn import Heart
 from iiwa_dnn.errors import FileError
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
-from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import markdown_table, save_run, summary, write_report
 from iiwa_dnn.studies.paper import published
 
@@ -46,12 +45,8 @@ def test_a_run_leaves_its_files_and_nothing_else(run):
     names = {path.name for path in (folder / "new").iterdir()}
     assert names == {"record.npz", "metrics.json", "report.md"} | figures
     assert json.loads((folder / "new" / "metrics.json").read_text()) == metrics
-    again = compute_metrics(Record.load(folder / "new" / "record.npz"))
-    wall = {"wall_time_s": metrics["wall_time_s"], "realtime_factor": metrics["realtime_factor"]}
-    assert again | wall == metrics
     save_run(record, folder / "plain", plots=False)
     assert len(list((folder / "plain").iterdir())) == 3
-    assert "Figures" not in (folder / "plain" / "report.md").read_text(encoding="utf-8")
 
 
 def test_the_reports_numbers_are_the_metrics(run):
@@ -59,23 +54,22 @@ def test_the_reports_numbers_are_the_metrics(run):
     text = (folder / "new" / "report.md").read_text(encoding="utf-8")
     table = rows_of(text)
     check = metrics["crosscheck"]
-    for row, value, unit in [
-        ("mean squared position error", metrics["mse_position_error_m2"], "m²"),
-        ("largest orientation error", metrics["max_orientation_error_rad"], "rad"),
-        ("largest kinetic index", metrics["max_kinetic_index"], "rad²/s²"),
-        ("largest KKT residual", metrics["max_kkt_residual"], ""),
-        ("wall time", metrics["wall_time_s"], "s"),
-        ("largest gap to the reference", check["max_solution_gap"], "rad/s"),
-        ("largest residual of a reference", check["max_reference_residual"], ""),
+    for row, name, unit in [
+        ("mean squared position error", "mse_position_error_m2", "m²"),
+        ("largest orientation error", "max_orientation_error_rad", "rad"),
+        ("largest kinetic index", "max_kinetic_index", "rad²/s², with inertia J"),
+        ("wall time", "wall_time_s", "s"),
     ]:
-        assert float(table[row][0]) == pytest.approx(value, rel=1e-3), row
-        assert (table[row][1:] or [""])[0] == unit, row
+        assert float(table[row][0]) == pytest.approx(metrics[name], rel=1e-3), row
+        assert table[row][1] == unit, row
+    gap = check["max_solution_gap"]
+    assert float(table["largest gap to the reference"][0]) == pytest.approx(gap, rel=1e-3)
     beside = f"{metrics['max_position_error_m']:.4g} (the paper's 5.59e-05)"
     assert table["largest position error"] == [beside, "m"]
     assert table["joint drift, start to end"][0].endswith(" (the paper's 0.0174)")
     assert published({"robot": "panda", "scheme": {}, "reference": {}}) == {}
     assert table["cross-check"][0] == (
-        "proxqp+osqp: 500 own programs checked, 0 disagreements, 0 failures"
+        "proxqp or osqp: 500 own programs checked, 0 disagreements, 0 failures"
     )
     assert table["q_upper"] == ["3 (all 7)"]
     assert table["scheme"] == ["name = DoubleIndicator, weight = 0.2, kinetic = identity"]
@@ -89,12 +83,13 @@ def test_the_summary_has_the_reports_rows_in_ascii(run):
     _, folder, metrics = run
     text = summary(metrics)
     assert text.isascii()
+    assert all(line == line.rstrip() and len(line) < 120 for line in text.splitlines())
     lines = dict(re.split(r"  +", line, maxsplit=1) for line in text.splitlines())
-    assert all(len(line) < 120 for line in text.splitlines())
     table = rows_of((folder / "new" / "report.md").read_text(encoding="utf-8"))
     for name in ("largest KKT residual", "largest orientation error", "wall time"):
         assert lines[name] == " ".join(table[name]).strip()
-    assert lines["verdict"].endswith("in agreement with proxqp+osqp")
+    assert next(iter(lines)) == "verdict"
+    assert lines["verdict"].endswith("in agreement with proxqp or osqp")
 
 
 @pytest.mark.parametrize(
@@ -104,8 +99,7 @@ def test_the_summary_has_the_reports_rows_in_ascii(run):
          "all 10 steps solved, within all limits and in agreement with proxqp"),
         # Where another solver stood in, row and verdict name it.
         ({"judge": [[1]] * 3 + [[0]] * 7},
-         "proxqp: 10 own programs checked, 0 disagreements, 0 failures; "
-         "judged by proxqp 7, osqp 3",
+         "proxqp or osqp: 10 own programs checked, 0 disagreements, 0 failures",
          "all 10 steps solved, within all limits and in agreement with proxqp or osqp"),
         ({"solvers": ()}, "not asked for",
          "completed within all limits; no reference solver was asked"),
@@ -135,9 +129,7 @@ def test_a_failed_run_lists_every_reason(tmp_path):
     assert len(reasons) == 2
     assert "\n".join(f"- {reason}" for reason in reasons) in report(record, tmp_path)
     stuck = make_record(action=np.full(10, 2), fraction=np.zeros(10))
-    lines = summary(compute_metrics(stuck)).splitlines()
-    assert lines[0] == "path completed 0.0 %"
-    assert lines[1].startswith("run  ")
+    assert re.match(r"verdict +path completed 0.0 %\n", summary(compute_metrics(stuck)))
 
 
 def test_active_and_blocking_limits_have_rows(tmp_path):
@@ -156,12 +148,6 @@ def test_active_and_blocking_limits_have_rows(tmp_path):
     assert table["further limits in the way"][0] == "3"
     assert table["steps relaxed"][0] == "1"
     assert "steps slowed" not in table
-
-
-def test_the_kinetic_index_with_inertia_is_an_energy():
-    heavy = {"scheme": {"name": "DoubleIndicator", "kinetic": "inertia"}}
-    text = summary(compute_metrics(make_record(settings=heavy)))
-    assert re.search(r"largest kinetic index +0 J\n", text)
 
 
 def test_cells_do_not_break_a_table(tmp_path):
