@@ -69,7 +69,6 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
     (lambda: d.Tilting(d.Circle), "along: must be one of Still"),
     (lambda: d.Scheme(3), "costs: must be a list of parts"),
     (lambda: d.CollisionAvoidance(3), "obstacles: must be an iiwa_dnn.Obst"),
-    (lambda: d.CrossCheck(3), "solvers: must be a tuple of names, not 3"),
     (lambda: d.MujocoPlant(3), "disturbances: must be an iiwa_dnn.Disturbances"),
     (lambda: paper_robot().frame_id(None), "no frame 'None'"),
     (lambda: d.compute_metrics({}), "record: must be an iiwa_dnn.Record"),

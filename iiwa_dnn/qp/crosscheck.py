@@ -213,7 +213,8 @@ def _answer(name: str, qp: QP) -> tuple[Vector, float]:
 
     The residual is inf without an answer.
     """
-    if not np.isnan(qp.data).any():  # a solver may take minutes over one NaN
+    # A solver may take minutes over one NaN, and OSQP has words of its own for crossed bounds.
+    if not (np.isnan(qp.data).any() or (qp.lb > qp.ub).any()):
         with suppress(Exception):  # whatever a reference raises, it has no answer
             point = ask(name, qp)
             if not np.isnan(point[0]):

@@ -72,6 +72,7 @@ class Scope:
         """Check the sizes; raises InvalidInputError naming the one that is wrong."""
         checks.integer("seeds", self.seeds, 2)
         checks.integer("laps", self.laps, 1)
+        checks.positive("duration", self.duration)
         for weight in self.weights:
             checks.one_of("weights", str(weight), tuple(map(str, paper.WEIGHTS)))
 

@@ -145,7 +145,7 @@ def test_a_network_of_ones_own_comes_from_a_file_or_a_module(
 @pytest.mark.parametrize(
     ("option", "value", "reason"),
     [
-        ("--networks", "nowhere:My", "network: nowhere:My cannot be had: No module"),
+        ("--networks", "nowhere:My", "network: nowhere:My cannot be had in "),
         ("--networks", "math:pi", "network: math:pi is no Network: 3.14"),
         ("--networks", "zeroing, Eular", "no network 'zeroing, Eular'; did you mean: 'zeroing, E"),
         ("--disturbances", "wihte", "no disturbance 'wihte'; did you mean: white"),
