@@ -43,6 +43,7 @@ from iiwa_dnn.schemes import (
     PoseTask,
     Scheme,
 )
+from iiwa_dnn.schemes.collisions import ENDS
 from iiwa_dnn.schemes.program import StepProgram
 
 _STEP = 0.5
@@ -173,8 +174,8 @@ def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -
     if not isinstance(obstacles, CollisionAvoidance) and obstacles != ():
         obstacles = CollisionAvoidance(obstacles)
     if isinstance(obstacles, CollisionAvoidance):
-        pairs = len(obstacles.scene(slowed).pairs)
-        limits.append(replace(obstacles, gain=1.0, nearest=pairs))
+        rows = ENDS * len(obstacles.scene(slowed).pairs)
+        limits.append(replace(obstacles, gain=1.0, nearest=rows))
     return StepProgram(slowed, Scheme([], [PoseTask(gain=1.0)], limits))
 
 

@@ -37,13 +37,13 @@ from iiwa_dnn.control.relaxed import Yielding
 from iiwa_dnn.control.state import LAST, Q
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple
-from iiwa_dnn.references.rotations import combined, dot
 from iiwa_dnn.schemes.program import ProgramArrays
 from iiwa_dnn.schemes.scene import (
     SECOND,
     SPEED,
     contact_of,
     ends_of,
+    height_of,
     place_bodies,
     scene_views,
     second_order,
@@ -56,7 +56,7 @@ LONGEST = 1e6
 GROWTH = 1.1
 """Factor between the numbers of periods that are tried."""
 
-SLACK = 1e-9
+SLACK = 1e-12
 """Relative excess of a limit that is rounding."""
 
 ROUNDING = 1e-12
@@ -280,9 +280,7 @@ def keeps_distances(motion: Motion, arrays: ProgramArrays, constants: Vector, dt
             least = min(0.0, way - lacking)
             if not straight:
                 least = least_way(motion, x, bend, dt) - lacking
-            # No end is below the nearest point, but rounding would hold an arm that is too near.
-            height = max(0.0, dot(combined(1.0, end, -1.0, contact.second), contact.normal))
-            change = min(change, height + least)
+            change = min(change, height_of(end, contact) + least)
         if left + change < min(scene.least, left):
             return False
     return True

@@ -1,14 +1,15 @@
-r"""Collision avoidance: one inequality row for each pair of bodies that could meet.
+r"""Collision avoidance: two inequality rows for each pair of bodies that could meet.
 
-For a pair at distance :math:`d`, with the unit normal :math:`n` from the first body to the second
-and the nearest point :math:`x` of the second, the row is a velocity damper,
+For a pair at distance :math:`d`, with the unit normal :math:`n` from the first body to the second,
+an end :math:`x` of the second, a segment, is by some height :math:`\eta \ge 0` farther away along
+the normal. Its row is a velocity damper,
 
-.. math::  n \cdot \dot x \;\ge\; v_o - \kappa\,(d - d_s - \varepsilon)
+.. math::  n \cdot \dot x \;\ge\; v_o - \kappa\,(d + \eta - d_s - \mu - \varepsilon)
 
-with the obstacle's bound on its speed :math:`v_o` and the part :math:`\varepsilon` of the distance
-that a step like the last one may take although its row holds, since points move on curves. The rows
-guide; a command is given only if the distance holds on the motion to rest from it
-(`iiwa_dnn.control.stopping`).
+with the obstacle's bound on its speed :math:`v_o`, `ROOM` :math:`\mu`, and the part
+:math:`\varepsilon` of the distance that a step like the last one may take although its row holds,
+since points move on curves. The rows guide; a command is given only if the distance holds on the
+motion to rest from it (`iiwa_dnn.control.stopping`).
 
 Source: B. Faverjon, P. Tournassoud, "A local based approach for path planning of manipulators with
 a high number of degrees of freedom", ICRA 1987.
@@ -29,15 +30,20 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import FileError, IiwaDnnError
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.layout import Triple
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacles
 from iiwa_dnn.schemes.parts import Checks, Limit
 from iiwa_dnn.schemes.scene import (
+    HALF_LENGTH,
+    SECOND,
     SPEED,
-    Contact,
     Scene,
+    SceneViews,
     contact_of,
+    ends_of,
+    height_of,
     make_scene,
     place_bodies,
     scene_views,
@@ -45,51 +51,74 @@ from iiwa_dnn.schemes.scene import (
 )
 from iiwa_dnn.schemes.step import Step, StepViews, rate_along
 
+ENDS = 2
+"""Rows of a pair: its second body is a segment, both ends of which count where they are near."""
+
+ROOM = 1e-6
+"""Distance beyond the least at which a pair comes to rest [m]. Ways along an obstacle bend: an arm
+that rests at the least distance itself could not stop from any of them, and would stay there."""
+
 
 @compiled
 def collision_rows(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
-    """Write the rows of the pairs that are nearest to being active.
+    """Write the rows of the ends that are nearest to being active.
 
     They go into G (rows, n) and h (rows,); `constants` (k,) are `Scene.constants`, and the bounds
     lb (n,) and ub (n,) stay.
     """
     dof = step.q.size
     scene = scene_views(constants, dof)
-    pairs = len(scene.pairs)
-    gradients = np.empty((pairs, dof))
-    limits = np.empty(pairs)
-    slacks = np.empty(pairs)
+    candidates = ENDS * len(scene.pairs)
+    gradients = np.zeros((candidates, dof))
+    limits = np.empty(candidates)
+    slacks = np.empty(candidates)
+    limits[:] = np.inf
+    slacks[:] = np.inf
     placed = np.empty((len(scene.bodies), 12))
     place_bodies(scene, step.placements, placed)
     gain = min(scene.gain, step.rate)
     travel = np.empty(dof)
     for j in range(dof):
         travel[j] = abs(step.last[j]) / step.rate
-    for k in range(pairs):
+    for k in range(len(scene.pairs)):
         contact = contact_of(scene, k, placed)
-        fastest = _write_gradient(scene.moves, contact, step.jacobian, scene.dq_max, k, gradients)
-        left = contact.distance - scene.least
-        limits[k] = gain * left - scene.pairs[k, SPEED]
-        slacks[k] = limits[k] - fastest
-        if slacks[k] < 0.0:
-            eps = second_order(scene.moves, scene.radii, k, travel)
-            limits[k] -= gain * eps
+        most = scene.pairs[k, SPEED] - gain * (contact.distance - scene.least - ROOM)
+        for j in range(dof):
+            most += abs(scene.radii[k, j]) * scene.dq_max[j]
+        if most <= 0.0:
+            continue
+        second = int(scene.pairs[k, SECOND])
+        ends = ends_of(scene, placed, second)
+        is_point = scene.bodies[second, HALF_LENGTH] == 0.0
+        eps = second_order(scene.moves, scene.radii, k, travel)
+        for at in range(1 if is_point else ENDS):
+            left = contact.distance + height_of(ends[at], contact) - scene.least - ROOM
+            row = ENDS * k + at
+            gradient = gradients[row]
+            limits[row] = gain * left - scene.pairs[k, SPEED]
+            fastest = _write_gradient(scene, step.jacobian, k, ends[at], contact.normal, gradient)
+            slacks[row] = limits[row] - fastest
+            limits[row] -= gain * eps
             if left < eps and step.rate < np.inf:
-                limits[k] -= (step.rate - gain) * min(eps - left, eps)
+                limits[row] -= (step.rate - gain) * min(eps - left, eps)
+    G[:] = 0.0
+    h[:] = np.inf
     row = 0
-    for k in range(pairs):
-        if pairs <= h.size or _rank(slacks, k) < h.size:
+    for k in range(candidates):
+        if slacks[k] < 0.0 and _rank(slacks, k) < h.size:
+            if candidates <= h.size:
+                row = k
             for j in range(dof):
                 G[row, j] = gradients[k, j]
-            h[row] = limits[k] if slacks[k] < 0.0 else np.inf
+            h[row] = limits[k]
             row += 1
 
 
 @compiled
 def _rank(slacks: Vector, k: int) -> int:
-    """Count the pairs that are nearer to being active than a pair, by their slacks (pairs,)."""
+    """Count the candidates (c,) that are nearer to being active than one of them."""
     rank = 0
     for i in range(slacks.size):
         rank += slacks[i] < slacks[k] or (slacks[i] == slacks[k] and i < k)
@@ -98,21 +127,18 @@ def _rank(slacks: Vector, k: int) -> int:
 
 @compiled
 def _write_gradient(
-    moves: Matrix, contact: Contact, jacobian: Matrix, dq_max: Vector, k: int, gradients: Matrix
+    scene: SceneViews, jacobian: Matrix, k: int, point: Triple, normal: Triple, gradient: Vector
 ) -> float:
-    """Write row k of the gradients (pairs, n): the rate at which a pair's distance shrinks.
+    """Write the rate at which a point of pair k's second body sinks along a normal, (n,).
 
     Returns:
         The largest rate that the velocity limits of the joints allow [m/s].
     """
     fastest = 0.0
-    for j in range(dq_max.size):
-        value = 0.0
-        if moves[k, j] != 0.0:
-            point = contact.second if moves[k, j] > 0.0 else contact.first
-            value = rate_along(jacobian, j, point, contact.normal)
-        gradients[k, j] = -moves[k, j] * value
-        fastest += abs(value) * dq_max[j]
+    for j in range(gradient.size):
+        if scene.moves[k, j] != 0.0:
+            gradient[j] = -scene.moves[k, j] * rate_along(jacobian, j, point, normal)
+            fastest += abs(gradient[j]) * scene.dq_max[j]
     return fastest
 
 
@@ -128,7 +154,7 @@ class CollisionAvoidance(Limit):
 
     No pair comes nearer than `distance`, between steps neither, as long as none is nearer at the
     start, the arm follows the command, `JointLimits` are among the limits, obstacles keep to their
-    speed, and no more than `nearest` pairs are so near that their rows matter. A pair that is too
+    speed, and no more than `nearest` rows matter at once. A pair that is too
     near is asked to retreat.
 
     Attributes:
@@ -136,7 +162,7 @@ class CollisionAvoidance(Limit):
         self_collision: Whether pairs of links are watched too.
         distance: Least distance [m], above 0.
         gain: Largest rate at which a distance shrinks towards `distance` [1/s], above 0.
-        nearest: Most rows; with more pairs, those that are nearest to being active have them.
+        nearest: Most rows; of more, those that are nearest to being active count.
     """
 
     kernel = staticmethod(collision_rows)
@@ -150,7 +176,7 @@ class CollisionAvoidance(Limit):
     self_collision: bool = True
     distance: float = 0.02
     gain: float = 20.0
-    nearest: int = 24
+    nearest: int = 48
 
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> CollisionAvoidance:
@@ -172,13 +198,14 @@ class CollisionAvoidance(Limit):
         return make_scene(robot, self.obstacles, self.self_collision, self.distance, self.gain)
 
     def row_count(self, robot: Robot) -> int:
-        """Return the number of rows: that of the pairs, at most `nearest`."""
-        return min(self.nearest, len(self.scene(robot).pairs))
+        """Return the number of rows: two for each pair, at most `nearest`."""
+        return min(self.nearest, ENDS * len(self.scene(robot).pairs))
 
     def row_names(self, robot: Robot) -> list[str]:
         """Return the pair of each row; none where rows change their pair."""
         pairs = self.scene(robot).pairs
-        return [f"{b} and {a}" for a, b in pairs] if len(pairs) <= self.nearest else []
+        names = [f"{b} and {a}" for a, b in pairs for _ in range(ENDS)]
+        return names if len(names) <= self.nearest else []
 
     def extra_frames(self, robot: Robot) -> tuple[str, ...]:
         """Return the links whose placements the rows need."""

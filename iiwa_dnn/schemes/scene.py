@@ -45,7 +45,8 @@ HEAD = 4
 """Constants of a scene before those of joints, bodies and pairs."""
 
 PER_BODY = 16
-"""Numbers of a body."""
+HALF_LENGTH = 3
+"""Numbers of a body, and the one among them that is half the length of a segment [m]."""
 
 PER_PAIR = 4
 SPEED, SECOND, FIRST, RADIUS = range(PER_PAIR)
@@ -327,7 +328,7 @@ def ends_of(scene: SceneViews, placed: Matrix, body: int) -> tuple[Triple, Tripl
     """Return the ends of a segment among the bodies in the world [m], (3,) each."""
     center = vector_at(placed[body], 9)
     axis = vector_at(placed[body], 6)
-    half = scene.bodies[body, 3]
+    half = scene.bodies[body, HALF_LENGTH]
     return combined(1.0, center, -half, axis), combined(1.0, center, half, axis)
 
 
@@ -354,6 +355,15 @@ def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
     point = combined(1.0, a, s, way)
     other = combined(1.0, point, -core, outward)
     return Contact(point, other, outward, core - scene.pairs[k, RADIUS])
+
+
+@compiled
+def height_of(end: Triple, contact: Contact) -> float:
+    """Compute by how much an end of a pair's segment is farther away than the contact [m].
+
+    No end is below the nearest point, but rounding would hold an arm that is too near.
+    """
+    return max(0.0, dot(combined(1.0, end, -1.0, contact.second), contact.normal))
 
 
 @compiled
