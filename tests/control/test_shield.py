@@ -157,6 +157,24 @@ def test_a_twist_moves_its_frame() -> None:
         np.testing.assert_allclose(J @ commands[-1].dq, reachable, atol=2e-3)
 
 
+def test_an_arm_that_is_pressed_into_a_corner_leaves_it() -> None:
+    """After 20 minutes of hostile targets five distances were the least one to the last bit.
+
+    Links lie along others and along a capsule there: the nearest points alone do not say which way
+    is free.
+    """
+    robot = d.load_robot("ur5")
+    corner = np.array([-2.10634089, 6.05502721, 2.54782412, -0.90683012, -1.07616272, -0.22138032])
+    bar = d.Capsule(
+        [0.22438298, -0.12498536, -0.18995659], [0.09009972, -0.2652352, -0.0022584], 0.05
+    )
+    shield = d.Shield(robot, 5e-3, [bar, d.Sphere([-0.45624664, -0.42911206, 0.21851064], 0.08)])
+    assert shield.step(corner).margin.distance < 1e-7
+    free = np.random.default_rng(0).uniform(-0.2, 0.2, (2, 6))[1]
+    path, _ = drive(shield, 200, corner, position=corner + free)
+    assert np.abs(path[-1] - corner).max() > 0.1
+
+
 @pytest.mark.parametrize(
     ("wish", "reason"),
     [
