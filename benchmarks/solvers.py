@@ -129,7 +129,9 @@ def solve_once(peer: Peer, qp: QP, given: Any) -> tuple[float, float]:
     x, *multipliers = peer.point(qp, answer)
     if x is None:
         return seconds, np.inf
-    largest = qp.residuals(x, *multipliers).largest
+    sizes = np.array(qp.sizes)[[2, 1, 0]]
+    rest = [np.zeros(k) if y is None else y for y, k in zip(multipliers, sizes, strict=True)]
+    largest = qp.residuals(np.concatenate([x, *rest])).largest
     return seconds, largest if np.isfinite(largest) else np.inf
 
 

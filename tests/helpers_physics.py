@@ -53,10 +53,10 @@ def run_python(code: str, **environment: str) -> subprocess.CompletedProcess[str
 
 
 def _opengl_is_there() -> bool:
-    from iiwa_dnn.robot import offscreen
+    from iiwa_dnn.robot import mujoco_model
 
     try:
-        offscreen.prepare_renderer()
+        mujoco_model.prepare_renderer()
     except iiwa_dnn.MissingDependencyError:
         return False
     return True

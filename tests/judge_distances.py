@@ -54,7 +54,7 @@ class Judge:
     def distance(self, q: Vector, t: float) -> float:
         """Return the least distance [m] at joint positions q (n,) [rad] and a time [s]."""
         for number, (obstacle, place) in enumerate(zip(self._obstacles, self._rest, strict=True)):
-            if obstacle.moves:
+            if obstacle.speed:
                 moved = pin.SE3(place.rotation, place.translation + obstacle.shift(t))
                 self._geometry.geometryObjects[self._first + number].placement = moved
         scene = self._geometry, self._found
@@ -69,7 +69,7 @@ class Judge:
         a moving obstacle has broken no promise if the step said so (`ok`, (k,)) and the arm itself
         did not come nearer.
         """
-        moving = any(obstacle.moves for obstacle in self._obstacles)
+        moving = any(obstacle.speed for obstacle in self._obstacles)
         fastest = max((obstacle.speed for obstacle in self._obstacles), default=0.0)
         doubled = np.empty((2 * len(path) - 1, path.shape[1]))
         doubled[::2] = path

@@ -388,7 +388,7 @@ def test_a_clipped_joint_takes_its_column_out_and_an_active_multiplier_adds_a_ro
 
     for project, rows in ((True, A[:, 1:]), (False, np.vstack([A, np.eye(4)[:1]]))):
         network = ProjectionNetwork(primal_projection=project)
-        found = np.linalg.eigvals(network.flow(qp).jacobian(rest))
+        found = np.linalg.eigvals(network.flow(qp).derivative(rest))
         expected = eigenvalues(rows)
         for value in expected:
             assert np.abs(found - value).min() < 1e-6

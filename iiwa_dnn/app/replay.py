@@ -101,7 +101,7 @@ def show_robot(server: Any, robot: Robot) -> Any:
     from pinocchio.visualize import ViserVisualizer
 
     shapes = pin.GeometryModel()
-    with suppress(ValueError):  # a mesh is missing
+    with suppress(ValueError, RuntimeError):  # a mesh is missing
         for shape in read_shapes(robot, pin.GeometryType.VISUAL):
             shapes.addGeometryObject(shape)
     visualizer = ViserVisualizer(robot.model, pin.GeometryModel(), shapes)

@@ -47,7 +47,7 @@ from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.files import parse_toml, read_toml
 from iiwa_dnn.results.pictures import save_pictures
 from iiwa_dnn.results.report import save_run, summary
-from iiwa_dnn.robot.offscreen import prepare_renderer
+from iiwa_dnn.robot.mujoco_model import prepare_renderer
 from iiwa_dnn.simulation import Disturbances, IdealPlant, Push, count_steps
 from iiwa_dnn.studies.paper import JOINT_LIMIT, published
 

@@ -28,7 +28,6 @@ from iiwa_dnn.control.state import DELAY, ROWS, YIELDS
 from iiwa_dnn.control.step import StepPlan, sample_targets, take_step
 from iiwa_dnn.control.yielding import ATTEMPTS
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET, enter_answer
 from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.qp import Matrix, Vector
@@ -181,13 +180,9 @@ def _scratch(controller: Controller, model: ModelTables) -> int:
 
 def _check(controller: Controller) -> None:
     """Raise an InvalidInputError that names what of a controller is not compiled."""
-    network = controller.solver.network
     for block in controller.program.refreshed:
         moves = isinstance(block.part, CollisionAvoidance) and not block.part.copies
         _require(moves, "scheme", block.part, "is written with numpy, which is not exported")
-    own_start = type(network).initial_state is not Network.initial_state
-    problem = "starts from a state of its own, which is not exported"
-    _require(not own_start, "network", network, problem)
     problem = "has no compiled answer: take the projection network with the default integrators"
     problem += ", or in continuous mode a compiled network and ExplicitEuler with substeps"
     _require(controller.control_step.has_network, "solver", controller.solver, problem)

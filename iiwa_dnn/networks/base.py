@@ -95,12 +95,8 @@ class Network:
         checks.positive("rho", self.rho)
 
     def state_size(self, qp: QP) -> int:
-        """Count the states; by default n + m + p."""
+        """Count the states, all zero at first; by default n + m + p."""
         return sum(qp.sizes)
-
-    def initial_state(self, qp: QP) -> Vector:
-        """Make the state before any program was seen: zero, (state_size,)."""
-        return np.zeros(self.state_size(qp))
 
     def constants(self, sizes: Sizes) -> Vector:
         """Return the constants of `compiled_rates` for programs of these sizes (n, m, p)."""

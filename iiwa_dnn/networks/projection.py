@@ -25,9 +25,9 @@ from typing import TypeGuard
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.networks.base import Flow, Network, kkt_product
+from iiwa_dnn.networks.base import Network, kkt_product
 from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, times
-from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector, larger
+from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, larger
 from iiwa_dnn.qp.program import QP
 
 
@@ -172,26 +172,6 @@ class ProjectionNetwork(Network):
         """Count no set-up and one product with the KKT matrix; sizes are (n, m, p)."""
         return 0.0, kkt_product(sizes)
 
-    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program up; the rate of a program that moves has no effect."""
-        rates = super().flow(qp).rates
-
-        def jacobian(state: Vector) -> Matrix:
-            n, _, p = qp.sizes
-            eye = np.eye(n)
-            rows = np.vstack([qp.A, qp.G, eye, -eye])
-            result = np.block([[-qp.P, -rows.T], [rows, np.zeros((len(rows), len(rows)))]])
-            moves = rates(state)
-            decays = ~(state + moves > 0.0)
-            decays[: n + p] = False
-            if self.primal_projection:
-                x = state[:n]
-                decays[:n] = ~((qp.lb - x < moves[:n]) & (moves[:n] < qp.ub - x))
-            result[decays] = -np.eye(state.size)[decays]
-            return result
-
-        return Flow(rates, jacobian)
-
     def stable_step(self, qp: QP, state: Vector) -> float:
         r"""Bound the stable steps of explicit Euler, in units of rho.
 
@@ -218,4 +198,5 @@ class ProjectionNetwork(Network):
 def is_projection(network: Network) -> TypeGuard[ProjectionNetwork]:
     """Check that the compiled loops for the projection network integrate exactly this network."""
     kind = type(network)
-    return kind.flow is ProjectionNetwork.flow and kind.state_size is ProjectionNetwork.state_size
+    own = (kind.flow, kind.state_size, kind.compiled_rates)
+    return own == (Network.flow, ProjectionNetwork.state_size, projection_rates)

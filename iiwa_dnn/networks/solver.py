@@ -83,7 +83,7 @@ class DNNSolver:
         if sizes not in self._warm:
             n, m, p = sizes
             some = QP.from_data(np.zeros((n + m + p) * (n + 1) + 2 * n), sizes)
-            self._keep(sizes, np.array(self.network.initial_state(some)))
+            self._keep(sizes, np.zeros(self.network.state_size(some)))
         return self._warm[sizes]
 
     def compiled_answer(self, sizes: Sizes, duration: float = 0.0) -> CompiledAnswer | None:
@@ -98,14 +98,13 @@ class DNNSolver:
         """
         network = self.network
         function = type(network).compiled_rates
-        builtin = is_projection(network)
-        if function is None or not (builtin or type(network).flow is Network.flow):
+        if function is None or type(network).flow is not Network.flow:
             return None
         integrator = self.follower if duration > 0.0 else self.settler
         substeps = getattr(integrator, "substeps", None)
         # A subclass may integrate in its own way.
         own = ExplicitEuler if duration > 0.0 else ImplicitEuler
-        if type(integrator) is not own or not (builtin or substeps):
+        if type(integrator) is not own or not (is_projection(network) or substeps):
             return None
         constants = [self.tol, self.settler.max_steps, duration / network.rho, substeps or 0]
         address = enter_answer.address(follow if duration > 0.0 else settle)
@@ -203,7 +202,7 @@ class DNNSolver:
     def _take(self, qp: QP) -> Vector:
         """Take the warm state, or make one; nobody else has it until it is kept."""
         state = self._warm.pop(checks.instance("qp", qp, QP).sizes, None)
-        return np.array(self.network.initial_state(qp)) if state is None else state
+        return np.zeros(self.network.state_size(qp)) if state is None else state
 
     def _keep(self, sizes: Sizes, state: Vector) -> None:
         """Keep the state (size,) of programs of these sizes alone."""

@@ -22,8 +22,6 @@ from iiwa_dnn import checks
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import point_of, prove_point
-from iiwa_dnn.qp.residuals import residuals_of
-from iiwa_dnn.qp.solution import Residuals
 
 OPTIONS: dict[str, dict[str, Any]] = {
     # Tight enough that a gap of 1e-6 rad/s says something about the network and not about the
@@ -218,7 +216,7 @@ def _answer(name: str, qp: QP) -> tuple[Vector, float]:
         with suppress(Exception):  # whatever a reference raises, it has no answer
             point = ask(name, qp)
             if not np.isnan(point[0]):
-                return point, Residuals(*residuals_of(qp.data, *qp.sizes, point)).largest
+                return point, qp.residuals(point).largest
     return np.empty(0), np.inf
 
 

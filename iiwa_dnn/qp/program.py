@@ -154,12 +154,10 @@ class QP:
             InvalidInputError: An array has the wrong shape; the message names it. Or `problem` is
                 not a problem of qpsolvers.
         """
-        try:
-            arrays = problem.unpack()
-        except AttributeError:
+        if not hasattr(problem, "unpack"):
             given = f"must be a qpsolvers.Problem or an iiwa_dnn.QP, not {problem!r:.80}"
-            raise InvalidInputError("problem", given, problem) from None
-        return cls(*arrays)
+            raise InvalidInputError("problem", given, problem)
+        return cls(*problem.unpack())
 
     def __repr__(self) -> str:
         n, m, p = self.sizes
@@ -183,23 +181,10 @@ class QP:
             self.ub if bounded else None,
         )
 
-    def residuals(
-        self, x: Vector, y: Vector | None, z: Vector | None, z_box: Vector | None
-    ) -> Residuals:
-        """Compute qpsolvers' residuals of a primal-dual point, without its checks.
-
-        Args:
-            x: Primal point, (n,).
-            y: Multipliers of the equalities, (p,).
-            z: Multipliers of the inequalities, (m,).
-            z_box: Multipliers of the bounds, (n,).
-        """
+    def residuals(self, point: Vector) -> Residuals:
+        """Compute qpsolvers' residuals of a point ``[x | y | z | z_box]``, (2 n + m + p,)."""
         n, m, p = self.sizes
-        parts = [
-            np.zeros(size) if part is None else part
-            for part, size in zip((x, y, z, z_box), (n, p, m, n), strict=True)
-        ]
-        point = check_size("point", np.concatenate(parts), 2 * n + m + p)
+        check_size("point", point, 2 * n + m + p)
         return Residuals(*residuals_of(self.data, n, m, p, point))
 
     def check_values(self) -> None:

@@ -26,10 +26,9 @@ def point_residuals(qp: QPViews, point: Vector) -> Triple:
         value = qp.q[i] + row_dot(qp.P, i, point)
         gap += x * value
         gradient[i] = value + multiplier
-        if multiplier > 0.0 and qp.ub[i] < np.inf:
-            gap += qp.ub[i] * multiplier
-        elif multiplier < 0.0 and qp.lb[i] > -np.inf:
-            gap += qp.lb[i] * multiplier
+        bound = qp.ub[i] if multiplier > 0.0 else qp.lb[i]
+        if multiplier != 0.0 and abs(bound) < np.inf:
+            gap += bound * multiplier
     for j in range(p):
         y = point[n + j]
         primal = larger(primal, abs(row_dot(qp.A, j, point) - qp.b[j]))
@@ -86,12 +85,7 @@ def kkt_point(qp: QPViews, s: Vector, point: Vector) -> Triple:
         # The distance to the bound first: at a bound it is zero, and the sum is not rounded.
         above = point[i] - qp.ub[i] + descent[i]
         below = point[i] - qp.lb[i] + descent[i]
-        if above > 0.0:
-            descent[i] = above
-        elif below < 0.0:
-            descent[i] = below
-        else:
-            descent[i] = 0.0
+        descent[i] = max(above, 0.0) + min(below, 0.0)
     return point_residuals(qp, point)
 
 

@@ -20,9 +20,13 @@ from iiwa_dnn.errors import import_extra
 from iiwa_dnn.files import write_atomically
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.results.record import FloatArray, Record
-from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP, build_spec
+from iiwa_dnn.robot.mujoco_model import (
+    VISUAL_GROUP,
+    build_spec,
+    import_mujoco,
+    prepare_renderer,
+)
 from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, make_obstacles, outline
-from iiwa_dnn.robot.offscreen import import_mujoco, prepare_renderer
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.shapes import visual_meshes
 

@@ -13,7 +13,7 @@ import os
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from functools import lru_cache
-from itertools import combinations
+from itertools import combinations, product
 
 import coal
 import numpy as np
@@ -24,7 +24,7 @@ from iiwa_dnn.errors import FileError
 from iiwa_dnn.files import one_line, read_toml, write_text
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.loading import robots_folder
-from iiwa_dnn.robot.obstacles import Box, box_around
+from iiwa_dnn.robot.obstacles import box_around
 from iiwa_dnn.robot.robot import Robot, source_of
 from iiwa_dnn.robot.shapes import read_shapes
 
@@ -216,7 +216,7 @@ def _capsules(robot: Robot) -> Iterator[LinkCapsule]:
     """
     try:
         shapes = read_shapes(robot, pin.GeometryType.COLLISION)
-    except ValueError as error:
+    except (ValueError, RuntimeError) as error:
         raise FileError(
             source_of(robot)[0],
             f"a shape cannot be read ({one_line(error)}); "
@@ -251,7 +251,8 @@ def _fit(shape: coal.CollisionGeometry) -> tuple[checks.Array, checks.Array, flo
         return -half, half, float(shape.radius)
     if hasattr(shape, "vertices"):
         return _enclosing_capsule(np.array(shape.vertices(), dtype=np.float64))
-    return _enclosing_capsule(Box((0.0, 0.0, 0.0), tuple(shape.halfSide)).points)
+    corners = product(*zip(-shape.halfSide, shape.halfSide, strict=True))
+    return _enclosing_capsule(np.array(list(corners)))
 
 
 def _enclosing_capsule(points: checks.Array) -> tuple[checks.Array, checks.Array, float]:

@@ -13,13 +13,15 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from iiwa_dnn.checks import Array
-from iiwa_dnn.errors import InvalidInputError, MissingDependencyError, NotFoundError
-from iiwa_dnn.robot import urdf
+from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
+from iiwa_dnn.files import one_line
 from iiwa_dnn.robot.arms import ARMS, RATES, TIPS
 from iiwa_dnn.robot.robot import Robot, frame_id
 
 _NO_LIMIT = 1e300
 """Limit from which on Pinocchio means none [rad, rad/s]."""
+
+_UNLIMITED = {"lower": "-1e308", "upper": "1e308"}
 
 
 def available_robots() -> tuple[str, ...]:
@@ -62,18 +64,16 @@ def load_robot(
         MissingDependencyError: If the arm of that name is in a package that is not installed.
     """
     path, tips = _find(source)
-    root = ET.Element("robot")
-    full: pin.Model = source
-    if path is not None:
-        root = urdf.read(path)
-        full = urdf.build_model(path, root)
+    root = ET.Element("robot") if path is None else _read(path)
+    text = ET.tostring(root, encoding="unicode")  # of the tree that was checked
+    full: pin.Model = source if path is None else _build_model(path, text)
     # By the name it was asked for: the URDFs call some of these arms otherwise.
     name = str(source) if tips else full.name
     if tip is None:
         tip = tips[0] if tips else _only_end(full)
     others = tips if len(tips) > 1 else ()
     idle = _idle_joints(full, (tip, *others, *frames))
-    chosen = _chosen_joints(full, locked)
+    chosen = [locked] if isinstance(locked, str) else list(locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
     limits, ramps = _limits(name, model, root)
     robot = Robot(
@@ -85,7 +85,7 @@ def load_robot(
         tuple(held),
         tuple(held.values()),
         path,
-        urdf.text_of(root),
+        text,
     )
     expected = {*chosen, *(_idle_joints(full, tips) if tips else ())}
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
@@ -117,6 +117,44 @@ def _find(source: Any) -> tuple[Path | None, tuple[str, ...]]:
     return robots_folder() / name / f"{name}.urdf", TIPS[name]
 
 
+def _read(path: Path) -> ET.Element:
+    """Read a URDF file as XML; return its first element.
+
+    A continuous joint becomes a revolute one of a range without end: one coordinate, like all
+    others.
+
+    Raises:
+        FileError: If the file cannot be read or is not XML.
+    """
+    if path.suffix == ".xacro":
+        raise FileError(path, f"make a URDF of it: xacro {path.name} -o {path.stem}.urdf")
+    try:
+        root = ET.fromstring(path.read_bytes())
+    except OSError as error:
+        raise FileError(path, one_line(error)) from error
+    except (ET.ParseError, LookupError, ValueError) as error:
+        raise FileError(path, f"not XML that can be read: {one_line(error)}") from error
+    for joint in root.findall("joint[@type='continuous']"):
+        joint.set("type", "revolute")
+        limit = joint.find("limit")
+        if limit is None:
+            limit = ET.SubElement(joint, "limit", effort="0", velocity="0")
+        limit.attrib.update(_UNLIMITED)
+    return root
+
+
+def _build_model(path: Path, text: str) -> pin.Model:
+    """Build the Pinocchio model of the text of a URDF from `path`, its base fixed to the world.
+
+    Raises:
+        FileError: If Pinocchio refuses the robot.
+    """
+    try:
+        return pin.buildModelFromXML(text)
+    except (ValueError, RuntimeError, IndexError) as error:
+        raise FileError(path, f"no URDF that Pinocchio can read: {one_line(error)}") from error
+
+
 def _only_end(model: pin.Model) -> str:
     """Name the link at the end of the chain, if there is only one."""
     parents = {frame.parentFrame for frame in model.frames}
@@ -125,15 +163,6 @@ def _only_end(model: pin.Model) -> str:
     if len(ends) != 1:
         raise InvalidInputError("tip", f"is needed: the robot has several ends: {', '.join(ends)}")
     return str(ends[0])
-
-
-def _chosen_joints(model: pin.Model, locked: str | Iterable[str]) -> list[str]:
-    """Return the names of joints that are to be frozen, if the model has them."""
-    chosen = [locked] if isinstance(locked, str) else list(locked)
-    for name in chosen:
-        if name not in tuple(model.names)[1:]:
-            raise NotFoundError("joint", name, tuple(model.names)[1:])
-    return chosen
 
 
 def _idle_joints(model: pin.Model, frames: Iterable[str]) -> list[str]:
@@ -147,7 +176,12 @@ def _lock(model: pin.Model, locked: Iterable[str]) -> tuple[pin.Model, dict[str,
     """Freeze joints at zero or the limit nearest to it; return model and positions [rad]."""
     # A zero position can lie outside the limits (the panda's joint 4): then the nearest limit.
     posture = np.clip(pin.neutral(model), model.lowerPositionLimit, model.upperPositionLimit)
-    frozen = {name: model.getJointId(name) for name in locked}
+    names = tuple(model.names)
+    frozen = {}
+    for name in locked:
+        if name not in names[1:]:
+            raise NotFoundError("joint", name, names[1:])
+        frozen[name] = names.index(name)
     held = {
         # Planar and floating joints are at zero.
         name: float(posture[model.idx_qs[i]]) if model.nqs[i] == 1 else 0.0
@@ -173,8 +207,8 @@ def _limits(name: str, model: pin.Model, root: ET.Element) -> tuple[Array, Array
         mimic = element.find("mimic")
         if mimic is not None:
             problem = f"joint {joint!r} follows {mimic.get('joint')!r}: lock it, or take its"
-            remedy = "<mimic> out of the file and hold it by a JointCouplingTask"
-            raise InvalidInputError("locked", f"{problem} {remedy}", joint)
+            problem += " <mimic> out of the file and hold it by a JointCouplingTask"
+            raise InvalidInputError("locked", problem, joint)
         ramp = element.find("position_based_velocity_limits")
         if ramp is not None:
             ramps[0, i] = ramp.attrib["velocity_offset"]

@@ -3,8 +3,14 @@
 MuJoCo reads the URDF by itself (its own parser and its own dynamics, independent of Pinocchio).
 Facts that a URDF does not hold are added here: torque motors, joint damping, rotor inertia. Links
 do not collide. MuJoCo is imported only when a model is built (extra ``sim``).
+
+It draws by OpenGL without a display. On Linux that is the library which the environment variable
+MUJOCO_GL names, by default EGL (a graphics card, or Mesa's software driver). Physics needs none.
 """
 
+import importlib
+import os
+import sys
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from typing import Any
@@ -13,9 +19,7 @@ import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.robot import urdf
-from iiwa_dnn.robot.offscreen import import_mujoco
+from iiwa_dnn.errors import InvalidInputError, MissingDependencyError, import_extra
 from iiwa_dnn.robot.robot import Robot, source_of
 
 TIP_SITE = "tip"
@@ -39,6 +43,33 @@ class JointDynamics:
     armature: float = 0.1
 
 
+def import_mujoco() -> Any:
+    """Import MuJoCo's Python package; raises MissingDependencyError where it is not installed."""
+    return import_extra("mujoco", "pip install 'iiwa-dnn[sim]'")
+
+
+def prepare_renderer() -> None:
+    """Let ``mujoco.Renderer`` draw without a display, whatever MuJoCo chose at its import.
+
+    Raises:
+        MissingDependencyError: If MuJoCo is not there or, on Linux, an OpenGL library that opens a
+            context; it names the Debian package.
+    """
+    renderer = importlib.import_module(import_mujoco().Renderer.__module__)
+    if not sys.platform.startswith("linux"):
+        return  # MuJoCo's own choice
+    library = os.environ.get("MUJOCO_GL", "").lower() or "egl"
+    try:
+        context = importlib.import_module(f"mujoco.{library}").GLContext
+        context(1, 1).free()
+    except Exception as error:  # whatever PyOpenGL meets
+        raise MissingDependencyError(
+            f"OpenGL by {library}, without a display",
+            "on Debian: apt-get install libegl1 libgl1 (or libosmesa6, and MUJOCO_GL=osmesa)",
+        ) from error
+    renderer.gl_context.GLContext = context
+
+
 def torque_limits(robot: Robot) -> checks.Array:
     """Return the torque limits of the URDF [N m], (n,); inf where it gives none."""
     return np.where(robot.model.effortLimit > 0.0, robot.model.effortLimit, np.inf)
@@ -58,11 +89,11 @@ def build_spec(robot: Robot) -> Any:
     """
     mj = import_mujoco()
     root = ET.fromstring(source_of(robot)[1])
-    urdf.strip(root, robot)
+    _strip(root, robot)
     extension = ET.SubElement(root, "mujoco")
     # Not fused: links keep their names, and the base can be told from the world.
     ET.SubElement(extension, "compiler", fusestatic="false", discardvisual="false")
-    spec = mj.MjSpec.from_string(urdf.text_of(root))
+    spec = mj.MjSpec.from_string(ET.tostring(root, encoding="unicode"))
     _weld(spec, robot)
     joints = {joint.name: joint for joint in spec.joints}
     if tuple(joints) != robot.joint_names:
@@ -78,6 +109,17 @@ def build_spec(robot: Robot) -> Any:
     turn = _quaternion(frame.placement)
     carrier.add_site(name=TIP_SITE, pos=frame.placement.translation, quat=turn)
     return spec
+
+
+def _strip(root: ET.Element, robot: Robot) -> None:
+    """Remove what physics does not need: shapes out of other files, inertias of the base."""
+    for link in root.findall("link"):
+        for shape in [*link.findall("visual"), *link.findall("collision")]:
+            if shape.find("geometry/mesh") is not None:
+                link.remove(shape)
+        if robot.model.frames[robot.frame_id(link.get("name", ""))].parentJoint == 0:
+            for inertia in link.findall("inertial"):  # some are no body's, as of TIAGo's antennas
+                link.remove(inertia)
 
 
 def _weld(spec: Any, robot: Robot) -> None:
@@ -96,10 +138,9 @@ def _weld(spec: Any, robot: Robot) -> None:
             spec.delete(joint)
 
 
-def _quaternion(pose: pin.SE3) -> list[float]:
+def _quaternion(pose: pin.SE3) -> Any:
     """Return a pose's quaternion in MuJoCo's order."""
-    x, y, z, w = pin.Quaternion(pose.rotation).coeffs()
-    return [w, x, y, z]
+    return pin.Quaternion(pose.rotation).coeffs()[[3, 0, 1, 2]]
 
 
 def compile_model(

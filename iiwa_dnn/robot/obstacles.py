@@ -61,27 +61,14 @@ class Obstacle(ABC):
             checks.positive("radius", self.radius)
 
     @property
-    def moves(self) -> bool:
-        """True if the obstacle ever moves."""
-        return any(self.velocity)
-
-    @property
     def speed(self) -> float:
-        """Bound on the speed [m/s]."""
+        """Speed [m/s]; 0 of an obstacle that stands still."""
         return float(np.linalg.norm(self.velocity))
 
     @property
     @abstractmethod
     def box(self) -> PlacedBox:
         """Box that is the shape at time 0, grown by `thickness`."""
-
-    @property
-    def points(self) -> checks.Array:
-        """Corners of `box` that differ [m], (k, 3)."""
-        center, rotation, half_extents = self.box
-        signs = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
-        corners: checks.Array = np.unique(signs * half_extents, axis=0) @ rotation.T + center
-        return corners
 
     @property
     def thickness(self) -> float:

@@ -196,11 +196,6 @@ class Robot:
         model.addFrame(pin.Frame(name, tip.parentJoint, self.tip_id, pose, pin.FrameType.OP_FRAME))
         return replace(self, model=model, tip=name)
 
-    @property
-    def has_known_start(self) -> bool:
-        """True if `start_posture` is known of the robot's name and number of joints."""
-        return len(STARTS.get(self.name, ())) == self.dof
-
     def start_posture(self) -> checks.Array:
         """Return joint positions (n,) [rad] to start from, inside the limits.
 
@@ -209,8 +204,9 @@ class Robot:
         joints of any other robot begin bent to either side in turn, 0.15 of their ranges from the
         middle, where it may all the same be singular or in a collision.
         """
-        bent = np.where(np.arange(self.dof) % 2, 0.5 - _BENT, 0.5 + _BENT)
-        start = np.array(STARTS[self.name]) if self.has_known_start else self._inside(bent)
+        start = np.array(STARTS.get(self.name, ()))
+        if start.size != self.dof:
+            start = self._inside(np.where(np.arange(self.dof) % 2, 0.5 - _BENT, 0.5 + _BENT))
         inside = (self.q_lower < start) & (start < self.q_upper)
         return np.where(inside, start, np.clip(start, *self._inside(np.array([[0.05], [0.95]]))))
 

@@ -32,14 +32,11 @@ def read_shapes(robot: Robot, kind: pin.GeometryType) -> list[pin.GeometryObject
 
     Raises:
         InvalidInputError: The robot does not come from a file.
-        ValueError: A mesh is missing or damaged.
+        ValueError, RuntimeError: A mesh is missing or damaged.
     """
     path, text = source_of(robot)
     folders = [str(folder) for folder in (*path.absolute().parents, *path.resolve().parents)]
-    try:
-        found = pin.buildGeomFromUrdfString(robot.model, text, kind, package_dirs=folders)
-    except RuntimeError as error:
-        raise ValueError(str(error)) from error
+    found = pin.buildGeomFromUrdfString(robot.model, text, kind, package_dirs=folders)
     return list(found.geometryObjects)
 
 
@@ -47,7 +44,7 @@ def read_shapes(robot: Robot, kind: pin.GeometryType) -> list[pin.GeometryObject
 def visual_meshes(robot: Robot) -> tuple[Mesh, ...]:
     """List the meshes of a robot's <visual>s; none where one is missing, or it has no file."""
     shapes: list[pin.GeometryObject] = []
-    with suppress(ValueError):
+    with suppress(ValueError, RuntimeError):
         shapes = read_shapes(robot, pin.GeometryType.VISUAL)
     meshes = []
     for shape in shapes:

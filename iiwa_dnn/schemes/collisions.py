@@ -218,7 +218,7 @@ class CollisionAvoidance(Limit):
     @property
     def refreshes(self) -> bool:
         """Test whether an obstacle moves."""
-        return any(obstacle.moves for obstacle in self.obstacles)
+        return any(obstacle.speed for obstacle in self.obstacles)
 
     def refresh(self, step: Step, constants: Vector) -> None:
         """Put the moving obstacles in the constants, (k,), where they are at a step's time."""

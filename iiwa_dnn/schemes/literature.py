@@ -78,14 +78,9 @@ class DoubleIndicator(Scheme):
     def __post_init__(self) -> None:
         if checks.not_negative("weight", self.weight) > 1.0:
             raise InvalidInputError("weight", f"must be in [0, 1], not {self.weight}", self.weight)
-        checks.not_negative("drift_gain", self.drift_gain)
-        checks.positive("limit_gain", self.limit_gain)
         checks.one_of("tracking", self.tracking, TRACKINGS)
         cyclic = CyclicMotion(weight=1.0 - self.weight, gain=self.drift_gain, home=self.home)
         object.__setattr__(self, "home", cyclic.home)
-        if isinstance(self.extra_limits, Limit):
-            problem = f"must be a tuple of limits, not {self.extra_limits!r}"
-            raise InvalidInputError("extra_limits", problem, self.extra_limits)
         tasks = tip_tasks(self.position_gain, self.orientation_gain, self.orientation)
         object.__setattr__(self, "ahead", self.tracking == "next")
         if self.ahead:
@@ -141,8 +136,6 @@ def tip_tasks(
 ) -> list[PositionTask | OrientationTask]:
     """Return the tasks of the tip: its position, and its orientation unless that is ``"none"``."""
     checks.one_of("orientation", orientation, ORIENTATIONS)
-    checks.not_negative("position_gain", position_gain)
-    checks.not_negative("orientation_gain", orientation_gain)
     position = PositionTask(gain=position_gain)
     if orientation == "none":
         return [position]
@@ -181,8 +174,6 @@ def bi_criteria(robot: Robot, weight: float = 0.5, gain: float = 10.2) -> Scheme
     Raises:
         InvalidInputError: The weight is not in [0, 1].
     """
-    if checks.not_negative("weight", weight) > 1.0:
-        raise InvalidInputError("weight", f"must be in [0, 1], not {weight}", weight)
     costs = [KineticEnergy(weight=max(weight, SMALLEST)), LargestSpeed(weight=1.0 - weight)]
     tasks = tip_tasks(gain, gain, "so3")
     return Scheme(costs, tasks, [JointLimits(), SpeedsBelowSlack(robot)], slack=1)

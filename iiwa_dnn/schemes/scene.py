@@ -191,7 +191,7 @@ def make_scene(
     # The last three numbers of a body are its centre.
     first = HEAD + robot.dof + PER_BODY * (links + 1) - 3
     centers = [slice(at, at + 3) for at in first + PER_BODY * np.arange(len(obstacles))]
-    moving = [pair for pair in zip(obstacles, centers, strict=True) if pair[0].moves]
+    moving = [pair for pair in zip(obstacles, centers, strict=True) if pair[0].speed]
     frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
     names = [Pair(bodies[i].name, bodies[k].name) for i, k in pairs]
     head = np.array([least, gain, len(bodies), len(pairs)])

@@ -238,5 +238,5 @@ def test_the_residuals_of_an_answer_are_its_own(policy: Policy, acceleration: fl
         command = controller.step(PAPER_Q0, 1e-3 * k, near_target(PAPER_Q0, 3, 0.3))
         assert command.action in (Action.SLOW, Action.RELAX, Action.STOP)
         found = command.solution
-        own = command.qp.residuals(found.x, found.y, found.z, found.z_box)
+        own = command.qp.residuals(found.point)
         np.testing.assert_allclose(found.residuals, own, rtol=0, atol=1e-12)

@@ -240,11 +240,6 @@ def _with_network(network: iiwa_dnn.Network) -> Controller:
     return controller
 
 
-class _Eager(iiwa_dnn.ProjectionNetwork):
-    def initial_state(self, qp: iiwa_dnn.QP) -> np.ndarray:
-        return np.ones(self.state_size(qp))
-
-
 @pytest.mark.parametrize(
     ("make", "words"),
     [
@@ -259,7 +254,6 @@ class _Eager(iiwa_dnn.ProjectionNetwork):
             lambda: _with_network(iiwa_dnn.PrimalDualNetwork()),
             "solver: DNNSolver has no compiled answer",
         ),
-        (lambda: _with_network(_Eager()), "network: _Eager starts from a state of its own"),
     ],
 )
 def test_what_is_not_compiled_is_refused_by_name(make, words: str, tmp_path: Path) -> None:

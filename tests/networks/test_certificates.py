@@ -132,15 +132,9 @@ def test_a_status_says_what_was_shown(qp: QP, x: float | None, status: Status) -
     # A program with a solution is not called infeasible or unbounded, only far.
     assert ("within 1e8" in status.value) is (x is not None)
     if x is not None:
-        assert qp.residuals(np.array([x]), *_multipliers(qp, x)).largest < 1e-6
-
-
-def _multipliers(qp: QP, x: float) -> tuple[np.ndarray | None, np.ndarray | None, None]:
-    """Multipliers of a program of one variable with at most one row."""
-    slope = -(qp.P[0, 0] * x + qp.q[0])
-    if qp.b.size:
-        return np.array([slope / qp.A[0, 0]]), None, None
-    return None, np.array([slope / qp.G[0, 0]]) if qp.h.size else None, None
+        rows = np.concatenate([qp.A.ravel(), qp.G.ravel()])  # at most one
+        multipliers = -(qp.P[0, 0] * x + qp.q[0]) / rows
+        assert qp.residuals(np.array([x, *multipliers, 0.0])).largest < 1e-6
 
 
 def test_no_program_with_a_feasible_point_is_refuted() -> None:

@@ -70,7 +70,7 @@ def test_a_constant_noise_is_taken_out_below_gamma(noise: float, rejected: bool)
     network = NoiseSuppressingNetwork(rho=1.0, form="projected", integral=GAMMA, proportional=ETA)
     residual = evaluate(qp, "projected", np.zeros(3)).matrix
     rates = network.flow(qp).rates
-    state = network.initial_state(qp)
+    state = np.zeros(network.state_size(qp))
     for _ in range(4000):
         change = rates(state)
         change[:3] += np.linalg.solve(residual, np.full(3, noise))

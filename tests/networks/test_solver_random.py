@@ -49,7 +49,7 @@ def test_found_means_that_the_residuals_are_below_the_tolerance(
     qp, _ = programs.strictly_convex(np.random.default_rng(seed))
     solver = DNNSolver(tol=tol, settler=iiwa_dnn.ImplicitEuler(max_steps=budget))
     solution = solver.solve(qp)
-    residuals = qp.residuals(solution.x, solution.y, solution.z, solution.z_box)
+    residuals = qp.residuals(solution.point)
     assert solution.residuals == residuals
     assert solution.found == (residuals.largest <= tol)
     assert solution.iterations <= budget

@@ -136,7 +136,7 @@ def test_residuals_are_those_of_qpsolvers() -> None:
         x, y, z, z_box = np.split(outside, [n, n + p, n + p + m])
         judged = qpsolvers.Solution(qp.to_qpsolvers(), found=True, x=x, y=y, z=z, z_box=z_box)
         theirs = (judged.primal_residual(), judged.dual_residual(), judged.duality_gap())
-        np.testing.assert_allclose(qp.residuals(x, y, z, z_box), theirs, rtol=1e-12, atol=1e-13)
+        np.testing.assert_allclose(qp.residuals(outside), theirs, rtol=1e-12, atol=1e-13)
         assert (point[:n] >= qp.lb).all()
         assert (point[:n] <= qp.ub).all()
         assert (point[n + p : n + p + m] >= 0).all()
@@ -147,12 +147,14 @@ def test_multipliers_of_absent_limits_leave_the_gap_alone() -> None:
     qp = QP(
         np.eye(2), np.zeros(2), G=[[1.0, 0.0]], h=[np.inf], lb=[-np.inf, -4.0], ub=[4.0, np.inf]
     )
-    x, none = np.zeros(2), np.zeros(1)
-    assert qp.residuals(x, None, none, np.zeros(2)) == (0.0, 0.0, 0.0)
-    assert qp.residuals(x, None, none, np.array([-3.0, 0.0])) == (0.0, 3.0, 0.0)
-    assert qp.residuals(x, None, none, np.array([0.0, 2.0])) == (0.0, 2.0, 0.0)
-    assert qp.residuals(x, None, none, np.array([0.5, 0.0])) == (0.0, 0.5, 2.0)
-    assert qp.residuals(x, None, none, np.array([0.0, -0.25])) == (0.0, 0.25, 1.0)
+    for z_box, expected in (
+        ([0.0, 0.0], (0.0, 0.0, 0.0)),
+        ([-3.0, 0.0], (0.0, 3.0, 0.0)),
+        ([0.0, 2.0], (0.0, 2.0, 0.0)),
+        ([0.5, 0.0], (0.0, 0.5, 2.0)),
+        ([0.0, -0.25], (0.0, 0.25, 1.0)),
+    ):
+        assert qp.residuals(np.array([0.0, 0.0, 0.0, *z_box])) == expected
 
 
 def test_data_of_another_size_is_refused() -> None:

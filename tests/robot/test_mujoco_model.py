@@ -11,7 +11,7 @@ import pytest
 
 from helpers_kinematics import example_urdf
 from iiwa_dnn import Configuration, InvalidInputError, MissingDependencyError, load_robot
-from iiwa_dnn.robot import offscreen
+from iiwa_dnn.robot import mujoco_model
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.mujoco_model import (
     TIP_SITE,
@@ -144,7 +144,7 @@ def test_robots_that_cannot_be_had_in_physics(robot, tmp_path):
 def test_what_is_not_there_is_named_with_a_remedy(monkeypatch):
     monkeypatch.setenv("MUJOCO_GL", "glfw_of_nobody")
     with pytest.raises(MissingDependencyError, match=r"glfw_of_nobody.*apt-get install libegl1"):
-        offscreen.prepare_renderer()
+        mujoco_model.prepare_renderer()
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(MissingDependencyError, match=r"pip install 'iiwa-dnn\[sim\]'"):
-        offscreen.import_mujoco()
+        mujoco_model.import_mujoco()

@@ -10,8 +10,13 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.robot.mujoco_model import TIP_SITE, JointDynamics, compile_model, torque_limits
-from iiwa_dnn.robot.offscreen import import_mujoco
+from iiwa_dnn.robot.mujoco_model import (
+    TIP_SITE,
+    JointDynamics,
+    compile_model,
+    import_mujoco,
+    torque_limits,
+)
 from iiwa_dnn.simulation.disturbances import Disturbances, Encoder
 from iiwa_dnn.simulation.plants.base import Moved, Plant
 from iiwa_dnn.simulation.plants.torque_control import TorqueController, TorqueGains
