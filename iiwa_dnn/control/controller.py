@@ -238,7 +238,7 @@ class Controller:
             dq: Velocity that the program's bounds and rows allow [rad/s], (n,).
         """
         step = self.control_step
-        if step.plan.yielding.limits.size or not step.plan.yielding.stop:
+        if step.plan.yielding.limits.size or not len(step.plan.yielding.scenes):
             return 1.0
         step.program.kinematics.update(q)
         past = np.zeros_like(self._state.past)

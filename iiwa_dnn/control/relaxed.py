@@ -95,7 +95,6 @@ class Yielding(NamedTuple):
         scenes: Beginning and end, among the constants of all parts, of those of each scene that
             braking keeps away from, (scenes, 2).
         dt: Control period [s].
-        stop: Address of `stopping.stopping_time`; 0 without scenes.
         cubic: Whether the jerk of a joint is limited.
         coupled: Whether joints follow others.
     """
@@ -105,7 +104,6 @@ class Yielding(NamedTuple):
     settings: Vector
     scenes: IntMatrix
     dt: float
-    stop: int
     cubic: bool
     coupled: bool
 

@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.compiling.library import compiled, entry
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.relaxed import Yielding
 from iiwa_dnn.control.state import LAST, Q
 from iiwa_dnn.qp import Matrix, Vector
@@ -301,14 +301,6 @@ def _along(
     return x, b
 
 
-@entry
-def enter_stopping_time(
-    address: int, arrays: ProgramArrays, past: Matrix, yielding: Yielding, dq: Vector
-) -> float:
-    """Enter `stopping_time` at an address: controllers without scenes are exported without it."""
-    raise NotImplementedError
-
-
 @compiled
 def stopping_time(arrays: ProgramArrays, past: Matrix, yielding: Yielding, dq: Vector) -> float:
     """Compute the periods of the motion to rest from a command.
@@ -320,8 +312,10 @@ def stopping_time(arrays: ProgramArrays, past: Matrix, yielding: Yielding, dq: V
         dq: The command [rad/s], (dof,).
 
     Returns:
-        M; -1 if the motion breaks a limit, or brings a pair too near.
+        M; -1 if the motion breaks a limit, or brings a pair too near; 0 if no distance is kept.
     """
+    if len(yielding.scenes) == 0:
+        return 0.0
     limits = yielding.limits
     bend = np.zeros(dq.size)
     periods = 1.0

@@ -34,7 +34,6 @@ from iiwa_dnn.control.relaxed import (
 )
 from iiwa_dnn.control.state import BEFORE, DELAY, LAST, REST, WANTED, YIELDS, Q
 from iiwa_dnn.control.stopping import (
-    enter_stopping_time,
     least_periods,
     next_velocity,
     stopping_time,
@@ -97,7 +96,6 @@ def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
         np.array([tol, float(MOST)]),
         np.array(scenes, dtype=np.int64).reshape(-1, 2),
         dt,
-        enter_stopping_time.address(stopping_time) if scenes else 0,
         bool((limits.reshape(6, -1)[4] < np.inf).any()),
         bool((weights == 0.0).any()),
     )
@@ -168,15 +166,6 @@ def yield_step(
     copied(views.dq, x[:dof])
     copied(following[LAST], x[:dof])
     return int(views.decision[0])
-
-
-@compiled
-def _periods_to_rest(arrays: ProgramArrays, past: Matrix, yielding: Yielding, x: Vector) -> float:
-    """Compute `stopping_time` of a command x (dof,); 0 if no distance is kept."""
-    rest = 0.0
-    if yielding.stop:
-        rest = enter_stopping_time(yielding.stop, arrays, past, yielding, x)
-    return rest
 
 
 @compiled
@@ -373,7 +362,7 @@ def _make_stoppable(
         Periods until it rests; 0 where none is asked for.
     """
     dof = past.shape[1]
-    rest = _periods_to_rest(arrays, past, yielding, x[:dof])
+    rest = stopping_time(arrays, past, yielding, x[:dof])
     if rest >= 0.0:
         return rest
     wanted = views.point[: x.size].copy()
@@ -385,11 +374,11 @@ def _make_stoppable(
     for k in range(len(TOWARDS)):
         for i in range(dof):
             x[i] = brake[i] + TOWARDS[k] * (wanted[i] - brake[i])
-        rest = _periods_to_rest(arrays, past, yielding, x[:dof])
+        rest = stopping_time(arrays, past, yielding, x[:dof])
         if rest >= 0.0:
             return rest
     if not yielding.coupled and _go_away(limits, past[LAST], x[:dof]):
-        rest = _periods_to_rest(arrays, past, yielding, x[:dof])
+        rest = stopping_time(arrays, past, yielding, x[:dof])
         if rest >= 0.0:
             return rest
     copied(x, brake)
@@ -463,6 +452,6 @@ def guard_step(arrays: ProgramArrays, past: Matrix, following: Matrix, yielding:
         following: `ControllerState.following`, (8, dof).
         yielding: Limits and scenes.
     """
-    rest = _periods_to_rest(arrays, past, yielding, following[LAST])
+    rest = stopping_time(arrays, past, yielding, following[LAST])
     following[REST, 0] = max(rest, 0.0)
     return rest >= 0.0

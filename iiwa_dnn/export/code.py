@@ -218,9 +218,7 @@ class _Code:
         network[2] = 0 if settles else self._part(int(network[2]))
         for row in table[1:]:
             row[1] = self._part(int(row[1]))
-        yielding = plan.yielding
-        yielding = yielding._replace(stop=self._part(yielding.stop))
-        return plan._replace(arrays=arrays._replace(table=table), yielding=yielding)
+        return plan._replace(arrays=arrays._replace(table=table))
 
     def _part(self, address: int) -> int:
         """Translate the function at an address, once; return its number."""

@@ -20,7 +20,6 @@ def settling(tol: float = 1e-9, budget: float = 60.0) -> Yielding:
         settings=np.array([tol, budget, 1e8]),
         scenes=np.zeros((0, 2), np.int64),
         dt=1e-3,
-        stop=0,
         cubic=False,
         coupled=False,
     )
