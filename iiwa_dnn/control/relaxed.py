@@ -111,8 +111,8 @@ class Yielding(NamedTuple):
 def relaxed_size(sizes: Sizes) -> int:
     """Count the numbers of the states with which relaxed programs of a step's sizes are solved.
 
-    They are of the search of the scaling factor, which has one variable more, and of the softened
-    program.
+    They are of the search of the scaling factor, which has one variable more, and of the program
+    that is answered.
     """
     n, m, p = sizes
     return (3 * n + 3 + m + p) + (3 * n + m + p)

@@ -46,7 +46,6 @@ from iiwa_dnn.networks.integrators.base import (
     Settled,
     enter_answer,
 )
-from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.qp.dense import all_finite
@@ -72,13 +71,11 @@ class StepPlan(NamedTuple):
         arrays: Arrays with which the program is written.
         yielding: What relaxed programs need beside them.
         policy: Action that the policy asks for at a step without a solution; `BRAKE`: none.
-        shares_state: Whether relaxed programs start from the state of the step's own network.
     """
 
     arrays: ProgramArrays
     yielding: Yielding
     policy: int
-    shares_state: bool
 
 
 class ControlStep:
@@ -120,9 +117,8 @@ class ControlStep:
         self.has_network = self._add_network(solver, dt, policy == BRAKE)
         self.samples = self._add_paths(references, dt) and not program.reads_targets
         arrays = program.arrays(dt)
-        shares_state = self.has_network and is_projection(solver.network)
         yielding = make_yielding(program, solver.tol, dt)
-        self.plan = StepPlan(arrays, yielding, policy, shares_state)
+        self.plan = StepPlan(arrays, yielding, policy)
         self.set_period(dt)
 
     def set_period(self, dt: float) -> None:
@@ -248,11 +244,8 @@ def take_step(
     first = row.size - views.targets.size
     if not all_finite(past[Q], 0, table[0, 3]) or not all_finite(row, first, row.size):
         return INVALID
-    own = np.zeros(3 * table[0, 0] + table[0, 1] + table[0, 2])
-    if plan.shares_state:
-        own = state
     policy = BRAKE if halted else plan.policy
-    return yield_step(views, arrays, past, following, own, plan.yielding, relaxed, policy)
+    return yield_step(views, arrays, past, following, plan.yielding, relaxed, policy)
 
 
 @compiled

@@ -107,7 +107,6 @@ def yield_step(
     arrays: ProgramArrays,
     past: Matrix,
     following: Matrix,
-    state: Vector,
     yielding: Yielding,
     relaxed: Vector,
     action: int,
@@ -119,7 +118,6 @@ def yield_step(
         arrays: Arrays of the loop; the kinematics are at the joint positions of `past`.
         past: `ControllerState.past`, (8, dof).
         following: The same for the next step, with the last commands; the rest is overwritten.
-        state: The network's state, (size,), advanced.
         yielding: Weights, limits and settings of the relaxed programs.
         relaxed: States of the networks of relaxed programs, (`relaxed_size`,), advanced.
         action: Action that the policy asks for; `BRAKE`: the arm goes to rest, whatever has a
@@ -138,7 +136,7 @@ def yield_step(
     rest = 0.0
     if action != BRAKE:
         _widen_bounds(qp, yielding.limits, past[Q])
-        found, factor = _answer_relaxed(views, qp, yielding, state, relaxed, action)
+        found, factor = _answer_relaxed(views, qp, yielding, relaxed, action)
         kind = int(found)
     x = views.point[: qp.q.size].copy()
     limits = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, own.lb, own.ub)
@@ -217,12 +215,7 @@ def _widen_bounds(qp: QPViews, limits: Vector, q: Vector) -> None:
 
 @compiled
 def _answer_relaxed(
-    views: RowViews,
-    qp: QPViews,
-    yielding: Yielding,
-    state: Vector,
-    relaxed: Vector,
-    action: int,
+    views: RowViews, qp: QPViews, yielding: Yielding, relaxed: Vector, action: int
 ) -> tuple[float, float]:
     """Turn a step's program into the first relaxed one that has a solution, and answer it.
 
@@ -239,7 +232,7 @@ def _answer_relaxed(
     if factor == 1.0 or (follows and factor >= CREEP):
         asked = qp.b.copy()
         scale_task(qp, yielding.weights, factor)
-        if settled(qp, yielding, state, views.point, views.figures, 1.0):
+        if settled(qp, yielding, relaxed[size:], views.point, views.figures, 1.0):
             return SCALED, factor
         copied(qp.b, asked)
     if action == STOP:
