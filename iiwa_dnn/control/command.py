@@ -10,7 +10,7 @@ import numpy as np
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
-from iiwa_dnn.qp.layout import Sizes, offsets
+from iiwa_dnn.qp.layout import IntVector, Sizes, offsets
 from iiwa_dnn.schemes.program import ACCELERATION, LimitNames
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -66,36 +66,8 @@ class RowViews(NamedTuple):
 
 
 @compiled
-def row_ends(
-    n: int, m: int, p: int, dof: int
-) -> tuple[int, int, int, int, int, int, int, int, int]:
-    """Compute the columns at which all parts of a row but the last end, in their order."""
-    at_point = (n + m + p) * (n + 1) + 2 * n
-    at_figures = at_point + 2 * n + m + p
-    at_placement = at_figures + FIGURES
-    at_past = at_placement + PLACEMENT
-    at_dq = at_past + PAST * dof
-    at_decision = at_dq + dof
-    at_bounds = at_decision + DECISION
-    at_blocking = at_bounds + BOUNDS * dof
-    at_targets = at_blocking + n + m
-    return (
-        at_point,
-        at_figures,
-        at_placement,
-        at_past,
-        at_dq,
-        at_decision,
-        at_bounds,
-        at_blocking,
-        at_targets,
-    )
-
-
-@compiled
-def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
-    """Make the views of a row, (width,)."""
-    ends = row_ends(n, m, p, dof)
+def row_views(row: Vector, ends: IntVector, dof: int) -> RowViews:
+    """Make the views of a row, (width,), whose parts end at these columns (`RowLayout`)."""
     return RowViews(
         row[: ends[0]],
         row[ends[0] : ends[1]],
@@ -106,7 +78,7 @@ def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
         row[ends[5] : ends[6]],
         row[ends[6] : ends[7]].reshape(BOUNDS, dof),
         row[ends[7] : ends[8]],
-        row[ends[8] :].reshape((row.size - ends[8]) // TARGET_SIZE, TARGET_SIZE),
+        row[ends[8] :].reshape((ends[9] - ends[8]) // TARGET_SIZE, TARGET_SIZE),
     )
 
 
@@ -115,6 +87,7 @@ class RowLayout:
 
     Attributes:
         sizes: ``(n, m, p)`` of the programs.
+        ends: Columns at which the parts of `RowViews` end, (10,).
         width: Length of a row.
         columns: Columns by the names of `RowViews`.
         dof: Number of joints.
@@ -128,9 +101,22 @@ class RowLayout:
         self.names: Any = names
         self.sizes = sizes
         self.dof = dof
-        ends = row_ends(*sizes, dof)
-        self.width = ends[-1] + TARGET_SIZE * frames
-        columns = map(slice, (0, *ends), (*ends, self.width))
+        n, m, p = sizes
+        lengths = (
+            (n + m + p) * (n + 1) + 2 * n,
+            2 * n + m + p,
+            FIGURES,
+            PLACEMENT,
+            PAST * dof,
+            dof,
+            DECISION,
+            BOUNDS * dof,
+            n + m,
+            TARGET_SIZE * frames,
+        )
+        self.ends: IntVector = np.cumsum(lengths, dtype=np.int64)
+        *starts, self.width = [0, *self.ends.tolist()]
+        columns = map(slice, starts, self.ends.tolist())
         self.columns = dict(zip(RowViews._fields, columns, strict=True))
 
     def view(self, rows: Matrix, name: str) -> Matrix:

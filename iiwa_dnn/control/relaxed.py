@@ -46,6 +46,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, qp_views
 from iiwa_dnn.qp.residuals import within
+from iiwa_dnn.schemes.program import add_soft
 
 BUDGET = 60
 """Linear systems after which a program counts as one without a solution."""
@@ -267,23 +268,13 @@ def soften_task(qp: QPViews, weights: Vector, retreat: float) -> None:
         qp.P[i, i] += DAMPING * DAMPING
     for j in range(qp.b.size):
         if weights[j] > 0.0:
-            _move_into_cost(qp, j, weights[j] * weights[j], shrink)
+            qp.b[j] *= shrink
+            add_soft(qp, qp.A[j : j + 1], qp.b[j : j + 1], weights[j] * weights[j])
+            qp.A[j, :] = 0.0
+            qp.b[j] = 0.0
     for j in range(qp.h.size):
         if qp.h[j] < 0.0:
             qp.h[j] *= retreat
-
-
-@compiled
-def _move_into_cost(qp: QPViews, j: int, square: float, shrink: float) -> None:
-    """Move equality row j into the cost, with the square of its weight; its b is shrunk."""
-    n = qp.q.size
-    rhs = square * shrink * qp.b[j]
-    for i in range(n):
-        qp.q[i] -= rhs * qp.A[j, i]
-        for k in range(n):
-            qp.P[i, k] += square * qp.A[j, i] * qp.A[j, k]
-    qp.A[j, :] = 0.0
-    qp.b[j] = 0.0
 
 
 @compiled

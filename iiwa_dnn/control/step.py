@@ -49,7 +49,7 @@ from iiwa_dnn.networks.integrators.base import (
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.qp.dense import all_finite
-from iiwa_dnn.qp.layout import QPViews, Sizes, qp_views
+from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.base import Ahead, enter_path
@@ -69,11 +69,13 @@ class StepPlan(NamedTuple):
 
     Attributes:
         arrays: Arrays with which the program is written.
+        ends: `RowLayout.ends`, (10,).
         yielding: What relaxed programs need beside them.
         policy: Action that the policy asks for at a step without a solution; `BRAKE`: none.
     """
 
     arrays: ProgramArrays
+    ends: IntVector
     yielding: Yielding
     policy: int
 
@@ -118,7 +120,7 @@ class ControlStep:
         self.samples = self._add_paths(references, dt) and not program.reads_targets
         arrays = program.arrays(dt)
         yielding = make_yielding(program, solver.tol, dt)
-        self.plan = StepPlan(arrays, yielding, policy)
+        self.plan = StepPlan(arrays, self.layout.ends, yielding, policy)
         self.set_period(dt)
 
     def set_period(self, dt: float) -> None:
@@ -227,7 +229,7 @@ def take_step(
     """
     arrays = plan.arrays
     table = arrays.table
-    views = row_views(row, table[0, 0], table[0, 1], table[0, 2], table[0, 3])
+    views = row_views(row, plan.ends, table[0, 3])
     copied(following.reshape(following.size), past.reshape(past.size))
     copied(following[BEFORE], past[LAST])
     following[REST, 0] = 0.0

@@ -500,14 +500,14 @@ def assemble(data: Vector, arrays: ProgramArrays, past: Matrix, targets: Matrix,
             A = np.zeros((rows, qp.q.size))
             b = np.zeros(rows)
             enter_task(address, step, own, target, A, b)
-            _add_soft(qp, A, b, constants[table[k, 5]])
+            add_soft(qp, A, b, constants[table[k, 5]])
         else:
             G = qp.G[first : first + rows]
             enter_limit(address, step, own, G, qp.h[first : first + rows], qp.lb, qp.ub)
 
 
 @compiled
-def _add_soft(qp: QPViews, A: Matrix, b: Vector, weight: float) -> None:
+def add_soft(qp: QPViews, A: Matrix, b: Vector, weight: float) -> None:
     """Add weight A^T A to P and -weight A^T b to q, for rows A (rows, n) and b (rows,)."""
     for k in range(b.size):
         for i in range(qp.q.size):
