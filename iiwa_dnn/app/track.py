@@ -272,7 +272,7 @@ def _draw(options: Any, more: Tables) -> int:
                 claim_folder(folder, tables, options.overwrite)
             bar.update(done)
 
-        record = simulate(**arguments, progress=proceed, far_start=True)
+        record = simulate(**arguments, progress=proceed)
     metrics = save_run(record, folder, options.plots, draw_more, published(record.settings))
     reasons = failures(metrics)
     if not options.quiet:

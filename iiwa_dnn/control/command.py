@@ -3,6 +3,7 @@
 This is the only file that knows where a number lies in a row.
 """
 
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -102,7 +103,7 @@ class RowLayout:
         self.sizes = sizes
         self.dof = dof
         n, m, p = sizes
-        lengths = (
+        lengths = [
             (n + m + p) * (n + 1) + 2 * n,
             2 * n + m + p,
             FIGURES,
@@ -113,10 +114,11 @@ class RowLayout:
             BOUNDS * dof,
             n + m,
             TARGET_SIZE * frames,
-        )
-        self.ends: IntVector = np.cumsum(lengths, dtype=np.int64)
-        *starts, self.width = [0, *self.ends.tolist()]
-        columns = map(slice, starts, self.ends.tolist())
+        ]
+        ends = [*accumulate(lengths)]
+        self.ends: IntVector = np.array(ends, dtype=np.int64)
+        self.width = ends[-1]
+        columns = map(slice, [0, *ends], ends)
         self.columns = dict(zip(RowViews._fields, columns, strict=True))
 
     def view(self, rows: Matrix, name: str) -> Matrix:

@@ -32,7 +32,7 @@ from iiwa_dnn.control.state import (
     Q,
 )
 from iiwa_dnn.control.step import INVALID, ControlStep, take_step
-from iiwa_dnn.control.yielding import BRAKE, TOWARDS, guard_step
+from iiwa_dnn.control.yielding import BRAKE, guard_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
@@ -228,10 +228,10 @@ class Controller:
             checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
         return Command(row, layout, _ACTIONS[action])
 
-    def clear_share(self, q: Vector, dq: Vector) -> float:
-        """Return the share of a velocity that brings no pair nearer than promised, or too near.
+    def is_clear(self, q: Vector, dq: Vector) -> bool:
+        """Test whether a velocity brings no pair nearer than promised, or too near.
 
-        With limits on acceleration or jerk it is 1: to shorten a command could break them.
+        With limits on acceleration or jerk it passes: not to send it could break them.
 
         Args:
             q: Joint positions [rad], (n,).
@@ -239,15 +239,12 @@ class Controller:
         """
         step = self.control_step
         if step.plan.yielding.limits.size or not len(step.plan.yielding.scenes):
-            return 1.0
+            return True
         step.program.kinematics.update(q)
         past = np.zeros_like(self._state.past)
         following = past.copy()
-        for share in TOWARDS:
-            following[LAST] = share * dq
-            if guard_step(step.plan.arrays, past, following, step.plan.yielding):
-                return share
-        return 0.0
+        following[LAST] = dq
+        return bool(guard_step(step.plan.arrays, past, following, step.plan.yielding))
 
     def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlStep:
         """Anchor the scheme, and at the first step warn of a start that is most likely wrong.
@@ -289,11 +286,6 @@ class Controller:
         """Columns of the commands' rows."""
         return self.control_step.layout
 
-    @property
-    def last(self) -> Vector:
-        """Last command [rad/s], (n,), a copy."""
-        return np.array(self._state.past[LAST])
-
     def halt(self) -> None:
         """Brake at every step from now on."""
         self._state.past[HALTED] = 1.0
@@ -308,9 +300,7 @@ class Controller:
         self._state.past[Q] = start.q
         self._state.begun = True
 
-    def warn_of_start(
-        self, start: Configuration, t: float, own: bool, stacklevel: int, refuses: bool = False
-    ) -> None:
+    def warn_of_start(self, start: Configuration, t: float, own: bool, stacklevel: int) -> None:
         """Warn of settings, a start posture or a first target that are most likely wrong.
 
         Args:
@@ -318,16 +308,11 @@ class Controller:
             t: Time [s].
             own: Whether the targets are the reference's.
             stacklevel: That of the warnings.
-            refuses: Whether a path of poses that begins elsewhere is an error.
-
-        Raises:
-            InvalidInputError: `refuses` is set, and there is such a path.
         """
         program = self.program
         found = [*doubts(program, start, self.dt, self.mode)]
         if own:
-            paths = paths_of(self.reference, self.robot.tip, program.target_frames)
-            found += far_targets(self.scheme, paths, start, self.targets(t), refuses)
+            found += far_targets(self.scheme, program.target_frames, start, self.targets(t))
         for message in found:
             warnings.warn(message, stacklevel=stacklevel)
 

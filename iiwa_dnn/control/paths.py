@@ -99,39 +99,29 @@ def _doubts_of_tasks(program: StepProgram, dt: float) -> Iterator[str]:
 
 def far_targets(
     scheme: object,
-    references: Mapping[str, Reference],
+    frames: Sequence[str],
     start: Configuration,
     targets: Matrix,
-    refuses: bool,
 ) -> Iterator[str]:
     """State which first targets are far from their frames in a configuration.
 
     Args:
         scheme: The scheme, of which only an orientation task looks at angles.
-        references: References by frame name, in the order of the targets.
+        frames: Names of the frames of the targets.
         start: The configuration.
         targets: The targets, (k, 18).
-        refuses: Whether a path of poses that begins elsewhere is refused.
-
-    Raises:
-        InvalidInputError: Such a path does.
     """
     turns = any(isinstance(task, _TURNING) for task in getattr(scheme, "tasks", ()))
-    for (name, reference), data in zip(references.items(), targets, strict=True):
+    for name, data in zip(frames, targets, strict=True):
         frame = start.frame(name)
         target = Target.from_data(data)
         distance = float(np.linalg.norm(target.position - frame.position))
         angle = turns * float(np.linalg.norm(log3(target.rotation @ frame.rotation.T)))
-        if distance <= FAR and angle <= TURNED:
-            continue
-        message = (
-            f"begins {distance:.3g} m and {angle:.3f} rad from {name}; start at "
-            "iiwa_dnn.solve_pose(robot, reference.at(0.0)).q, or use reference.anchored(start)"
-        )
-        if refuses and getattr(reference, "quaternions", None) is not None:
-            problem = f"{message}, or pass far_start=True to go there first"
-            raise InvalidInputError("reference", problem, reference)
-        yield f"the reference {message}"
+        if distance > FAR or angle > TURNED:
+            yield (
+                f"the reference begins {distance:.3g} m and {angle:.3f} rad from {name}; start at "
+                "iiwa_dnn.solve_pose(robot, reference.at(0.0)).q, or use reference.anchored(start)"
+            )
 
 
 _TURNING = (OrientationTask, PoseTask)

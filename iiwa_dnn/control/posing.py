@@ -62,7 +62,7 @@ _ACTS = 1e-3
 """Least ratio of a multiplier to the error for which a limit counts as in the way."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True)
 class PoseSolution:
     """Answer of `solve_pose`.
 
@@ -85,15 +85,6 @@ class PoseSolution:
     def found(self) -> bool:
         """Test whether there is a posture."""
         return self.q is not None
-
-    def __repr__(self) -> str:
-        if self.q is not None:
-            return f"<PoseSolution q = {np.array2string(self.q, precision=4, separator=', ')} rad>"
-        way = ", ".join(self.in_the_way) or "no limit: out of reach"
-        return (
-            f"<PoseSolution: none found; the nearest is {self.position_error:.3g} m and "
-            f"{self.orientation_error:.3g} rad away, in the way: {way}>"
-        )
 
 
 class _Point(NamedTuple):

@@ -54,9 +54,6 @@ BUDGET = 60
 PENALTY = 1e-5
 """w, for a cost whose largest entry is one."""
 
-TINY = 1e-300
-"""Largest entry of a cost below which it is none."""
-
 FEASIBLE = 1.0 - 1e-9
 """Factor above which all that is asked for is feasible."""
 
@@ -76,10 +73,6 @@ Damped to rest, an arm pulled beyond its reach ends up exactly stretched: it fin
 
 FASTEST = 10.0
 """Task velocity [m/s] to which a larger one is cut in the softened program: no arm is so quick."""
-
-STAGNANT = 10.0
-"""Residual, in tolerances, up to which the search of a factor counts as settled: where rows nearly
-depend on each other it may stay above one."""
 
 BLOCKING = 1e-4
 """Multiplier, relative to the largest, above which a bound or row stands in the way."""
@@ -142,7 +135,6 @@ def settled(
     state: Vector,
     point: Vector,
     figures: Vector,
-    tolerances: float,
 ) -> bool:
     """Settle the network from its last state or, if need be, from a cold start.
 
@@ -153,7 +145,6 @@ def settled(
         point: The point that the state stands for, (2 n + m + p,), overwritten.
         figures: Figures of the step's answer, (5,): the linear systems are added to the first, the
             others are overwritten.
-        tolerances: Residual, in tolerances, up to which the program counts as solved.
 
     Returns:
         Whether the point is the program's solution.
@@ -163,7 +154,7 @@ def settled(
         systems, time, primal, dual, gap = settle(qp, 0, settings, state, point)
         figures[0] += systems
         figures[1] = time
-        if within(primal, dual, gap, tolerances * settings[TOLERANCE]):
+        if within(primal, dual, gap, settings[TOLERANCE]):
             return True
         state[:] = 0.0
     return False
@@ -210,7 +201,7 @@ def largest_factor(
         elif not retreats:
             copied(wider.A[j], qp.A[j])
             wider.A[j, n] = -qp.b[j] / longest
-    if not settled(wider, yielding, state, point, figures, STAGNANT):
+    if not settled(wider, yielding, state, point, figures):
         return -1.0
     factor: float = max(point[n] / longest, 0.0)
     return 1.0 if factor >= FEASIBLE else ALMOST * factor
@@ -221,7 +212,7 @@ def _copy_cost(qp: QPViews, other: QPViews) -> None:
     """Write w times the cost into a program that has more variables."""
     n = qp.q.size
     largest = max(largest_entry(qp.q), largest_entry(qp.P.reshape(n * n)))
-    weight = PENALTY / max(largest, TINY)
+    weight = PENALTY / max(largest, PENALTY)
     for i in range(n):
         other.q[i] = weight * qp.q[i]
         for k in range(n):
@@ -324,7 +315,7 @@ def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, figures: Vector) 
         nearest.q[i] = -x[i]
     _copy_limits(qp, nearest)
     point = np.empty(2 * n + m)
-    found = settled(nearest, yielding, np.zeros(3 * n + m), point, figures, 1.0)
+    found = settled(nearest, yielding, np.zeros(3 * n + m), point, figures)
     if found:
         copied(x, point[:n])
     return found

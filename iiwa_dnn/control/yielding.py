@@ -232,7 +232,7 @@ def _answer_relaxed(
     if factor == 1.0 or (follows and factor >= CREEP):
         asked = qp.b.copy()
         scale_task(qp, yielding.weights, factor)
-        if settled(qp, yielding, relaxed[size:], views.point, views.figures, 1.0):
+        if settled(qp, yielding, relaxed[size:], views.point, views.figures):
             return SCALED, factor
         copied(qp.b, asked)
     if action == STOP:
@@ -244,7 +244,7 @@ def _answer_relaxed(
         note_blocking(point, n, m, 1, views.blocking)
         return STOPPED, 0.0
     soften_task(qp, yielding.weights, retreat)
-    found = settled(qp, yielding, relaxed[size:], views.point, views.figures, 1.0)
+    found = settled(qp, yielding, relaxed[size:], views.point, views.figures)
     note_blocking(views.point, n, m, 0, views.blocking)
     return SOFTENED if found else STOPPED, 0.0
 

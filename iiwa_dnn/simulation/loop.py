@@ -98,7 +98,7 @@ class Loop:
             dq = velocity
             if self._chain.alters:
                 dq, clipped = self._alter(k, t, commands[0], velocity)
-            dq = dq * controller.clear_share(self.q, dq)
+            dq = dq * controller.is_clear(self.q, dq)
             controller.send(dq, commands[0].fraction)
         else:
             commands = [controller.step(seen, t)]

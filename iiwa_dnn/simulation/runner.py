@@ -61,7 +61,6 @@ def simulate(
     filter_window: int = 1,
     estimator: NoiseModel | None = None,
     seed: int = 0,
-    far_start: bool = False,
     progress: Callable[[int], object] = lambda steps: None,
 ) -> Record:
     """Let a robot follow a reference, each step's program solved by the network and checked.
@@ -91,8 +90,6 @@ def simulate(
         estimator: Noise model of a Kalman filter of the joint positions, whose bias is taken off
             the command; None: the controller sees the measured positions.
         seed: Seed of the noise and of the plant.
-        far_start: Whether the arm may go to a path of poses that begins elsewhere than the tip;
-            else such a run is refused.
         progress: Called with 0 when the arguments are found to be right, then now and then with the
             number of steps taken since the last call.
 
@@ -118,7 +115,8 @@ def simulate(
     )
     controller.solver.reset()
     steps = count_steps(reference, dt, duration)
-    _anchor(controller, start, refuses=not far_start)
+    controller.anchor(start)
+    controller.warn_of_start(start, 0.0, own=True, stacklevel=3)
     check_motion(motion, mode == "continuous" or not plant.exact, controller.scheme.ahead)
     chain = SignalChain(
         noise, noise_at, filter_window, estimator, (steps, robot.dof), controller.dt, seed
@@ -181,12 +179,6 @@ def _duration(reference: References | None, dt: float, duration: float | None) -
     if duration is None:
         duration = max((path.duration for path in by_frame(reference, "").values()), default=dt)
     return checks.positive("duration", duration)
-
-
-def _anchor(controller: Controller, start: Configuration, refuses: bool) -> None:
-    """Give the scheme its home; warn of a far start, or refuse a path of poses that has one."""
-    controller.anchor(start)
-    controller.warn_of_start(start, 0.0, own=True, stacklevel=4, refuses=refuses)
 
 
 def _settings(controller: Controller, start: Configuration, duration: float) -> dict[str, Any]:

@@ -257,7 +257,7 @@ def test_joints_that_slide_and_turn_bend_a_way(
     assert found == pytest.approx(expected)
 
 
-def test_a_velocity_that_others_chose_is_shortened_until_it_is_clear() -> None:
+def test_a_velocity_that_others_chose_is_tested_for_distances() -> None:
     center = START.position + [0.0, 0.2, 0.0]
     still = beside(0.05, d.Sphere(center, 0.1))
     coming = beside(0.05, d.Sphere(center, 0.1, velocity=[0.0, -0.5, 0.0]))
@@ -270,10 +270,10 @@ def test_a_velocity_that_others_chose_is_shortened_until_it_is_clear() -> None:
     for _ in range(400):
         q = START.q + random.uniform(-0.3, 0.3, 7)
         dq = ROBOT.dq_max * random.uniform(-1.0, 1.0, 7)
-        share = controller.clear_share(q, dq)
+        share = float(controller.is_clear(q, dq))
         before, after = distances(still, np.array([q, q + 2e-2 * share * dq]))
         assert after >= min(before, 0.05) - 1e-12
-        shares.append((share, chased.clear_share(q, dq)))
+        shares.append((share, float(chased.is_clear(q, dq))))
     found, others = np.array(shares).T
     assert (others <= found).all()
     assert (others < found).any()

@@ -295,7 +295,7 @@ def test_the_controller_that_is_exported_stays_as_it_is(tmp_path: Path) -> None:
         controller.step(q0, k * controller.dt)
         twin.step(q0, k * controller.dt)
     c99(controller, tmp_path)
-    np.testing.assert_array_equal(controller.last, twin.last)
+    np.testing.assert_array_equal(controller._state.past, twin._state.past)
     np.testing.assert_array_equal(controller.step(q0, 0.0).dq, twin.step(q0, 0.0).dq)
 
 

@@ -15,7 +15,6 @@ from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, run
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.posing import solve_pose
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks import PrimalDualNetwork
 from iiwa_dnn.networks.integrators import ExplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
@@ -311,17 +310,15 @@ def test_a_reference_that_was_not_anchored_is_told_at_once() -> None:
         run(reference=Heart(), duration=0.002)
 
 
-def test_a_path_of_poses_that_begins_elsewhere_is_refused_unless_asked_for() -> None:
+def test_a_path_of_poses_that_begins_elsewhere_is_warned_of() -> None:
     start = paper_start()
     robot = start.robot
     points = start.position + [[0.1, 0.0, -0.1], [0.1, 0.05, -0.1]]
     turns = np.tile(pin.Quaternion(start.rotation).coeffs()[[3, 0, 1, 2]], (2, 1))
     path = Waypoints([0.0, 0.2], points, quaternions=turns)
     arguments = {"dt": 1e-3, "duration": 0.05, "check": CrossCheck(())}
-    with pytest.raises(InvalidInputError, match=r"begins 0\.141 m.*solve_pose.*far_start"):
-        simulate(robot, DoubleIndicator(), path, start.q, **arguments)
-    with pytest.warns(UserWarning, match="solve_pose"):
-        record = simulate(robot, DoubleIndicator(), path, start.q, far_start=True, **arguments)
+    with pytest.warns(UserWarning, match=r"begins 0\.141 m.*solve_pose"):
+        record = simulate(robot, DoubleIndicator(), path, start.q, **arguments)
     assert record.steps == 50
     posture = solve_pose(robot, path.at(0.0), start.q).q
     record = simulate(robot, DoubleIndicator(), path, posture, **arguments)
