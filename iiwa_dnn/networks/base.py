@@ -70,6 +70,7 @@ class Flow(NamedTuple):
         n, m, p = qp.sizes
         check_size("point", point, 2 * n + m + p)
         unknowns = state if self.unknowns is None else self.unknowns(state)
+        check_size("state", unknowns[: n + m + p], n + m + p)
         return point_of_state(qp.data, n, m, p, unknowns, point)
 
 
@@ -126,11 +127,6 @@ class Network:
     def rates(self, qp: QP, state: Vector) -> Vector:
         """Evaluate the right-hand side, rho ds/dt, of shape (state_size,)."""
         return self.flow(qp).rates(state)
-
-    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
-        """Write the point of a state (state_size,) into `point`; returns its residuals."""
-        check_size("state", state, self.state_size(qp))
-        return self.flow(qp).read(qp, state, point)
 
     def stable_step(self, qp: QP, state: Vector) -> float:
         """Bound the stable steps of explicit Euler around a state (state_size,), in units of rho.

@@ -74,10 +74,6 @@ class DNNSolver:
         for state in self._warm.values():
             state[: noise.size] += noise
 
-    def warm_state(self, sizes: Sizes) -> Vector | None:
-        """Return the state itself, (size,), if the last program had these sizes; otherwise None."""
-        return self._warm.get(sizes)
-
     def state_for(self, sizes: Sizes) -> Vector:
         """Return the state itself, (size,), from which a program of sizes (n, m, p) starts."""
         if sizes not in self._warm:
@@ -159,7 +155,7 @@ class DNNSolver:
         Returns:
             A solution with smaller residuals, or the same if no step had any.
         """
-        warm = self.warm_state(qp.sizes)
+        warm = self._warm.get(qp.sizes)
         if warm is None or not solution.found or not is_projection(self.network):
             return solution
         state = warm.copy()
@@ -191,7 +187,7 @@ class DNNSolver:
         """Judge the point of a state that was advanced by a time [rho]; keep it if it is finite."""
         n, m, p = qp.sizes
         point = np.empty(2 * n + m + p)
-        residuals = self.network.read(qp, state, point)
+        residuals = self.network.flow(qp).read(qp, state, point)
         status = Status.NOT_FINITE
         # The point of an infinite state is finite, since it is clipped to the bounds.
         if math.isfinite(sum(residuals)) and np.isfinite(state).all():

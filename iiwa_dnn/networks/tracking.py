@@ -92,7 +92,7 @@ class TrackingSolver(DNNSolver):
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
         """
-        if self.warm_state(qp.sizes) is None:
+        if qp.sizes not in self._warm:
             self.reset()
         state = self._take(qp)
         programs = self._past["programs"]

@@ -9,7 +9,6 @@ which asks no other solver. `CheckPool` is the check behind a running loop.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import dataclass
@@ -53,6 +52,9 @@ OPTIONS: dict[str, dict[str, Any]] = {
 PROOF = "proof"
 """Name of the proof among the references."""
 
+SECOND = {"proxqp": "osqp", PROOF: None}
+"""Solvers that are asked where another one has no answer; "proxqp" for all others."""
+
 _WORTH_A_PROCESS = 10_000
 """Programs from which on a worker's start, about a second, is repaid."""
 
@@ -81,13 +83,6 @@ class Agreement(NamedTuple):
     objective_gap: Matrix
     reference_residual: Matrix
     judge: NDArray[np.int8]
-
-    @classmethod
-    def joined(cls, parts: Sequence[Agreement], references: int) -> Agreement:
-        """Concatenate the agreements of several blocks with k references."""
-        nothing = np.empty((0, references))
-        blocks = [cls(nothing, nothing, nothing, nothing.astype(np.int8)), *parts]
-        return cls(*(np.concatenate(arrays) for arrays in zip(*blocks, strict=True)))
 
     def worst_of(self, group: int) -> Agreement:
         """Take the worst of each `group` of consecutive programs, as for the stages of a step."""
@@ -126,7 +121,7 @@ class CrossCheck:
         """Return references and tolerances, as values that JSON can hold."""
         return {
             "solvers": list(self.solvers),
-            "second": [None if name == PROOF else _second(name) for name in self.solvers],
+            "second": [SECOND.get(name, "proxqp") for name in self.solvers],
             "tolerance": self.tolerance,
             "reference_tolerance": self.reference_tolerance,
         }
@@ -175,7 +170,7 @@ class CrossCheck:
         """
         n = qp.sizes[0]
         residuals = []
-        for solver in (name, _second(name)):
+        for solver in (name, SECOND.get(name) or "proxqp"):
             reference, residual = _answer(solver, qp)
             residuals.append(residual)
             if residual <= self.reference_tolerance:
@@ -199,11 +194,6 @@ def _installed() -> list[str]:
     import qpsolvers  # with scipy.sparse, 0.2 s that not every run needs
 
     return [name for name in qpsolvers.available_solvers if name != "iiwa_dnn"]
-
-
-def _second(name: str) -> str:
-    """Name the solver that is asked where this one has no answer."""
-    return "osqp" if name == "proxqp" else "proxqp"
 
 
 def _answer(name: str, qp: QP) -> tuple[Vector, float]:
@@ -283,7 +273,10 @@ class CheckPool:
         # Not the standard library's pool: that one runs the caller's script once more in every
         # worker, so a script without a __main__ guard would start itself again.
         self._executor = loky.get_reusable_executor(workers, timeout=60) if workers else None
-        self._verdicts: list[Agreement | Future[Agreement]] = []
+        nothing = np.empty((0, 0))
+        self._verdicts: list[Agreement | Future[Agreement]] = [
+            check.check_block(nothing, (0, 0, 0), nothing)
+        ]
 
     def submit(self, programs: Matrix, sizes: Sizes, answers: Matrix) -> None:
         """Take the next block: N programs of one shape, and the answers to be judged.
@@ -300,4 +293,4 @@ class CheckPool:
     def finish(self) -> Agreement:
         """Wait for every block and return the verdicts in the order of the programs."""
         verdicts = [own.result() if isinstance(own, Future) else own for own in self._verdicts]
-        return Agreement.joined(verdicts, len(self.check.solvers))
+        return Agreement(*map(np.concatenate, zip(*verdicts, strict=True)))

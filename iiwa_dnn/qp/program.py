@@ -238,14 +238,12 @@ def _check_shapes(given: Sequence[object], arrays: Sequence[NDArray[np.float64]]
     n = arrays[1].size
     if n == 0:
         raise InvalidInputError("q", "is empty", given[1])
-    if arrays[0].size != n * n:
-        # Either may be the wrong one.
-        problem = f"has shape {arrays[0].shape}, which does not go with q of {n}"
-        raise InvalidInputError("P", problem, given[0])
     _, m, p = (_rows(name, array, n) for name, array in zip("PGA", arrays[:5:2], strict=True))
     for name, array, shape in zip(FIELDS, arrays, field_shapes((n, m, p)), strict=True):
         if array.size != math.prod(shape):
-            raise InvalidInputError(name, f"has shape {array.shape}, not {shape}")
+            raise InvalidInputError(
+                name, f"has shape {array.shape}, not {shape}; q has {n} entries"
+            )
     return n, m, p
 
 

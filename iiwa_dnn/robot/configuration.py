@@ -53,10 +53,9 @@ class Configuration(FrameState):
 
     def __init__(self, robot: Robot, q: ArrayLike) -> None:
         checked = finite_array("q", q, (instance("robot", robot, Robot).dof,))
-        pose, jacobian = _kinematics(robot, checked, robot.tip_id)
-        values = {"robot": robot, "q": checked, "pose": pose, "jacobian": jacobian}
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+        super().__init__(*_kinematics(robot, checked, robot.tip_id))
+        object.__setattr__(self, "robot", robot)
+        object.__setattr__(self, "q", checked)
 
     @property
     def inertia(self) -> Array:

@@ -147,8 +147,8 @@ def compile_model(
     robot: Robot,
     timestep: float,
     dynamics: JointDynamics | None = None,
-    friction: checks.Array | None = None,
-    mass_factors: checks.Array | None = None,
+    friction: float | checks.Array = 0.0,
+    mass_factors: float | checks.Array = 1.0,
 ) -> Any:
     """Compile MuJoCo's ``MjModel`` of a robot (`build_spec`) with an implicit method for damping.
 
@@ -172,12 +172,11 @@ def compile_model(
     # On the model, not the joints of the specification: there, MuJoCo's type of it has changed.
     model.dof_damping[:] = dynamics.damping
     model.dof_armature[:] = dynamics.armature
-    if friction is not None:
-        model.dof_frictionloss[:] = friction
-    if mass_factors is not None:
-        carried = np.flatnonzero(model.body_weldid)  # by the world: the base
-        factors = mass_factors[model.body_dofadr[model.body_weldid[carried]]]
-        model.body_mass[carried] *= factors
-        model.body_inertia[carried] *= factors[:, None]
+    model.dof_frictionloss[:] = friction
+    carried = np.flatnonzero(model.body_weldid)  # by the world: the base
+    factors = mass_factors * np.ones(model.nv)
+    factors = factors[model.body_dofadr[model.body_weldid[carried]]]
+    model.body_mass[carried] *= factors
+    model.body_inertia[carried] *= factors[:, None]
     mj.mj_setConst(model, mj.MjData(model))  # it derives more from masses and inertias
     return model

@@ -242,11 +242,10 @@ def frame_id(model: pin.Model, name: str) -> int:
     Raises:
         NotFoundError: If there is no such frame; the error lists those of similar names.
     """
-    found = [i for i, frame in enumerate(model.frames) if i and frame.name == name]
-    if not found:
+    if str(name) not in frame_names(model):
         raise NotFoundError("frame", str(name), frame_names(model))
-    links = [i for i in found if model.frames[i].type == pin.FrameType.BODY]
-    return (links or found)[0]
+    is_link = model.existFrame(name, pin.FrameType.BODY)
+    return int(model.getFrameId(name, pin.FrameType.BODY) if is_link else model.getFrameId(name))
 
 
 def source_of(robot: Robot) -> tuple[Path, str]:

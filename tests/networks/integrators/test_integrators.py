@@ -144,7 +144,6 @@ def test_a_state_or_a_point_of_another_size_is_refused(
     for calls in (
         lambda s, p: integrator.advance(network, qp, s, 1.0),
         lambda s, p: ImplicitEuler().settle(network, qp, s, p, 1e-6),
-        lambda s, p: network.read(qp, s, p),
         lambda s, p: network.rates(qp, s),
         lambda s, p: network.stable_step(qp, s),
     ):
@@ -152,9 +151,11 @@ def test_a_state_or_a_point_of_another_size_is_refused(
         for size in (0, 18, 20, 19000):
             with pytest.raises(InvalidInputError, match="state"):
                 calls(np.zeros(size), point.copy())
+    with pytest.raises(InvalidInputError, match="state"):
+        network.flow(qp).read(qp, np.zeros(8), point)
     for size in (0, 13, 15):
         with pytest.raises(InvalidInputError, match="point"):
-            network.read(qp, state, np.zeros(size))
+            network.flow(qp).read(qp, state, np.zeros(size))
         with pytest.raises(InvalidInputError, match="point"):
             ImplicitEuler().settle(network, qp, state.copy(), np.zeros(size), 1e-6)
 
