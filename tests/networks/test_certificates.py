@@ -1,21 +1,12 @@
-"""Programs without a solution: recognised, and the proof judged by numpy and by scipy's linprog."""
+"""Programs without a solution: recognised, and the proof judged by numpy."""
 
 import numpy as np
 import pytest
-from scipy.optimize import linprog
 
 import iiwa_dnn
 import programs
 from iiwa_dnn import QP, DNNSolver, Status
 from iiwa_dnn.qp import certificates
-
-
-def finite_rows(qp: QP) -> tuple[np.ndarray, np.ndarray]:
-    """All inequalities and bounds as rows, those that limit nothing left out."""
-    n = qp.q.size
-    rows = np.vstack([qp.G, np.eye(n), -np.eye(n)])
-    limits = np.concatenate([qp.h, qp.ub, -qp.lb])
-    return rows[np.isfinite(limits)], limits[np.isfinite(limits)]
 
 
 def assert_farkas(qp: QP, certificate: np.ndarray) -> None:
@@ -36,18 +27,11 @@ def assert_farkas(qp: QP, certificate: np.ndarray) -> None:
 
 def assert_recession(qp: QP, direction: np.ndarray) -> None:
     """The cost falls along the direction, and no constraint ends it."""
-    rows, _ = finite_rows(qp)
+    rows = np.vstack([qp.G, np.eye(qp.q.size), -np.eye(qp.q.size)])
+    limited = np.isfinite(np.concatenate([qp.h, qp.ub, -qp.lb]))
     residual = np.abs(qp.P @ direction).max() + np.abs(qp.A @ direction).max(initial=0.0)
-    residual += (rows @ direction).max(initial=0.0)
+    residual += (rows[limited] @ direction).max(initial=0.0)
     assert qp.q @ direction < -1e7 * residual
-
-
-def linprog_status(qp: QP, cost: np.ndarray) -> int:
-    rows, limits = finite_rows(qp)
-    return linprog(
-        cost, rows if limits.size else None, limits if limits.size else None,
-        qp.A if qp.b.size else None, qp.b if qp.b.size else None, (None, None),
-    ).status  # fmt: skip
 
 
 @pytest.mark.long
@@ -60,8 +44,6 @@ def test_a_thousand_infeasible_programs_are_recognised_with_a_proof() -> None:
         proven += solution.status is Status.PRIMAL_INFEASIBLE
         assert not solution.found
         assert_farkas(qp, solution.certificate)
-        if seed % 5 == 0:
-            assert linprog_status(qp, np.zeros(qp.q.size)) == 2, seed
     # Outright where finite bounds carry all that the multipliers leave; of the others it is shown
     # that no point within 1e8 is feasible.
     assert proven > 50
@@ -75,14 +57,6 @@ def test_two_hundred_unbounded_programs_are_recognised_with_a_proof() -> None:
         assert solution.status in (Status.UNBOUNDED, Status.NONE_OPTIMAL_NEAR), seed
         assert not solution.found
         assert_recession(qp, solution.certificate)
-        # The program is feasible, and the linear program over its recession cone has no end.
-        assert linprog_status(qp, np.zeros(qp.q.size)) == 0
-        cone = QP(
-            qp.P, qp.q, qp.G, np.zeros(qp.h.size), np.vstack([qp.A, qp.P]),
-            np.zeros(qp.b.size + qp.q.size), np.where(qp.lb > -np.inf, 0.0, -np.inf),
-            np.where(qp.ub < np.inf, 0.0, np.inf),
-        )  # fmt: skip
-        assert linprog_status(cone, qp.q) in (3, 4), seed  # HiGHS: "unbounded", or it says neither
 
 
 @pytest.mark.long
@@ -137,37 +111,6 @@ def test_a_status_says_what_was_shown(qp: QP, x: float | None, status: Status) -
         assert qp.residuals(np.array([x, *multipliers, 0.0])).largest < 1e-6
 
 
-def test_no_program_with_a_feasible_point_is_refuted() -> None:
-    refuted = 0
-    for seed in range(400):
-        rng = np.random.default_rng([7, seed])
-        n = int(rng.integers(1, 5))
-        m = int(rng.integers(1, 8))
-        # x is feasible in exact arithmetic: whole numbers, some rows without slack.
-        x = rng.integers(-3, 4, n).astype(float)
-        G = rng.integers(-3, 4, (m, n)).astype(float)
-        h = G @ x + rng.integers(0, 2, m)
-        lb = np.where(rng.uniform(size=n) < 0.5, x - rng.integers(0, 2, n), -np.inf)
-        ub = np.where(rng.uniform(size=n) < 0.5, x + rng.integers(0, 2, n), np.inf)
-        gap = 10.0 ** rng.uniform(-13.0, 0.0)
-        for less in (0.0, gap):
-            qp = QP(np.eye(n), np.zeros(n), G, h - less, lb=lb, ub=ub)
-            solution = linprog(  # the nearest to a contradiction: z >= 0 of least value
-                np.concatenate(
-                    [qp.h, np.where(ub < np.inf, ub, 1e3), np.where(lb > -np.inf, -lb, 1e3)]
-                ),
-                A_eq=np.vstack([np.hstack([G.T, np.eye(n), -np.eye(n)]), np.ones((1, m + 2 * n))]),
-                b_eq=np.append(np.zeros(n), 1.0),
-            )  # fmt: skip
-            if solution.x is None:
-                continue
-            z = np.maximum(solution.x, 0.0)[:m]
-            radius = certificates.infeasibility_radius(qp, z)
-            assert less > 0.0 or radius <= np.abs(x).max(), seed
-            refuted += radius > 1e8
-    assert refuted > 50
-
-
 def test_a_contradiction_below_rounding_is_none() -> None:
     for gap, proven in ((1e-3, True), (1e-12, True), (1e-17, False), (0.0, False), (-1.0, False)):
         rows = [[1.0 / 3.0], [-1.0 / 3.0]]
@@ -187,23 +130,17 @@ def test_what_rounding_leaves_of_the_multipliers_counts_at_both_ends() -> None:
         assert (certificates.infeasibility_radius(qp, multipliers) == np.inf) is proven
 
 
-@pytest.mark.parametrize("wrong", [[1.0, -1.0], [1.0, 1.0], [0.0, 0.0], [np.nan, 1.0]])
-def test_wrong_multipliers_prove_nothing(wrong: list[float]) -> None:
+def test_wrong_evidence_proves_nothing() -> None:
     # x0 = 0 and x0 <= -1, and x1 <= 0
     qp = QP(np.eye(2), np.zeros(2), [[1.0, 0.0]], [-1.0], [[1.0, 0.0]], [0.0], ub=[np.inf, 0.0])
     assert certificates.infeasibility_radius(qp, np.array([-1.0, 1.0])) > 1e12
-    assert certificates.infeasibility_radius(qp, np.array(wrong)) < 10.0
-
-
-@pytest.mark.parametrize("wrong", [[1.0, 1.0], [0.0, -1.0], [-1.0, 1.0], [0.0, 0.0], [np.inf, 1.0]])
-def test_wrong_directions_prove_nothing(wrong: list[float]) -> None:
+    for wrong in ([1.0, -1.0], [1.0, 1.0], [0.0, 0.0], [np.nan, 1.0]):
+        assert certificates.infeasibility_radius(qp, np.array(wrong)) < 10.0
     # the cost falls with x1, which nothing ends; x0 costs, and is not below zero
     qp = QP(np.diag([1.0, 0.0]), [0.0, -1.0], lb=[0.0, -np.inf])
     assert certificates.unboundedness_radius(qp, np.array([0.0, 1.0])) > 1e12
-    assert certificates.unboundedness_radius(qp, np.array(wrong)) < 10.0
-
-
-def test_what_a_constraint_ends_proves_nothing() -> None:
+    for wrong in ([1.0, 1.0], [0.0, -1.0], [-1.0, 1.0], [0.0, 0.0], [np.inf, 1.0]):
+        assert certificates.unboundedness_radius(qp, np.array(wrong)) < 10.0
     rows = QP(np.eye(1), np.zeros(1), [[1.0], [1.0]], [1.0, 0.0])  # x <= 1 and x <= 0
     assert certificates.infeasibility_radius(rows, np.array([-1.0, 1.0])) == 0.0
     bounded = QP(np.zeros((1, 1)), [-1.0], ub=[5.0])

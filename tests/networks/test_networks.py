@@ -31,7 +31,6 @@ from iiwa_dnn.networks import NoiseSuppressingNetwork
 from iiwa_dnn.networks.activations import FixedTime
 from iiwa_dnn.networks.admm import AdmmIteration
 from iiwa_dnn.networks.primal_dual import variational
-from iiwa_dnn.studies.paper import START
 
 Array = np.ndarray
 
@@ -266,18 +265,6 @@ def test_x_of_the_state_is_disturbed() -> None:
     np.testing.assert_allclose(solver.state[:4], x + 0.5, atol=1e-6)
     with pytest.raises(InvalidInputError, match="network"):
         DNNSolver(DualNetwork()).disturb(np.zeros(4))
-
-
-@pytest.mark.parametrize("case", OTHERS)
-@pytest.mark.parametrize("mode", ["converged", "continuous"])
-def test_the_robot_runs_on_every_network(case: str, mode: str) -> None:
-    robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
-    heart = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(robot, START))
-    options = {"dt": 1e-3, "duration": 0.03, "mode": mode, "solver": DNNSolver(SOURCES[case][0])}
-    record = iiwa_dnn.simulate(robot, iiwa_dnn.DoubleIndicator(), heart, START, **options)
-    assert record.q.shape == (31, 7)
-    if mode == "converged":
-        assert iiwa_dnn.failures(record) == []
 
 
 @pytest.mark.parametrize(

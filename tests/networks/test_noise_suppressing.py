@@ -1,11 +1,10 @@
 """The noise-suppressing network beside the equations of its authors' program, and its promise."""
 
 import numpy as np
-import pytest
 
 from iiwa_dnn import QP
 from iiwa_dnn.networks import NoiseSuppressingNetwork
-from iiwa_dnn.networks.zeroing import EPSILON, evaluate
+from iiwa_dnn.networks.zeroing import EPSILON
 
 GAMMA, ETA = 30.0, 20.0
 
@@ -61,21 +60,3 @@ def test_rates_are_those_of_the_authors_equations() -> None:
         found = network.flow(qp, rate).rates(state)
         expected = programs_rates(qp, rate, state)
         np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
-
-
-@pytest.mark.parametrize(("noise", "rejected"), [(5.0, True), (29.0, True), (60.0, False)])
-def test_a_constant_noise_is_taken_out_below_gamma(noise: float, rejected: bool) -> None:
-    """The integral goes to n / (gamma eta); at gamma + eta and beyond nothing holds it."""
-    qp = QP(np.eye(2), [0.3, -0.2], A=[[1.0, 2.0]], b=[0.4], lb=[-1.0, -1.0], ub=[1.0, 1.0])
-    network = NoiseSuppressingNetwork(rho=1.0, form="projected", integral=GAMMA, proportional=ETA)
-    residual = evaluate(qp, "projected", np.zeros(3)).matrix
-    rates = network.flow(qp).rates
-    state = np.zeros(network.state_size(qp))
-    for _ in range(4000):
-        change = rates(state)
-        change[:3] += np.linalg.solve(residual, np.full(3, noise))
-        state = state + 2e-3 * change
-    error = rates(state)[3:]
-    assert bool(np.abs(error).max() < 1e-9) is rejected
-    if rejected:
-        np.testing.assert_allclose(state[3:], noise / (GAMMA * ETA), rtol=1e-6)

@@ -25,19 +25,6 @@ from iiwa_dnn.networks.integrators.base import BUDGET, SUBSTEPS, TOLERANCE
 REFERENCES = CrossCheck(("proxqp", "osqp"))
 
 
-@pytest.mark.parametrize("active", [0, 1, 4, 7])
-@pytest.mark.parametrize(("equalities", "dependent"), [(0, False), (3, False), (4, True)])
-def test_equilibrium_agrees_with_two_solvers(active: int, equalities: int, dependent: bool) -> None:
-    rng = np.random.default_rng([active, equalities])
-    for inequalities in (0, 0, 3, 14):
-        qp, x = known_qp(rng, 7, equalities, active, dependent, inequalities)
-        solution = DNNSolver().solve(qp)
-        assert solution.found
-        assert solution.residuals.largest <= 1e-9
-        assert np.abs(solution.x - x).max() < 1e-6
-        assert (REFERENCES.check(qp, solution.x).solution_gap <= 1e-6).all()
-
-
 DENSE = [name for name in dir(problems) if name.startswith("get_") and "sparse" not in name]
 
 
@@ -50,18 +37,6 @@ def test_every_dense_problem_of_qpsolvers(name: str) -> None:
     assert solution.primal_residual() <= 1e-8
     assert solution.dual_residual() <= 1e-8
     assert solution.duality_gap() <= 1e-8
-
-
-def test_tolerance_is_kept_or_not_claimed() -> None:
-    qp, _ = known_qp(np.random.default_rng(7), 8, 3, 3, inequalities=4)
-    for tol in (1e-3, 1e-6, 1e-9):
-        solution = iiwa_dnn.solve_problem(qp, tol=tol)
-        assert solution.found
-        assert solution.is_optimal(tol * (1 + 1e-12))
-    # Below rounding nothing can be promised, and nothing is.
-    impossible = iiwa_dnn.solve_problem(qp, tol=1e-30)
-    assert impossible.found is False
-    assert impossible.x is None
 
 
 def test_warm_start_needs_fewer_systems_and_reset_forgets() -> None:

@@ -41,23 +41,10 @@ def value(qp: QP, x: np.ndarray) -> float:
     return 0.5 * x @ qp.P @ x + qp.q @ x
 
 
-@pytest.mark.parametrize("check", EACH, ids=IDS)
-@pytest.mark.parametrize("active", [0, 2, 5])
-def test_right_answers_are_agreed_with(check: CrossCheck, active: int) -> None:
-    # The answer is known by construction: no solver of this package has a part in it.
-    rng = np.random.default_rng(51)
-    for inequalities in (0, 4):
-        qp, x = known_qp(rng, 7, 3, active, inequalities=inequalities)
-        agreement = check.check(qp, x)
-        assert agreement.solution_gap.max() <= 1e-7
-        assert agreement.reference_residual.max() <= 1e-8
-        assert agreement.objective_gap.max() <= 1e-7
-
-
 def test_gaps_are_those_to_the_known_solution() -> None:
     rng = np.random.default_rng(53)
     for active in range(6):
-        qp, best = known_qp(rng, 7, 2, active)
+        qp, best = known_qp(rng, 7, 2, active, inequalities=4 * (active % 2))
         x = best + 0.1 * rng.standard_normal(7)
         agreement = BOTH.check(qp, x)
         np.testing.assert_allclose(agreement.solution_gap, np.abs(x - best).max(), atol=1e-7)

@@ -157,15 +157,6 @@ def test_the_elbow_gives_way_and_the_heart_stays() -> None:
     assert metrics["max_position_error_m"] < 1.1 * without
 
 
-def test_an_obstacle_that_comes_is_kept_away_from() -> None:
-    coming = Sphere([0.33, 0.16, 0.84], 0.05, velocity=[0.0, 0.0, -0.04])
-    near = iiwa_dnn.CollisionAvoidance([coming], distance=0.03)
-    scheme = iiwa_dnn.DoubleIndicator(extra_limits=(near,))
-    record = run(scheme, iiwa_dnn.Heart().anchored(HERE), ROBOT, dt=5e-3, duration=5.0)
-    assert record.distance.min() >= 0.03
-    assert near.scene(ROBOT).nearest(np.tile(START, (2, 1)), np.array([0.0, 5.0]))[0][1] < 0.03
-
-
 def test_a_file_is_what_python_says(tmp_path: Path) -> None:
     path = tmp_path / "obstacles.toml"
     path.write_text(

@@ -24,7 +24,6 @@ from iiwa_dnn import (
     PoseTask,
     PositionTask,
     PostureTask,
-    PseudoInverse,
     RelativePoseTask,
     RemoteCenterTask,
     Scheme,
@@ -128,18 +127,3 @@ def test_the_axis_is_to_turn_by_the_angle_that_it_is_off(angle: float) -> None:
     turn = Rotation.from_rotvec(angle * normal / np.linalg.norm(normal)).as_matrix()
     _, b = rows(AxisTask(axis=AXIS, direction=turn @ here, gain=1.0), START.q, None)
     assert np.linalg.norm(b) == pytest.approx(angle, rel=1e-7)
-
-
-@pytest.mark.parametrize("orientation", ["so3", "block", "none"])
-def test_the_baselines_answer_is_the_pseudo_inverse_times_the_task(orientation: str) -> None:
-    for q in POSTURES[:10]:
-        conf = Configuration(ROBOT, q)
-        near = near_target(q, seed=1)
-        # Without a pose error, so that the block's dependent rows can be fulfilled.
-        twist = (near.linear_velocity, near.angular_velocity)
-        target = Target(conf.position, conf.rotation, *twist)
-        qp = PseudoInverse(orientation=orientation).build_qp(conf, target)
-        assert len(qp.A) == {"so3": 6, "block": 7, "none": 3}[orientation]
-        assert np.isinf([qp.lb, qp.ub]).all()
-        expected = np.linalg.pinv(qp.A, rcond=1e-10) @ qp.b
-        assert_allclose(DNNSolver().solve(qp).x, expected, rtol=0, atol=1e-7)
