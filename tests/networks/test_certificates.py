@@ -119,6 +119,13 @@ def test_a_contradiction_below_rounding_is_none() -> None:
         assert (radius == np.inf) is proven
 
 
+def test_rounding_of_the_multipliers_refutes_no_feasible_point() -> None:
+    for k in range(2, 100):
+        for x in range(1, 20):  # k x <= k x and x >= x, in whole numbers
+            qp = QP(np.eye(1), [0.0], [[k], [-1.0]], [k * x, -x], lb=[-x], ub=[x])
+            assert certificates.infeasibility_radius(qp, np.array([1.0 / k, 1.0])) <= x
+
+
 def test_what_rounding_leaves_of_the_multipliers_counts_at_both_ends() -> None:
     # x0 = x1 and x1 - (1 - 2^-53) x0 <= -1: x = -2^53 and all below are feasible.
     multipliers = np.array([1.0, 1.0])
