@@ -238,7 +238,7 @@ class Controller:
             dq: Velocity that the program's bounds and rows allow [rad/s], (n,).
         """
         step = self.control_step
-        if step.plan.yielding.limits.size or not len(step.plan.yielding.scenes):
+        if step.plan.yielding.limits.size:
             return True
         step.program.kinematics.update(q)
         past = np.zeros_like(self._state.past)
@@ -253,9 +253,8 @@ class Controller:
         """
         checks.finite("t", t)
         start = Configuration(self.robot, checks.finite_array("q", q, (self.robot.dof,)))
-        begun = self._state.begun
         self.anchor(start)
-        if not begun:
+        if not self._state.begun:
             self.warn_of_start(start, t, own, stacklevel=5)
         return self.control_step
 
@@ -273,8 +272,8 @@ class Controller:
 
     @property
     def positions(self) -> Vector:
-        """Joint positions of the last step [rad], (n,); before the first the robot's start."""
-        return np.array(self._state.past[Q] if self._state.begun else self.robot.start_posture())
+        """Joint positions of the last step [rad], (n,); without any the robot's start."""
+        return np.array(self._state.past[Q] if self._anchored else self.robot.start_posture())
 
     @property
     def program(self) -> StepProgram:
@@ -298,10 +297,9 @@ class Controller:
             self.scheme = scheme
         self._anchored = self.scheme
         self._state.past[Q] = start.q
-        self._state.begun = True
 
     def warn_of_start(self, start: Configuration, t: float, own: bool, stacklevel: int) -> None:
-        """Warn of settings, a start posture or a first target that are most likely wrong.
+        """Warn of settings, a start posture or a first target that are most likely wrong, once.
 
         Args:
             start: The start.
@@ -309,6 +307,7 @@ class Controller:
             own: Whether the targets are the reference's.
             stacklevel: That of the warnings.
         """
+        self._state.begun = True
         program = self.program
         found = [*doubts(program, start, self.dt, self.mode)]
         if own:
@@ -329,10 +328,8 @@ class Controller:
             q: Joint positions of the first step [rad], (n,), which become the scheme's home if it
                 has none.
         """
-        begun = self._state.begun
         self.anchor(Configuration(self.robot, q))
         self._derived = self.control_step
-        self._state.begun = begun
 
     def targets(
         self,

@@ -304,9 +304,13 @@ class Shield:
         """
         self.robot = checks.instance("robot", robot, Robot)
         self.dt = checks.positive("dt", dt)
-        longest = positive_rates("timeout", timeout)
-        error = checks.not_negative("tracking_error", tracking_error)
-        self.settings = np.array([self.dt, longest, error])
+        self.settings = np.array(
+            [
+                self.dt,
+                positive_rates("timeout", timeout),
+                checks.not_negative("tracking_error", tracking_error),
+            ]
+        )
         given = ((AccelerationLimits(), robot.ddq_max), (JerkLimits(), robot.dddq_max))
         rates = tuple(limit for limit, most in given if np.isfinite(most).any())
         self.motion = MotionLimits(rates).constants(robot)

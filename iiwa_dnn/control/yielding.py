@@ -52,18 +52,11 @@ ATTEMPTS = 11
 start the search of the scaling factor, the task as it is, the scaled program or the search of the
 retreat's factor, the softened program, and the points nearest to two commands."""
 
-NONE = int(Action.NONE)
-SLOW = int(Action.SLOW)
-RELAX = int(Action.RELAX)
-STOP = int(Action.STOP)
+NONE, SLOW, RELAX, STOP, _ = map(int, Action)
 BRAKE = -1
 """No policy: the arm goes to rest."""
 
-OWN = int(ProgramKind.OWN)
-SCALED = int(ProgramKind.SCALED)
-SOFTENED = int(ProgramKind.SOFTENED)
-HELD = int(ProgramKind.HELD)
-STOPPED = int(ProgramKind.STOPPED)
+OWN, SCALED, SOFTENED, HELD, STOPPED = map(int, ProgramKind)
 
 CREEP = 0.1
 """Scaling factor below which the task is softened, and share of a period by which the clock then
