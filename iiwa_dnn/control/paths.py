@@ -16,7 +16,6 @@ from iiwa_dnn.robot.collision import unwatched_links
 from iiwa_dnn.schemes import OrientationTask, PoseTask
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.limits import largest_gain
-from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.program import StepProgram
 from iiwa_dnn.schemes.tasks import GainTask
 
@@ -65,7 +64,7 @@ def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> 
     if problem := robot.outside(start.q):
         yield f"the start posture {problem}"
     yield from _doubts_of_tasks(program, dt)
-    limits = [part for part in program.parts if isinstance(part, Limit)]
+    limits = program.scheme.limits
     lagging = [type(limit).__name__ for limit in limits if limit.row_count(robot)]
     if mode == "continuous" and lagging:
         yield (

@@ -19,7 +19,7 @@ class ControllerState:
             and if the arm brakes whatever has a solution, (8, n). A step makes a new one, which
             counts from when the controller returns its command.
         next: The one after the last command that was computed.
-        begun: Whether a first step was taken.
+        begun: Whether the start was looked at, and warned of.
     """
 
     __slots__ = ("begun", "next", "past")

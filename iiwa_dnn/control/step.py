@@ -277,16 +277,12 @@ def _answer(views: RowViews, arrays: ProgramArrays, state: Vector) -> bool:
     own = arrays.constants[entry[4] : entry[5]]
     qp = qp_views(views.program, table[0, 0], table[0, 1], table[0, 2])
     before = state.copy()
-    iterations, time, primal, dual, gap = enter_answer(
+    figures = views.figures
+    figures[0], figures[1], figures[2], figures[3], figures[4] = enter_answer(
         entry[1], qp, entry[2], own, state, views.point
     )
-    views.figures[0] = iterations
-    views.figures[1] = time
-    views.figures[2] = primal
-    views.figures[3] = dual
-    views.figures[4] = gap
     views.decision[1] = 1.0
-    views.decision[2] = status_of(primal, dual, gap, own, state)
+    views.decision[2] = status_of(figures, own, state)
     if views.decision[2] >= NOT_SETTLED:
         copied(state, before)
         return False
@@ -295,13 +291,13 @@ def _answer(views: RowViews, arrays: ProgramArrays, state: Vector) -> bool:
 
 
 @compiled
-def status_of(primal: float, dual: float, gap: float, own: Vector, state: Vector) -> int:
-    """Judge an answer by its residuals; one that was advanced by its state (size,) too.
+def status_of(figures: Vector, own: Vector, state: Vector) -> int:
+    """Judge an answer by its figures (5,); one that was advanced by its state (size,) too.
 
     The point of an infinite state is finite, since it is clipped to the bounds. `own` are the
     constants of the network.
     """
-    size = primal + dual + gap
+    size = figures[2] + figures[3] + figures[4]
     if own[DURATION] > 0.0:
         for i in range(state.size):
             size += abs(state[i])
@@ -309,7 +305,8 @@ def status_of(primal: float, dual: float, gap: float, own: Vector, state: Vector
         return NOT_FINITE
     if own[DURATION] > 0.0:
         return ADVANCED
-    return SOLVED if within(primal, dual, gap, own[TOLERANCE]) else NOT_SETTLED
+    settled = within(figures[2], figures[3], figures[4], own[TOLERANCE])
+    return SOLVED if settled else NOT_SETTLED
 
 
 @compiled
