@@ -41,27 +41,23 @@ def drawing(
 
 
 def with_parts(tasks: tuple[Task, ...] = (), limits: tuple[Limit, ...] = ()) -> Scheme:
-    """Return the paper's scheme with further tasks and limits."""
     base = DoubleIndicator()
     return Scheme(base.costs, [*base.tasks, *tasks], [*base.limits, *limits])
 
 
 def among_balls() -> Made:
-    """Return the heart among balls, 21 pairs."""
     balls = list(map(iiwa_dnn.Sphere, BALLS, RADII))
     avoidance = iiwa_dnn.CollisionAvoidance(balls, self_collision=False, distance=DISTANCE)
     return drawing(with_parts(limits=(avoidance,)))
 
 
 def among_boxes() -> Made:
-    """Return the heart beside a box, above a floor, without collisions of the arm with itself."""
     box = iiwa_dnn.Box((0.75, 0.0, 0.2), (0.1, 0.1, 0.1))
     floor = iiwa_dnn.HalfSpace((0.0, 0.0, 1.0), -0.3)
     return drawing(with_parts(limits=(iiwa_dnn.CollisionAvoidance([box, floor]),)))
 
 
 def two_arms() -> Made:
-    """Return two arms, each with its heart."""
     robot = iiwa_dnn.load_robot("iiwa7_dual")
     q0 = robot.start_posture()
     start = iiwa_dnn.Configuration(robot, q0)
@@ -73,7 +69,6 @@ def two_arms() -> Made:
 
 
 def softly() -> Made:
-    """Return the heart with soft tasks of a posture and of an axis."""
     tasks = (
         iiwa_dnn.PostureTask({"iiwa7_joint_1": 0.1}, weight=0.05),
         iiwa_dnn.AxisTask(direction=(0.0, 0.0, -1.0), weight=0.01),
@@ -82,7 +77,6 @@ def softly() -> Made:
 
 
 def along_axis() -> Made:
-    """Return a position, the direction of the tool and a coupling of two joints."""
     tasks = [iiwa_dnn.PositionTask(), iiwa_dnn.AxisTask()]
     coupling = iiwa_dnn.JointCouplingTask({"iiwa7_joint_1": 1.0, "iiwa7_joint_3": 1.0}, weight=0.01)
     base = DoubleIndicator()
@@ -90,7 +84,6 @@ def along_axis() -> Made:
 
 
 def at_limits() -> Made:
-    """Return the heart with two joints so slow that their velocity limits are active."""
     robot = paper_robot()
     velocity = robot.dq_max.copy()
     velocity[[0, 2]] = 0.105, 0.004
@@ -98,26 +91,19 @@ def at_limits() -> Made:
 
 
 def with_rates() -> Made:
-    """Return a line with limits of acceleration and jerk."""
     limits = (iiwa_dnn.AccelerationLimits(10.0), iiwa_dnn.JerkLimits(500.0))
     return drawing(DoubleIndicator(extra_limits=limits), iiwa_dnn.Line((0.0, -0.1, 0.0)))
 
 
 def through_points() -> Made:
-    """Return a path through poses."""
     points = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02, 0.03, 0.0], [0.0, 0.0, 0.01]]
-    turns = [
-        [1.0, 0.0, 0.0, 0.0],
-        [1.0, 0.02, 0.0, 0.0],
-        [1.0, 0.0, 0.03, 0.0],
-        [1.0, 0.0, 0.0, 0.0],
-    ]
+    turns = np.eye(4)[[0, 0, 0, 0]]
+    turns[1:3, [1, 2]] = np.diag([0.02, 0.03])
     path = iiwa_dnn.Waypoints([0.0, 0.5, 1.0, 1.5], points, "clamped", turns)
     return drawing(path=path)
 
 
 def arm(name: str) -> Callable[[], Made]:
-    """Return the function that makes another arm's heart."""
     return lambda: drawing(robot=iiwa_dnn.load_robot(name))
 
 
@@ -141,7 +127,6 @@ SETTINGS: dict[str, Callable[[], Made]] = {
 
 
 def without_solution(policy: str) -> Callable[[], Made]:
-    """Return the function that makes a heart too quick for the joints, with a policy."""
 
     def make() -> Made:
         robot = paper_robot()
@@ -153,25 +138,16 @@ def without_solution(policy: str) -> Callable[[], Made]:
 
 
 def yielding_with_rates() -> Made:
-    """Return a heart with limits of acceleration and jerk, at whose start the task yields."""
     limits = (iiwa_dnn.AccelerationLimits(2.0), iiwa_dnn.JerkLimits(50.0))
     return drawing(DoubleIndicator(extra_limits=limits), iiwa_dnn.Circle())
 
 
 def braking_among_balls() -> Made:
-    """Return the heart among balls with limits of acceleration: every command is stoppable."""
     balls = list(map(iiwa_dnn.Sphere, BALLS, RADII))
     avoidance = iiwa_dnn.CollisionAvoidance(balls, self_collision=False, distance=DISTANCE)
     return drawing(
         with_parts(limits=(avoidance, iiwa_dnn.AccelerationLimits(5.0))), iiwa_dnn.Circle()
     )
-
-
-def among_moving() -> Made:
-    """Return the heart, out of whose way the elbow goes for a ball, and a box that moves by."""
-    ball = iiwa_dnn.Sphere((0.1, -0.1, 0.6), 0.06, velocity=(0.0, 0.1, 0.02))
-    box = iiwa_dnn.Box((0.4, 0.6, 0.9), (0.1, 0.05, 0.05), velocity=(0.02, -0.05, 0.0))
-    return drawing(with_parts(limits=(iiwa_dnn.CollisionAvoidance([ball, box]),)))
 
 
 @compiled
@@ -208,7 +184,6 @@ class SaddleFlow(Network):
 
 
 def own_network() -> Made:
-    """Return the heart in continuous mode with a compiled network of one's own."""
     made = drawing(mode="continuous", dt=1e-4)
     made[0].solver = iiwa_dnn.DNNSolver(SaddleFlow(), follower=ExplicitEuler(substeps=20))
     return made
@@ -216,7 +191,6 @@ def own_network() -> Made:
 
 SETTINGS |= {
     "inertia": lambda: drawing(DoubleIndicator(kinetic="inertia")),
-    "obstacles that move": among_moving,
     "a network of one's own": own_network,
     "without a solution: slow": without_solution("slow"),
     "without a solution: relax": without_solution("relax"),

@@ -84,11 +84,3 @@ static inline bool is_tuple(PyObject *object, Py_ssize_t size)
 }
 
 struct kernel { const char *name; void *address; const char *code; };
-
-/* Return the bytes that kernels of this thread have taken at once at most, since the last call. */
-static PyObject *scratch_peak(PyObject *self, PyObject *none)
-{
-    const size_t peak = arena_peak;
-    arena_peak = 0;
-    return PyLong_FromSize_t(peak);
-}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from .kinds import FLOAT, VOID, Kind
@@ -33,7 +32,6 @@ def extension(translator: Translator) -> str:
         prelude("binding.c"),
         *map(_wrapper, called),
         "static PyMethodDef methods[] = {",
-        '    {"scratch_peak", scratch_peak, METH_NOARGS, NULL},',
         *map(_method, called),
         "    {NULL, NULL, 0, NULL}\n};",
         "static const struct kernel kernels[] = {",
@@ -52,10 +50,8 @@ def _kernel(own: Function) -> str:
 
 def _method(own: Function) -> str:
     """Write a kernel's row in the table of methods."""
-    about = own.about.partition("\n")[0]
-    text = json.dumps(f"{own.name}({', '.join(own.parameters)})\n--\n\n{about}")
     called = f"(PyCFunction)(void (*)(void))py_{own.name}"
-    return f'    {{"{own.name}", {called}, METH_FASTCALL, {text}}},'
+    return f'    {{"{own.name}", {called}, METH_FASTCALL, NULL}},'
 
 
 def _wrapper(own: Function) -> str:

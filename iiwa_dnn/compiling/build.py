@@ -24,47 +24,34 @@ FLAGS = (
 """Without contraction a result is that of Python's own arithmetic, to the last bit."""
 
 
-def library(package: Path) -> Path:
-    """Return the place of a package's library."""
-    return package / f"_kernels{sysconfig.get_config_var('EXT_SUFFIX')}"
-
-
-def digest(package: Path) -> str:
-    """Return a digest of all that the library is made from."""
-    sources = [*package.rglob("*.py"), *(package / "compiling").glob("*.[ch]")]
-    return hashlib.sha256(b"".join(path.read_bytes() for path in sorted(sources))).hexdigest()
-
-
-def is_current(package: Path) -> bool:
-    """Test whether a package's library is made from the sources that stand beside it."""
-    stamp = library(package).with_suffix(".digest")
-    return stamp.is_file() and stamp.read_text().startswith(digest(package))
-
-
 def build(package: Path) -> Path:
-    """Translate the kernels of a package, compile them if they have changed; return the library.
+    """Translate a package's kernels and compile them, if they have changed; return the library.
 
     Raises:
         TranslationError: A kernel leaves the subset of Python that is translated.
         RuntimeError: The compiler refuses a kernel, by file and line.
         LookupError: There is no compiler.
     """
-    made = library(package)
+    made = package / f"_kernels{sysconfig.get_config_var('EXT_SUFFIX')}"
     stamp = made.with_suffix(".digest")
-    now = digest(package)
+    sources = [*package.rglob("*.py"), *(package / "compiling").glob("*.[ch]")]
+    of_files = hashlib.sha256(b"".join(path.read_bytes() for path in sorted(sources))).hexdigest()
+    noted = stamp.read_text() if made.is_file() and stamp.is_file() else ""
+    if noted.startswith(of_files):
+        return made
     translator = Translator(package)
     translator.all()
     text = extension(translator)
     unmarked = re.sub(r"#line.*", "", text)  # which a comment changes
-    own = hashlib.sha256(" ".join([unmarked, *FLAGS]).encode()).hexdigest()
-    if not (made.is_file() and stamp.is_file() and own in stamp.read_text()):
-        with tempfile.TemporaryDirectory(dir=made.parent) as place:
+    of_text = hashlib.sha256(" ".join([unmarked, *FLAGS]).encode()).hexdigest()
+    if of_text not in noted:
+        with tempfile.TemporaryDirectory(dir=package) as place:
             source = Path(place) / "_kernels.c"
             source.write_text(text, encoding="utf-8")
             output = source.with_suffix(".so")
             run_compiler(_flags(), [source], output)
             output.replace(made)
-    stamp.write_text(f"{now} {own}\n")
+    stamp.write_text(f"{of_files} {of_text}\n")
     return made
 
 
@@ -76,7 +63,7 @@ def compiler() -> list[str]:
             return name.split()
     if find_spec("ziglang"):
         return [sys.executable, "-m", "ziglang", "cc", "-fno-sanitize=undefined"]
-    raise LookupError("on Debian and Ubuntu: apt-get install gcc libc6-dev")
+    raise LookupError("there is no C compiler: on Debian and Ubuntu: apt-get install gcc libc6-dev")
 
 
 def run_compiler(flags: Sequence[str], sources: Sequence[Path], output: Path) -> None:
@@ -91,7 +78,6 @@ def _flags() -> list[str]:
     """Return the compiler's flags for an extension module, and those of the environment."""
     import numpy as np
 
-    paths = [sysconfig.get_paths()["include"], np.get_include()]
-    folders = [word for path in paths for word in ("-I", path)]
+    folders = [f"-I{path}" for path in (sysconfig.get_paths()["include"], np.get_include())]
     system = ["-undefined", "dynamic_lookup"] if sys.platform == "darwin" else []
     return [*FLAGS, *folders, *system, *os.environ.get("CFLAGS", "").split()]

@@ -7,24 +7,36 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from .kinds import ARRAYS, BOOL, FLOAT, INT, Kind
-from .sources import ENTRY, Module, decoration, fail
+from .sources import Module, decoration, fail
 
 if TYPE_CHECKING:
     from .translator import Translator
 
 SIGNS: dict[type, str] = {ast.Mult: "*", ast.Add: "+", ast.Sub: "-"}
 _ROUNDED: dict[type, str] = {ast.FloorDiv: "quotient", ast.Mod: "remainder"}
-_COMPARISONS: dict[type, str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
-_COMPARISONS |= {ast.Eq: "==", ast.NotEq: "!="}
-
-_EXACT = ("sqrt", "ceil", "floor", "copysign")
-_FUNCTIONS = {
-    f"math.{name}": (FLOAT, name) for name in ("sin", "cos", "atan2", "tanh", "exp", "log")
+_COMPARISONS: dict[type, str] = {
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+    ast.Eq: "==",
+    ast.NotEq: "!=",
 }
-_FUNCTIONS |= {f"{home}.{name}": (FLOAT, name) for home in ("math", "np") for name in _EXACT}
-_FUNCTIONS |= {"math.ceil": (INT, "(int64_t)ceil"), "math.floor": (INT, "(int64_t)floor")}
-_FUNCTIONS |= {"int": (INT, "(int64_t)"), "float": (FLOAT, "(double)"), "abs": (FLOAT, "fabs")}
-_FUNCTIONS |= {"math.isfinite": (BOOL, "isfinite")}
+
+_FUNCTIONS = {
+    **{f"math.{name}": (FLOAT, name) for name in ("sin", "cos", "atan2", "tanh", "exp", "log")},
+    "math.copysign": (FLOAT, "copysign"),
+    "math.sqrt": (FLOAT, "sqrt"),
+    "np.sqrt": (FLOAT, "sqrt"),
+    "np.copysign": (FLOAT, "copysign"),
+    "np.ceil": (FLOAT, "ceil"),
+    "math.ceil": (INT, "(int64_t)ceil"),
+    "math.floor": (INT, "(int64_t)floor"),
+    "math.isfinite": (BOOL, "isfinite"),
+    "int": (INT, "(int64_t)"),
+    "float": (FLOAT, "(double)"),
+    "abs": (FLOAT, "fabs"),
+}
 """Type of the result and name in C of Python's functions. Numpy's others may differ in the last
 digit."""
 
@@ -154,7 +166,9 @@ class Expressions:
         for python, kind in ((bool, BOOL), (int, INT), (float, FLOAT)):
             if isinstance(found, python):
                 return Value(kind, number_text(python(found)))
-        return self.translator.table(self.module, ast.unparse(node), found)
+        tag = f"{self.module.name.rpartition('.')[2]}_{ast.unparse(node)}"
+        data = self.translator.table(tag, found)
+        return _array(data.kind, data.text, [str(len(found))])
 
     def _attribute(self, node: ast.Attribute) -> Value:
         """Translate a member of a named tuple, or an array's size."""
@@ -229,9 +243,6 @@ class Expressions:
     def _kernel(self, node: ast.Call, home: Module, found: ast.FunctionDef) -> Value:
         """Translate the call of another kernel."""
         own = self.translator.function(home, found)
-        self.require(own.text != "" or own.decoration == ENTRY, node, "calls itself")
-        complete = len(node.args) == len(own.parameters)
-        self.require(complete, node, "leaves arguments out")
         texts = ["arena"]
         for each, name in zip(node.args, own.parameters, strict=True):
             value = self.value(each)

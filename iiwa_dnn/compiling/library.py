@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Generic, ParamSpec, TypeVar, cast, get_type_hi
 
 import numpy as np
 
-from iiwa_dnn.compiling.build import build, is_current
+from iiwa_dnn.compiling.build import build
 from iiwa_dnn.compiling.translator import c_name
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -28,7 +28,7 @@ _ROOT = Path(__file__).parents[1]
 
 def _loaded() -> Any:
     """Load the library; in a checkout it is built anew if a file of the package has changed."""
-    if (_ROOT.parent / "pyproject.toml").is_file() and not is_current(_ROOT):
+    if (_ROOT.parent / "pyproject.toml").is_file():
         build(_ROOT)
     return import_module("iiwa_dnn._kernels")
 
@@ -46,8 +46,7 @@ def compiled(function: Function) -> Function:
     if not function.__module__.startswith("iiwa_dnn.") or INTERPRETED:
         return function
     found = getattr(_LIBRARY, c_name(function.__module__, function.__name__), function)
-    if found is not function:
-        _SOURCES[id(found)] = function
+    _SOURCES[id(found)] = function
     return cast(Function, found)
 
 
@@ -58,11 +57,6 @@ released = compiled
 def source_of(kernel: Any) -> Any:
     """Return the function in Python that a kernel was translated from."""
     return _SOURCES.get(id(kernel), kernel)
-
-
-def scratch_peak() -> int:
-    """Return the most bytes that kernels of this thread took at once since the last call."""
-    return int(_LIBRARY.scratch_peak())
 
 
 def raise_failure() -> None:
@@ -91,7 +85,7 @@ class Entry(Generic[P, R]):
         self.prototype = prototype
         self._name = c_name(prototype.__module__, prototype.__name__)
         self._types = _LIBRARY.codes[self._name][1:]
-        self._addresses: dict[int, int] = {}
+        self._addresses: dict[int, tuple[int, Any]] = {}
 
     def __call__(self, *arguments: P.args, **keywords: P.kwargs) -> R:
         """Enter the function at an address."""
@@ -107,31 +101,30 @@ class Entry(Generic[P, R]):
             TypeError: It is a kernel of other types, or no function.
         """
         if id(function) not in self._addresses:
-            address = self._address(function)
-            self._addresses[id(function)] = address
-            _KEPT.append(function)
-            Entry.functions[address] = source_of(function)
-        return self._addresses[id(function)]
+            self._addresses[id(function)] = (self._address(function), function)
+        return self._addresses[id(function)][0]
 
     def _address(self, function: Any) -> int:
         source = source_of(function)
+        found = getattr(function, "address", function)
         if source is not function:
             name = c_name(source.__module__, source.__name__)
             if _LIBRARY.codes[name] != self._types:
                 types = _LIBRARY.codes[name]
                 raise TypeError(f"{name} is a kernel of the types {types}, not {self._types}")
-            return int(_LIBRARY.addresses[name])
-        found = getattr(function, "address", function)
-        if isinstance(found, int) and found > 0:
-            return -found
-        if not callable(function):
+            address = int(_LIBRARY.addresses[name])
+        elif isinstance(found, int) and found > 0:
+            address = -found
+        elif not callable(function):
             raise TypeError(f"{function!r} is no function")
-        if not isinstance(function, _CFunction):
-            if INTERPRETED:
-                return id(function)
-            function = self._callback(function)
-            _KEPT.append(function)
-        return -cast(int, ctypes.cast(function, ctypes.c_void_p).value)
+        elif INTERPRETED and not isinstance(function, _CFunction):
+            address = id(function)
+        else:
+            own = function if isinstance(function, _CFunction) else self._callback(function)
+            _KEPT.append(own)
+            address = -cast(int, ctypes.cast(own, ctypes.c_void_p).value)
+        Entry.functions[address] = source
+        return address
 
     def _callback(self, function: Callable[..., Any]) -> Any:
         """Make a function of C that calls one in Python; its error is raised by `raise_failure`."""
@@ -157,9 +150,8 @@ class Entry(Generic[P, R]):
         return ctypes.CFUNCTYPE(ctypes.c_double if result == "d" else None, *kinds)(enter)
 
 
-def entry(prototype: Callable[P, R]) -> Entry[P, R]:
-    """Make the entry of functions of the types that a function without a body states."""
-    return Entry(prototype)
+entry = Entry
+"""Decorator of a function without a body, which states the types."""
 
 
 _FLAT: dict[str, list[Any]] = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -62,7 +63,7 @@ class Module(dict[str, Any]):
         self.package = package
         self.name = name
         self.path = f"{name.replace('.', '/')}.py"
-        self.names: dict[str, ast.stmt] = {}
+        self.names: dict[str, Any] = {}
         for node in ast.parse(file.read_text(encoding="utf-8")).body:
             for each in node.body if isinstance(node, ast.If) else [node]:
                 self.names |= dict.fromkeys(_bound(each), each)
@@ -78,11 +79,6 @@ class Module(dict[str, Any]):
     def value(self, node: ast.expr) -> Any:
         """Compute an expression of constants."""
         return eval(ast.unparse(node), {}, self)
-
-    def kernels(self) -> list[ast.FunctionDef]:
-        """List the functions that are translated."""
-        functions = [node for node in self.names.values() if isinstance(node, ast.FunctionDef)]
-        return [node for node in functions if decoration(node)]
 
 
 class Package:
@@ -101,12 +97,14 @@ class Package:
             self._modules[name] = Module(self, name, file or own)
         return self._modules[name]
 
-    def modules(self) -> list[Module]:
-        """Return all modules that have a kernel, by their paths."""
-        paths = [path.relative_to(self.folder.parent) for path in self.folder.rglob("*.py")]
-        names = [".".join(path.with_suffix("").parts) for path in sorted(paths)]
-        found = [self.module(name.removesuffix(".__init__")) for name in names]
-        return [module for module in found if module.kernels()]
+    def kernels(self) -> Iterator[tuple[Module, ast.FunctionDef]]:
+        """List all functions that are translated, with their modules, by paths."""
+        for path in sorted(self.folder.rglob("*.py")):
+            name = ".".join(path.relative_to(self.folder.parent).with_suffix("").parts)
+            module = self.module(name.removesuffix(".__init__"))
+            for node in module.names.values():
+                if decoration(node):
+                    yield module, node
 
     def find(self, module: Module, name: str) -> tuple[Module, ast.stmt | None]:
         """Return the module in which a name is bound, and the statement that binds it.

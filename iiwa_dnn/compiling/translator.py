@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
-from .expressions import SIGNS, Expressions, Value, literal, number_text
-from .kinds import ARRAYS, FLOAT, INT, VOID, Kinds
+from .expressions import SIGNS, Expressions, Value, number_text
+from .kinds import FLOAT, INT, VOID, Kinds
 from .sources import ENTRY, Module, Package, decoration, fail, stored_names
 
 
@@ -42,9 +41,8 @@ class Translator:
 
     def all(self) -> None:
         """Translate all kernels of the package."""
-        for module in self.package.modules():
-            for node in module.kernels():
-                self.function(module, node)
+        for module, node in self.package.kernels():
+            self.function(module, node)
 
     def text(self) -> str:
         """Return structs, tables and functions as one text."""
@@ -53,14 +51,12 @@ class Translator:
         bodies = [own.text or enter(own) for own in self.functions.values()]
         return "\n".join([*self.kinds.structs.values(), *self.tables.values(), *heads, *bodies])
 
-    def table(self, module: Module, name: str, found: Any) -> Value:
-        """Return a table of numbers of a module."""
-        kind = ARRAYS[INT if isinstance(found[0], int) else FLOAT, 1]
-        assert kind.element
-        tag = f"{module.name.rpartition('.')[2]}_{name}"
-        numbers = ", ".join(map(number_text, found))
-        self.tables[tag] = f"static const {kind.element.tag} {tag}[] = {{{numbers}}};"
-        return Value(kind, literal(kind, [f"({kind.element.tag} *){tag}", str(len(found))]))
+    def table(self, tag: str, values: Sequence[float]) -> Value:
+        """Write a table of numbers; return its place."""
+        kind = INT if isinstance(values[0], int) else FLOAT
+        numbers = ", ".join(map(number_text, values))
+        self.tables[tag] = f"static const {kind.tag} {tag}[] = {{{numbers}}};"
+        return Value(kind, f"({kind.tag} *){tag}")
 
     def function(self, module: Module, node: ast.FunctionDef) -> Function:
         """Return the translation of a function."""
@@ -139,7 +135,7 @@ class Function(Expressions):
                 self._lines.append(f'#line {node.lineno} "{self.module.path}"')
             try:
                 self._statement(node)
-            except (AttributeError, LookupError, NameError, TypeError) as error:
+            except (AttributeError, LookupError, NameError, TypeError, ValueError) as error:
                 fail(self.module, node, f"has no translation: {error}")
 
     def _statement(self, node: ast.stmt) -> None:
@@ -190,10 +186,8 @@ class Function(Expressions):
         """Translate a loop over a range; its variable is known inside of it alone."""
         name = ast.unparse(node.target)
         self.require(len(ends) < 3, node, "has a step")
-        if name != "_":
-            self.require(name not in self.kinds, node, "has a variable of that name")
-            stored = stored_names(ast.Module(node.body, []))
-            self.require(name not in stored, node, "writes its own variable")
+        taken = {*self.kinds, *stored_names(ast.Module(node.body, []))}
+        self.require(name == "_" or name not in taken, node, "writes another variable, or its own")
         self.kinds[name] = INT
         start = f"int64_t {name} = {ends[0] if len(ends) > 1 else 0}, end_{name} = {ends[-1]}"
         self._nested(f"for ({start}; {name} < end_{name}; {name}++)", node.body)

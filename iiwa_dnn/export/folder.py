@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from iiwa_dnn import checks
-from iiwa_dnn.control.command import PLACEMENT
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import by_frame
 from iiwa_dnn.control.shield import Shield
@@ -57,26 +55,20 @@ def c99(
     """
     shield = controller if isinstance(controller, Shield) else None
     own = controller.controller() if isinstance(controller, Shield) else controller
-    twin, start = _anchored(own, q0)
+    twin = copy.copy(own)
+    start = Configuration(twin.robot, own.positions if q0 is None else q0)
+    twin.reset()
+    twin.anchor(start)
     texts = code_of(twin, shield)
     rows = run(twin, start.q, STEPS)
     folder = prepare_folder(folder)
     texts |= _texts(twin, start, rows[0], texts["has_reference"])
-    write_csv(folder / "vectors.csv", _head(twin), rows)
+    counts = {"q": texts["dof"], "target": 18 * texts["frames"], "dq": texts["dof"]}
+    names = [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
+    write_csv(folder / "vectors.csv", ["t", *names, "action"], rows)
     for name in _FILES:
         write_text(folder / name, filled(name, texts))
     return folder
-
-
-def _anchored(controller: Controller, q0: ArrayLike | None) -> tuple[Controller, Configuration]:
-    """Return a copy of a controller at rest in its first posture, and that posture."""
-    twin = copy.copy(controller)
-    posture: ArrayLike = controller.positions if q0 is None else q0
-    q = checks.finite_array("q0", posture, (twin.robot.dof,))
-    start = Configuration(twin.robot, q)
-    twin.reset()
-    twin.anchor(start)
-    return twin, start
 
 
 def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
@@ -90,9 +82,10 @@ def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
     twin = copy.copy(controller)
     if twin.reference is None:
         start = Configuration(twin.robot, q0)
-        figure = Lissajous((0.01, 0.01, 0.0))
-        frames = twin.program.target_frames
-        twin.reference = {name: figure.anchored(start.frame(name)) for name in frames}
+        twin.reference = {
+            name: Lissajous((0.01, 0.01, 0.0)).anchored(start.frame(name))
+            for name in twin.program.target_frames
+        }
     q = q0.copy()
     rows = []
     for k in range(steps):
@@ -104,57 +97,16 @@ def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
     return np.array(rows)
 
 
-def _head(controller: Controller) -> list[str]:
-    """Return the names of the columns of a run."""
-    dof = controller.robot.dof
-    counts = {"q": dof, "target": 18 * len(controller.program.target_frames), "dq": dof}
-    names = [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
-    return ["t", *names, "action"]
-
-
 def _texts(
     controller: Controller, start: Configuration, first: Vector, has_reference: bool
 ) -> dict[str, Any]:
     """Return the texts that are about the settings and a run, whose first row is given."""
     robot = controller.robot
-    tip = controller.program.target_frames[0]
-    limits = np.where(robot.dq_max < np.inf, robot.dq_max, 1.0)
-    settings = _settings(controller, tip)
-    declared = filled("target.h", {"reference": json.dumps(settings["reference"])})
-    targets = first[1 + robot.dof : -1 - robot.dof]
-    return {
-        "steps": STEPS,
-        "velocity_limits": _numbers(limits),
-        "tolerance": f"{10.0 * controller.solver.tol:g}",
-        "q0": _numbers(start.q),
-        "target": _numbers(targets),
-        "tip": PLACEMENT * robot.frame_id(tip) + 9,
-        "tip_name": tip,
-        "sample": "        controller_target(&c, k * CONTROLLER_DT, target);\n" * has_reference,
-        "fri_sample": "        controller_target(&controller_, t_, target);\n" * has_reference,
-        "usage": "controller_target(&c, t, target);  /* the reference */\n" * has_reference,
-        "target_declaration": declared * has_reference,
-        "settings": json.dumps(settings, indent=2),
-        "what_systems": "linear systems" if controller.mode == "converged" else "sub-steps",
-    }
-
-
-def _numbers(values: Vector) -> str:
-    return ", ".join(map(repr, values.tolist()))
-
-
-def _settings(controller: Controller, tip: str) -> Any:
-    """Return the settings of a controller, as values that JSON can hold."""
-    robot = controller.robot
-    paths = by_frame(controller.reference, tip)
+    paths = by_frame(controller.reference, controller.program.target_frames[0])
     settings = {
-        "robot": robot.name,
-        "tip": robot.tip,
-        "locked": robot.locked,
         "q_lower": robot.q_lower,
         "q_upper": robot.q_upper,
         "dq_max": robot.dq_max,
-        "dt": controller.dt,
         "mode": controller.mode,
         "policy": controller.policy,
         "tolerance": controller.solver.tol,
@@ -162,4 +114,19 @@ def _settings(controller: Controller, tip: str) -> Any:
         "reference": {name: path.settings() for name, path in paths.items()},
         "scheme": controller.scheme.settings(),
     }
-    return plain(settings)
+    return {
+        "steps": STEPS,
+        "velocity_limits": _numbers(np.where(robot.dq_max < np.inf, robot.dq_max, 1.0)),
+        "tolerance": f"{10.0 * controller.solver.tol:g}",
+        "q0": _numbers(start.q),
+        "target": _numbers(first[1 + robot.dof : -1 - robot.dof]),
+        "sample": "        controller_target(&c, k * CONTROLLER_DT, target);\n" * has_reference,
+        "fri_sample": "        controller_target(&controller_, t_, target);\n" * has_reference,
+        "usage": "controller_target(&c, t, target);  /* the reference */\n" * has_reference,
+        "target_declaration": filled("target.h", {}) * has_reference,
+        "settings": json.dumps(plain(settings), indent=2),
+    }
+
+
+def _numbers(values: Vector) -> str:
+    return ", ".join(map(repr, values.tolist()))

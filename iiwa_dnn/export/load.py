@@ -15,8 +15,7 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.build import run_compiler
-from iiwa_dnn.errors import FileError, MissingDependencyError
-from iiwa_dnn.files import one_line
+from iiwa_dnn.errors import FileError
 from iiwa_dnn.qp import Vector
 
 FLAGS = ("-std=c99", "-O2")
@@ -89,40 +88,29 @@ class ExportedController:
     def target(self, t: float) -> Vector:
         """Compute the targets of the controller's reference at a time [s], (18 frames,)."""
         target = np.empty(18 * self.frames)
-        time = ctypes.c_double(checks.finite("t", t))
-        self._library.controller_target(self._memory, time, _pointer(target))
+        self._library.controller_target(self._memory, ctypes.c_double(t), target.ctypes)
         return target
 
     def _command(self, step: Any, q: ArrayLike, asked: Vector | None) -> ExportedCommand:
         joints = checks.finite_array("q", q, (self.dof,))
         dq = np.empty(self.dof)
-        given = None if asked is None else _pointer(asked)
-        return ExportedCommand(dq, step(self._memory, _pointer(joints), given, _pointer(dq)))
+        given = None if asked is None else asked.ctypes
+        return ExportedCommand(dq, step(self._memory, joints.ctypes, given, dq.ctypes))
 
 
 def load(folder: str | os.PathLike[str], flags: Sequence[str] = FLAGS) -> ExportedController:
     """Compile an exported controller, by the environment's ``CC`` or what there is; return it.
 
     Raises:
-        FileError: The folder holds no controller, or it does not compile.
-        MissingDependencyError: There is no C compiler.
+        FileError: The folder holds no controller, it does not compile, or there is no compiler.
     """
-    folder = Path(folder)
-    try:
-        header = (folder / "controller.h").read_text(encoding="utf-8")
-    except OSError as error:
-        raise FileError(folder / "controller.h", one_line(error)) from error
+    source = Path(folder) / "controller.c"
     with tempfile.TemporaryDirectory() as place:
         library = Path(place) / "controller.so"
         try:
-            run_compiler([*flags, "-shared", "-fPIC"], [folder / "controller.c"], library)
-        except LookupError as error:
-            raise MissingDependencyError("a C compiler", str(error.args[0])) from error
-        except RuntimeError as error:
-            raise FileError(folder / "controller.c", str(error)) from error
+            run_compiler([*flags, "-shared", "-fPIC"], [source], library)
+        except (LookupError, RuntimeError) as error:
+            raise FileError(source, str(error)) from error
+        header = source.with_suffix(".h").read_text(encoding="utf-8")
         # The system keeps the file as long as it is loaded.
         return ExportedController(ctypes.CDLL(str(library)), header)
-
-
-def _pointer(array: Vector) -> ctypes.c_void_p:
-    return ctypes.c_void_p(array.ctypes.data)

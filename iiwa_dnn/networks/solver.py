@@ -104,7 +104,7 @@ class DNNSolver:
             return None
         constants = [self.tol, self.settler.max_steps, duration / network.rho, substeps or 0]
         address = enter_answer.address(follow if duration > 0.0 else settle)
-        rates = enter_rates.address(function)
+        rates = enter_rates.address(function) if duration > 0.0 else 0
         return CompiledAnswer(address, rates, np.array([*constants, *network.constants(sizes)]))
 
     def solve(self, qp: QP) -> Solution:

@@ -299,19 +299,6 @@ def scene_views(constants: Vector, dof: int) -> SceneViews:
 
 
 @compiled
-def move_centers(constants: Vector, centers: Matrix, t: float) -> None:
-    """Write the centres of moving obstacles at time t [s] into the constants (k,).
-
-    Each row of the centers (obstacles, 7) has the first of a centre's indices, the centre at time 0
-    [m], and its velocity [m/s].
-    """
-    for k in range(len(centers)):
-        first = int(centers[k, 0])
-        for i in range(3):
-            constants[first + i] = centers[k, 1 + i] + t * centers[k, 4 + i]
-
-
-@compiled
 def place_bodies(scene: SceneViews, placements: Matrix, placed: Matrix) -> None:
     """Write the placements of all bodies in the world, (b, 12), for those of frames (k, 12)."""
     for k in range(len(scene.bodies)):

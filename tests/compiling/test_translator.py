@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from iiwa_dnn.compiling.build import build, is_current
+from iiwa_dnn.compiling.build import build
 from iiwa_dnn.compiling.sources import TranslationError
 from iiwa_dnn.compiling.translator import Translator
 
@@ -310,27 +310,19 @@ def test_a_closed_array_is_read_and_never_written(both: tuple[Any, Any]) -> None
 
 REFUSED = [
     ("def f(a) -> None:\n    pass", "`a` is no type"),
-    ("def f(a: object) -> None:\n    pass", "`object` is no type"),
     ("def f(a: tuple[int, float]) -> None:\n    pass", "`tuple[int, float]` is no type"),
     ("def f(a: float, *, b: float) -> float:\n    return b", "name 'b' is not defined"),
     ("def f(a: float) -> float:\n    return a**2", "`return a ** 2` has no translation"),
-    ("def f(a: int) -> None:\n    a /= 2", "has no translation"),
-    ("def f(a: float) -> float:\n    return nothing", "name 'nothing' is not defined"),
-    ("def f(a: float) -> float:\n    return f(a)", "`f(a)` calls itself"),
-    ("def f() -> None:\n    g()\n@compiled\ndef g(a: float) -> None:\n    pass", "arguments out"),
-    ("def f(a: float) -> float:\n    return np.linalg.norm(a)", "no translation: 'np.linalg.norm'"),
+    ("def f() -> None:\n    g()\n@compiled\ndef g(a: float) -> None:\n    pass", "argument 2 is"),
     ("def f(a: float) -> float:\n    return np.sin(a)", "has no translation: 'np.sin'"),
     ("def f(a: Matrix) -> None:\n    a = a[:, 0]", "has gaps between its rows"),
     ("def f(a: Vector) -> None:\n    a = a[::2]", "has gaps between its rows"),
     ("def f(n: int) -> int:\n    for i in range(n):\n        pass\n    return i", "name 'i' is"),
-    ("def f(n: int) -> None:\n    for i in range(n):\n        i = 0", "writes its own variable"),
-    ("def f(n: int) -> None:\n    for n in range(3):\n        pass", "has a variable of that name"),
+    ("def f(n: int) -> None:\n    for i in range(n):\n        i = 0", "writes another variable"),
+    ("def f(n: int) -> None:\n    for n in range(3):\n        pass", "writes another variable"),
     ("def f(n: int) -> None:\n    for i in range(n, 0, -1):\n        pass", "has a step"),
     ("def f(a: float) -> None:\n    for x in (a, a):\n        pass", "has no translation"),
-    (
-        "def f(a: float) -> None:\n    try:\n        pass\n    finally:\n        pass",
-        "`try:` has no",
-    ),
+    ("def f(a: float) -> None:\n    with a:\n        pass", "`with a:` has no translation"),
     ("def f(a: float) -> float:\n    return [a][0]", "has no translation"),
     ("def f(a: Vector) -> float:\n    return a[-1]", "counts from the end"),
 ]
@@ -338,7 +330,6 @@ BY_THE_COMPILER = [
     "def f(a: int) -> None:\n    a = 0.5",
     "def f(a: float) -> None:\n    b = 1.0; b = (a, a)",
     "def f(a: Vector) -> None:\n    a = a + a",
-    "def f(a: Matrix) -> None:\n    a[0] = a",
     "def f(a: Vector) -> Vector:\n    return 1.0",
     "def f(a: Matrix) -> float:\n    return g(a)\n@compiled\ndef g(a: Vector) -> None:\n    pass",
 ]
@@ -368,19 +359,12 @@ def test_types_that_do_not_fit_are_refused_by_the_compiler(tmp_path: Path, sourc
 
 
 def test_the_library_follows_its_sources(tmp_path: Path) -> None:
-    folder = tmp_path / "package"
-    folder.mkdir()
-    source = (
-        "def compiled(f):\n    return f\n\n\n@compiled\ndef f(a: float) -> float:\n    return {}\n"
-    )
-    (folder / "own.py").write_text(source.format("a + 1.0"))
+    folder = _write(tmp_path, "def f(a: float) -> float:\n    return a + 1.0")
     made = build(folder)
-    assert is_current(folder)
-    before = made.read_bytes()
-    (folder / "own.py").write_text("# A comment.\n" + source.format("a + 1.0"))
-    assert not is_current(folder)
-    assert build(folder).read_bytes() == before  # which no comment changes
-    (folder / "own.py").write_text(source.format("a + 2.0"))
-    assert not is_current(folder)
-    assert build(folder).read_bytes() != before
+    before = made.stat().st_mtime_ns
+    source = folder / "own.py"
+    source.write_text(f"# A comment.\n{source.read_text()}")
+    assert build(folder).stat().st_mtime_ns == before  # which no comment changes
+    source.write_text(source.read_text().replace("a + 1.0", "a + 2.0"))
+    build(folder)
     assert _module(made, "_kernels").own_f(1.0) == 3.0

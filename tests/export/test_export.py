@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import re
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,7 @@ from export_settings import SETTINGS, drawing, with_parts
 from helpers_export import QUICK, WARNINGS, needs, run
 from iiwa_dnn import Controller, DoubleIndicator
 from iiwa_dnn.compiling import build
-from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError
+from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.export import ExportedController, c99, load
 from iiwa_dnn.export.folder import run as run_controller
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
@@ -44,7 +43,7 @@ def exported(heart: Path, library: ctypes.CDLL) -> ExportedController:
     return ExportedController(library, (heart / "controller.h").read_text(encoding="utf-8"))
 
 
-REACHING = ("velocity limits active", "collisions, 21 pairs", "obstacles that move")
+REACHING = ("velocity limits active", "collisions, 21 pairs")
 """Controllers whose limits become active."""
 
 STEPS = {
@@ -70,6 +69,15 @@ def take_kernels_kinematics(controller: Controller) -> None:
     own.update = lambda q: write_kinematics(  # type: ignore[method-assign]
         tables, np.ascontiguousarray(q), own.jacobian, own.placements, own.inertia
     )
+
+
+def memory_taken(exported: ExportedController, folder: Path) -> tuple[int, int]:
+    """Count the numbers that kernels have taken for themselves, and those that they may."""
+    fields = re.findall(r"double (\w+)\[(\d+)\];", (folder / "controller.h").read_text())
+    sizes = {name: int(size) for name, size in fields}
+    first = sum(list(sizes.values())[: list(sizes).index("scratch")])
+    scratch = np.frombuffer(exported._memory)[first : first + sizes["scratch"]]
+    return int(np.flatnonzero(scratch)[-1]) + 1, scratch.size
 
 
 @pytest.mark.parametrize("name", [name for name in SETTINGS if name not in SHOWN_BY_OTHERS])
@@ -101,6 +109,8 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
     assert np.abs(q - q0).max() > 1e-4
     assert active > 50 or name not in REACHING
     assert len(actions) > 1 or not name.startswith(("without", "yielding", "braking"))
+    taken, scratch = memory_taken(exported, tmp_path)
+    assert taken <= 0.6 * scratch
 
 
 @pytest.fixture(scope="module")
@@ -139,9 +149,6 @@ def test_make_and_the_example_run_as_the_readme_says(heart: Path, tmp_path: Path
     said = run(tmp_path / "example")
     shown = [float(value) for value in re.findall(r"= (\S+) rad", said)]
     np.testing.assert_allclose(shown, rows[-1, 1:8], rtol=0, atol=1e-6)
-    last = controller.placement(rows[999, 1:8])[9:] - rows[999, 8:11]
-    (far,) = re.findall(r"distance of \S+ from its target: (\S+) m", said)
-    assert float(far) == pytest.approx(np.linalg.norm(last), rel=1e-2)
 
 
 @needs("clang")
@@ -150,16 +157,12 @@ def test_clang_has_no_warning_either(heart: Path) -> None:
     run("clang", *WARNINGS, "-fsyntax-only", *(heart / name for name in names))
 
 
-def test_the_code_is_plain_c_without_global_state(heart: Path) -> None:
+def test_the_code_is_plain_c(heart: Path) -> None:
     text = (heart / "controller.c").read_text(encoding="utf-8")
     code = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     included = {"math", "stdbool", "stddef", "stdint", "string"}
     assert set(re.findall(r"#include <(\S+)\.h>", code)) == included
     assert not re.search(r"\b(malloc|free|alloca|printf|fopen|goto|setjmp|restrict)\b", code)
-    outside = re.sub(r"\{(?:[^{}]|\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\})*\}", "{}", code)
-    variables = [line for line in outside.splitlines() if line.startswith("static") and "=" in line]
-    assert variables
-    assert all(line.startswith("static const") for line in variables)
     for words in (
         "static ptrdiff_t control_step_take_step(struct arena *arena, Vector row,",
         "/* Tighten the bounds to those of `JointLimits`, whose constants these are.",
@@ -168,33 +171,31 @@ def test_the_code_is_plain_c_without_global_state(heart: Path) -> None:
         assert words in text
 
 
-def test_size_and_stated_memory(heart: Path, exported: ExportedController, tmp_path: Path) -> None:
-    run("gcc", "-std=c99", "-Os", "-c", "-o", tmp_path / "controller.o", heart / "controller.c")
-    text, data, bss = map(int, run("size", tmp_path / "controller.o").splitlines()[1].split()[:3])
-    assert text <= 36_000  # with the relaxed programs, each of a size of its own
+CORTEX = ("-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard", "-mthumb")
+
+
+@pytest.mark.parametrize(
+    ("prefix", "flags", "most"),
+    [
+        ("", (), 36_000),
+        pytest.param("arm-none-eabi-", CORTEX, 24_000, marks=needs("arm-none-eabi-gcc")),
+    ],
+)
+def test_size_without_global_state(
+    heart: Path, prefix: str, flags: tuple[str, ...], most: int, tmp_path: Path
+) -> None:
+    made = tmp_path / "controller.o"
+    run(f"{prefix}gcc", *WARNINGS, *flags, "-Os", "-c", "-o", made, heart / "controller.c")
+    text, data, bss = map(int, run(f"{prefix}size", made).splitlines()[1].split()[:3])
+    assert text <= most  # with the relaxed programs, each of a size of its own
     assert data == bss == 0
+
+
+def test_stated_memory(heart: Path, exported: ExportedController) -> None:
     assert exported.size <= 16_000
     readme = (heart / "README.md").read_text(encoding="utf-8")
     assert f"`struct controller` | {exported.size} bytes" in readme
     assert "@" not in readme
-
-
-def test_two_controllers_in_two_threads(
-    heart: Path, library: ctypes.CDLL, exported: ExportedController
-) -> None:
-    controllers = [ExportedController(library, (heart / "controller.h").read_text()), exported]
-    rows = run_controller(*drawing(), 400)
-
-    def commands(number: int) -> list[np.ndarray]:
-        own = controllers[number]
-        own.reset()
-        return [own.step(row[1:8] + 0.01 * number, row[8:26]).dq for row in rows]
-
-    alone = [commands(0), commands(1)]
-    with ThreadPoolExecutor(2) as threads:
-        together = list(threads.map(commands, (0, 1)))
-    np.testing.assert_array_equal(alone, together)
-    assert np.abs(np.array(alone[0]) - alone[1]).max() > 1e-3
 
 
 def test_inputs_that_are_no_numbers_change_nothing(exported: ExportedController) -> None:
@@ -219,19 +220,13 @@ def test_an_arm_processor_computes_the_same(heart: Path, tmp_path: Path) -> None
     assert "0 actions differ" in run("qemu-aarch64", program, heart / "vectors.csv")
 
 
-@needs("arm-none-eabi-gcc")
-def test_a_microcontroller_has_room_for_it(heart: Path, tmp_path: Path) -> None:
-    target = ("-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard", "-mthumb", "-Os", "-c")
-    made = tmp_path / "controller.o"
-    run("arm-none-eabi-gcc", *WARNINGS, *target, "-o", made, heart / "controller.c")
-    text, data, bss = map(int, run("arm-none-eabi-size", made).splitlines()[1].split()[:3])
-    assert text <= 24_000
-    assert data == bss == 0
-
-
 class _Closing(iiwa_dnn.JointLimits):
     def refresh(self, step: iiwa_dnn.Step, constants: np.ndarray) -> None:
         constants *= 0.99
+
+
+def _among(*limits: iiwa_dnn.Limit) -> Controller:
+    return drawing(with_parts(limits=limits))[0]
 
 
 def _with_network(network: iiwa_dnn.Network) -> Controller:
@@ -240,24 +235,25 @@ def _with_network(network: iiwa_dnn.Network) -> Controller:
     return controller
 
 
+MOVING = iiwa_dnn.Sphere((0.0, 0.0, 2.0), 0.1, velocity=(0.1, 0.0, 0.0))
+
+
 @pytest.mark.parametrize(
-    ("make", "words"),
+    ("make", "name"),
     [
         (
             lambda: drawing(iiwa_dnn.Scheme([iiwa_dnn.Manipulability()], DoubleIndicator().tasks))[
                 0
             ],
-            "Manipulability is written with numpy",
+            "Manipulability",
         ),
-        (lambda: drawing(with_parts(limits=(_Closing(),)))[0], "_Closing is written with numpy"),
-        (
-            lambda: _with_network(iiwa_dnn.PrimalDualNetwork()),
-            "solver: DNNSolver has no compiled answer",
-        ),
+        (lambda: _among(_Closing()), "_Closing"),
+        (lambda: _among(iiwa_dnn.CollisionAvoidance([MOVING])), "CollisionAvoidance"),
+        (lambda: _with_network(iiwa_dnn.PrimalDualNetwork()), "PrimalDualNetwork"),
     ],
 )
-def test_what_is_not_compiled_is_refused_by_name(make, words: str, tmp_path: Path) -> None:
-    with pytest.raises(InvalidInputError, match=words):
+def test_what_is_not_compiled_is_refused_by_name(make, name: str, tmp_path: Path) -> None:
+    with pytest.raises(InvalidInputError, match=f"{name} changes or answers in Python"):
         c99(make(), tmp_path / "none")
     assert not (tmp_path / "none").exists()
 
@@ -319,17 +315,14 @@ def _no_compiler() -> list[str]:
 def test_errors_of_loading(
     heart: Path, exported: ExportedController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(FileError, match=r"controller\.h"):
+    with pytest.raises(FileError, match=r"controller\.c"):
         load(tmp_path)
-    monkeypatch.setattr(build, "compiler", _no_compiler)
-    with pytest.raises(MissingDependencyError, match="gcc"):
-        load(heart)
-    monkeypatch.undo()
-    for name in ("controller.h", "controller.c"):
-        (tmp_path / name).write_bytes((heart / name).read_bytes())
     (tmp_path / "controller.c").write_text("int broken(", encoding="utf-8")
     with pytest.raises(FileError, match="does not compile"):
         load(tmp_path)
+    monkeypatch.setattr(build, "compiler", _no_compiler)
+    with pytest.raises(FileError, match="apt-get install gcc"):
+        load(heart)
     with pytest.raises(InvalidInputError, match="q"):
         exported.step([1.0], np.zeros(18))
     with pytest.raises(InvalidInputError, match="target"):

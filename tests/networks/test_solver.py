@@ -12,6 +12,7 @@ import iiwa_dnn
 from helpers_qp import known_qp
 from iiwa_dnn import (
     QP,
+    CrossCheck,
     DNNSolver,
     DualNetwork,
     ExplicitEuler,
@@ -20,6 +21,9 @@ from iiwa_dnn import (
     Status,
 )
 from iiwa_dnn.networks.integrators.base import BUDGET, SUBSTEPS, TOLERANCE
+
+REFERENCES = CrossCheck(("proxqp", "osqp"))
+
 
 DENSE = [name for name in dir(problems) if name.startswith("get_") and "sparse" not in name]
 

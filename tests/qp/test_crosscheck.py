@@ -64,6 +64,19 @@ def test_objective_gap_is_evaluated_without_cancellation() -> None:
     assert gap == pytest.approx(exact, rel=1e-2)
 
 
+def test_a_block_of_programs_is_judged_one_by_one() -> None:
+    rng = np.random.default_rng(57)
+    known = [known_qp(rng, 7, 3, active) for active in range(5)]
+    x = np.stack([best for _, best in known])
+    x[3, 2] += 1e-5
+    block = BOTH.check_block(np.stack([qp.data for qp, _ in known]), known[0][0].sizes, x)
+    assert [array.shape for array in block] == [(5, 2)] * 4
+    assert ((block.solution_gap > 1e-6) == (np.arange(5) == 3)[:, np.newaxis]).all()
+    for i, (qp, _) in enumerate(known):
+        for together, alone in zip(block, BOTH.check(qp, x[i]), strict=True):
+            np.testing.assert_allclose(together[i], alone[0], rtol=0, atol=1e-9)
+
+
 @pytest.mark.parametrize("check", EACH, ids=IDS)
 def test_an_infeasible_program_has_no_reference(check: CrossCheck) -> None:
     with warnings.catch_warnings():

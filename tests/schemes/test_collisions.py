@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,12 +11,13 @@ import pytest
 
 import iiwa_dnn
 from helpers_kinematics import PAPER_Q0, Array, finite_difference
-from helpers_simulation import rows_of
+from helpers_simulation import rows_of, run
 from iiwa_dnn import Configuration, HalfSpace, Sphere
 from judge_distances import Judge, obstacles_for
 
 ROBOT = iiwa_dnn.load_robot("iiwa7")
 START = np.array(PAPER_Q0)
+HERE = Configuration(ROBOT, START)
 BALL = Sphere([0.36, 0.16, 0.64], 0.05)
 LEAST = 0.02
 
@@ -135,6 +137,24 @@ def test_more_pairs_than_rows_keep_the_nearest_to_being_active() -> None:
     chosen = np.sort(np.argsort(slack, kind="stable")[: active.sum()])
     np.testing.assert_array_equal(some[active], G[chosen])
     assert few.row_names(ROBOT) == []
+
+
+def test_the_elbow_gives_way_and_the_heart_stays() -> None:
+    paper = iiwa_dnn.DoubleIndicator()
+    near = iiwa_dnn.CollisionAvoidance([BALL], distance=0.03)
+    path = iiwa_dnn.Heart().anchored(HERE)
+    free, record = [
+        run(scheme, path, ROBOT, dt=5e-3, duration=10.0)
+        for scheme in (paper, replace(paper, extra_limits=(near,)))
+    ]
+    assert near.scene(ROBOT).nearest(free.q, free.t)[0].min() < 0.01
+    assert iiwa_dnn.failures(record) == []
+    metrics = iiwa_dnn.compute_metrics(record)
+    assert metrics["collisions"]["first"] == "Sphere 1"
+    assert 0.03 <= metrics["collisions"]["least_distance_m"] < 0.032
+    assert metrics["collisions"]["missing_m"] == 0.0
+    without = iiwa_dnn.compute_metrics(free)["max_position_error_m"]
+    assert metrics["max_position_error_m"] < 1.1 * without
 
 
 def test_a_file_is_what_python_says(tmp_path: Path) -> None:

@@ -12,7 +12,6 @@ extern "C" {
 #define CONTROLLER_DOF @dof@           /* joints */
 #define CONTROLLER_FRAMES @frames@        /* tracked frames: @frame_names@ */
 #define CONTROLLER_DT @dt@         /* control period [s] */
-#define CONTROLLER_SYSTEMS @systems@    /* @what_systems@ of a step, at most */
 #define CONTROLLER_SIZE @size@      /* bytes of struct controller */
 
 /* Actions that controller_step returns. */

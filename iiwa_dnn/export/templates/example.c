@@ -1,7 +1,6 @@
 /* A control loop with an arm that follows every command: cc example.c controller.c -lm */
 #include "controller.h"
 
-#include <math.h>
 #include <stdio.h>
 
 int main(void)
@@ -23,10 +22,5 @@ int main(void)
     for (int i = 0; i < CONTROLLER_DOF; i++) {
         printf("q[%d] = %.6f rad\n", i, q[i]);
     }
-    double far = 0.0; /* of the first frame, where the encoders were read last */
-    for (int i = 0; i < 3; i++) {
-        far = hypot(far, c.placements[@tip@ + i] - target[i]);
-    }
-    printf("distance of @tip_name@ from its target: %.3g m\n", far);
     return 0;
 }

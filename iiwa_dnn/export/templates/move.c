@@ -1,2 +1,0 @@
-    const Matrix centers = @centers@;
-    @move@(&arena, plan.arrays.constants, centers, t);
