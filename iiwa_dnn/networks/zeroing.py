@@ -66,7 +66,7 @@ problems", SIAM Journal on Matrix Analysis and Applications 17 (1996).
 """
 
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -78,7 +78,6 @@ from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 Form = Literal["projected", "smooth"]
-FORMS: tuple[Form, ...] = ("projected", "smooth")
 
 EPSILON = 1e-6
 """Perturbation of the smooth form, in the unit of multipliers and slacks."""
@@ -195,7 +194,7 @@ class ZeroingNetwork(Network):
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
-        checks.one_of("form", self.form, FORMS)
+        checks.one_of("form", self.form, get_args(Form))
         checks.not_negative("integral", self.integral)
         checks.not_negative("growth", self.growth)
 

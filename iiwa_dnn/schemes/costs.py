@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from iiwa_dnn.schemes.parts import Checks, Cost
 from iiwa_dnn.schemes.step import Step, StepViews
 
 Kinetic = Literal["identity", "inertia"]
-KINETICS: tuple[Kinetic, ...] = ("identity", "inertia")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +61,7 @@ class KineticEnergy(WeightedCost):
     """
 
     kernel = staticmethod(add_kinetic_energy)
-    _checks: ClassVar[Checks] = {"kinetic": partial(checks.one_of, choices=KINETICS)}
+    _checks: ClassVar[Checks] = {"kinetic": partial(checks.one_of, choices=get_args(Kinetic))}
     kinetic: Kinetic = "identity"
 
     def constants(self, robot: Robot) -> Vector:

@@ -21,7 +21,7 @@ alone. Source: equations (6) and (7) of the paper.
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, fields, replace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -34,13 +34,12 @@ from iiwa_dnn.schemes.limits import JointLimits
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.program import Scheme
 from iiwa_dnn.schemes.step import Step
-from iiwa_dnn.schemes.tasks import ORIENTATIONS, Orientation, OrientationTask, PositionTask
+from iiwa_dnn.schemes.tasks import Orientation, OrientationTask, PositionTask
 
 SMALLEST = 1e-3
 """Weight of the squared velocity norm beside the largest speed, which alone leaves joints free."""
 
 Tracking = Literal["paper", "next"]
-TRACKINGS: tuple[Tracking, ...] = ("paper", "next")
 
 
 @dataclass(frozen=True)
@@ -78,7 +77,7 @@ class DoubleIndicator(Scheme):
     def __post_init__(self) -> None:
         if checks.not_negative("weight", self.weight) > 1.0:
             raise InvalidInputError("weight", f"must be in [0, 1], not {self.weight}", self.weight)
-        checks.one_of("tracking", self.tracking, TRACKINGS)
+        checks.one_of("tracking", self.tracking, get_args(Tracking))
         cyclic = CyclicMotion(weight=1.0 - self.weight, gain=self.drift_gain, home=self.home)
         object.__setattr__(self, "home", cyclic.home)
         tasks = tip_tasks(self.position_gain, self.orientation_gain, self.orientation)
@@ -135,7 +134,7 @@ def tip_tasks(
     position_gain: float, orientation_gain: float, orientation: Orientation
 ) -> list[PositionTask | OrientationTask]:
     """Return the tasks of the tip: its position, and its orientation unless that is ``"none"``."""
-    checks.one_of("orientation", orientation, ORIENTATIONS)
+    checks.one_of("orientation", orientation, get_args(Orientation))
     position = PositionTask(gain=position_gain)
     if orientation == "none":
         return [position]

@@ -48,7 +48,6 @@ from iiwa_dnn.schemes.step import (
 )
 
 Orientation = Literal["so3", "block", "none"]
-ORIENTATIONS: tuple[Orientation, ...] = ("so3", "block", "none")
 
 ROTATION_LENGTH = 0.5
 """Weight of a missing 1 rad/s of a task beside a missing 1 m/s where a policy lets it yield [m].
