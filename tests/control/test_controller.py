@@ -157,55 +157,43 @@ def test_a_compiled_step_is_its_parts_one_after_the_other(
     np.testing.assert_allclose(compiled.solver.state, asked.solver.state, rtol=0, atol=1e-9)
 
 
-class Fixed(d.DNNSolver):
-    """A subclass that solves in a way of its own."""
-
-    def solve(self, qp: d.QP) -> d.Solution:
-        n, m, p = qp.sizes
-        point = np.full(2 * n + m + p, 0.25)
-        return d.Solution(point, qp.sizes, d.Status.SOLVED, 1, 0.0, 0.0, 0.0, 0.0)
-
-
-def test_what_a_subclass_does_in_its_own_way_is_done() -> None:
-    target = heart().at(0.5)
-    controller = d.Controller(paper_robot(), SCHEMES["so3"], solver=Fixed())
-    for _ in range(3):
-        np.testing.assert_array_equal(controller.step(PAPER_Q0, 0.0, target).dq, np.full(7, 0.25))
+CHANGED: dict[str, dict[str, Any]] = {
+    "scheme": {"scheme": d.DoubleIndicator(home=PAPER_Q0, position_gain=1.0)},
+    "robot": {"robot": paper_robot().with_limits(velocity=0.5)},
+    "reference": {"reference": d.Circle(radius=0.02).anchored(paper_start())},
+    "period": {"dt": 2e-3},  # by which the targets are sampled ahead
+    "period of a network that lags": {"mode": "continuous", "dt": 3e-4},
+    "mode": {"mode": "continuous"},
+    "solver": {"solver": d.DNNSolver(tol=1e-12)},
+}
 
 
-def test_a_changed_scheme_and_another_robot_count_from_the_next_step_on() -> None:
-    target = heart().at(0.5)
-    controller = d.Controller(paper_robot(), SCHEMES["so3"])
-    controller.step(PAPER_Q0, 0.0, target)
-    controller.step(PAPER_Q0, 0.0, target)
-    controller.scheme = d.DoubleIndicator(home=PAPER_Q0, position_gain=1.0)
-    expected = controller.scheme.build_qp(paper_start(), target)
-    np.testing.assert_array_equal(controller.step(PAPER_Q0, 0.0, target).qp.data, expected.data)
-    controller.robot = paper_robot().with_limits(velocity=0.5)
-    assert (controller.step(PAPER_Q0, 0.0, target).qp.ub <= 0.5).all()
-
-
-@pytest.mark.parametrize("name", ["mode", "dt", "solver"])
-def test_a_changed_parameter_counts_from_the_next_step_on(name: str) -> None:
-    # What was compiled for the first steps held the old value, and said SOLVED at 6.6e-6.
-    controller = d.Controller(
-        paper_robot(), SCHEMES["so3"], heart(), dt=1e-4, solver=d.DNNSolver(tol=1e-4)
-    )
+@pytest.mark.parametrize("changed", CHANGED.values(), ids=CHANGED)
+def test_what_is_changed_counts_from_the_next_step_on(changed: dict[str, Any]) -> None:
+    settings: dict[str, Any] = {
+        "robot": paper_robot(),
+        "scheme": d.DoubleIndicator(home=PAPER_Q0, tracking="next"),
+        "reference": heart(),
+        "dt": 1e-4,
+        "solver": d.DNNSolver(tol=1e-4),
+    }
+    controller = d.Controller(**settings)
+    anew = d.Controller(**settings | changed)
     for k in range(3):
-        controller.step(PAPER_Q0, 0.1 * k)
-    if name == "solver":
-        controller.solver = d.DNNSolver(tol=1e-12)
-    elif name == "mode":
-        controller.mode = "continuous"
+        controller.step(PAPER_Q0, 1e-4 * k)
+    for name, value in changed.items():
+        setattr(controller, name, value)
+    command = controller.step(PAPER_Q0, 3e-4)
+    expected = anew.step(PAPER_Q0, 3e-4)
+    path = controller.reference.ahead(anew.dt) if anew.scheme.ahead else controller.reference
+    start = d.Configuration(anew.robot, PAPER_Q0)
+    qp = anew.scheme.build_qp(start, path.at(3e-4), anew.dt)
+    np.testing.assert_allclose(command.qp.data, qp.data, rtol=0, atol=1e-9)
+    assert command.solution.status is expected.solution.status
+    if anew.mode == "continuous":
+        assert command.solution.network_time == expected.solution.network_time
     else:
-        controller.mode, controller.dt = "continuous", 3e-4
-    solution = controller.step(PAPER_Q0, 1.0).solution
-    if name == "solver":
-        assert solution.found
-        assert solution.residuals.largest <= 1e-12
-    else:
-        assert solution.status is d.Status.ADVANCED
-        assert solution.network_time == pytest.approx(controller.dt / 9e-5)
+        assert command.solution.residuals.largest <= anew.solver.tol
 
 
 class Diverged(d.DNNSolver):

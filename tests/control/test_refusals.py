@@ -10,7 +10,7 @@ import pytest
 
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, paper_start
-from iiwa_dnn import Controller, DoubleIndicator, InvalidInputError, Target, solve_pose
+from iiwa_dnn import Controller, DoubleIndicator, InvalidInputError, Shield, Target, solve_pose
 from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
 from iiwa_dnn.simulation import MovingAverage
 
@@ -36,6 +36,9 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("dt", lambda: JointEstimator(NoiseModel(), 0.0)),
     ("filter_window", lambda: MovingAverage(0)),
     ("filter_window", lambda: MovingAverage(2.5)),  # type: ignore[arg-type]
+    ("dt", lambda: Shield(paper_robot(), dt=0.0)),
+    ("timeout", lambda: Shield(paper_robot(), timeout=-1.0)),
+    ("tracking_error", lambda: Shield(paper_robot(), tracking_error=np.nan)),
     ("starts", lambda: solve_pose(paper_robot(), POSE, starts=0)),
     ("target", lambda: solve_pose(paper_robot(), np.eye(4))),  # type: ignore[arg-type]
     ("q0", lambda: solve_pose(paper_robot(), POSE, [0.0, 1.0])),

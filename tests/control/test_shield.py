@@ -277,11 +277,3 @@ def test_wrong_wishes_are_refused_and_change_nothing(arguments: dict[str, Any], 
     with pytest.raises(d.InvalidInputError, match=words):
         shield.step(**{"q": START} | arguments)
     np.testing.assert_array_equal(shield.step(START, np.full(7, 0.02)).dq, np.full(7, 0.02))
-
-
-def test_wrong_settings_are_refused() -> None:
-    for arguments in ({"dt": 0.0}, {"timeout": -1.0}, {"tracking_error": np.nan}):
-        with pytest.raises(d.InvalidInputError, match=next(iter(arguments))):
-            d.Shield(ROBOT, **arguments)
-    with pytest.raises(d.NotFoundError):
-        d.Shield(ROBOT).step(START, twist=np.zeros(6), frame="nose")
