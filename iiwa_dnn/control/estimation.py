@@ -19,8 +19,7 @@ Source: R. E. Kalman, "A new approach to linear filtering and prediction problem
 Engineering 82 (1960).
 """
 
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -53,10 +52,6 @@ class NoiseModel:
         for name in ("velocity", "bias_walk", "bias"):
             checks.not_negative(name, getattr(self, name))
         checks.integer("delay", self.delay, 0)
-
-    def settings(self) -> dict[str, Any]:
-        """Name and numbers, as values that JSON can hold."""
-        return {"name": "kalman", **asdict(self)}
 
 
 class JointEstimator:

@@ -110,7 +110,9 @@ def far_targets(
         start: The configuration.
         targets: The targets, (k, 18).
     """
-    turns = any(isinstance(task, _TURNING) for task in getattr(scheme, "tasks", ()))
+    turns = any(
+        isinstance(task, OrientationTask | PoseTask) for task in getattr(scheme, "tasks", ())
+    )
     for name, data in zip(frames, targets, strict=True):
         frame = start.frame(name)
         target = Target.from_data(data)
@@ -121,6 +123,3 @@ def far_targets(
                 f"the reference begins {distance:.3g} m and {angle:.3f} rad from {name}; start at "
                 "iiwa_dnn.solve_pose(robot, reference.at(0.0)).q, or use reference.anchored(start)"
             )
-
-
-_TURNING = (OrientationTask, PoseTask)

@@ -1,5 +1,6 @@
 """Noise, filter, estimator and clip: from the plant's encoders to the controller, and back."""
 
+from dataclasses import asdict
 from typing import Any, Literal
 
 import numpy as np
@@ -102,7 +103,7 @@ class SignalChain:
             "noise": size,
             "noise_at": entry,
             "filter_window": window,
-            "estimator": None if model is None else model.settings(),
+            "estimator": None if model is None else {"name": "kalman", **asdict(model)},
         }
         self._entry = entry if self._noise.any() else None
         self._estimator = None if model is None else JointEstimator(model, dt)

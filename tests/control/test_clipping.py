@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import linprog
 
+import iiwa_dnn as d
 from iiwa_dnn.control.clipping import clip_command
 from iiwa_dnn.control.relaxed import Yielding
 from iiwa_dnn.qp import QP
@@ -14,15 +15,8 @@ from iiwa_dnn.qp import QP
 
 def settling(tol: float = 1e-9, budget: float = 60.0) -> Yielding:
     """What a controller knows of how its network settles."""
-    return Yielding(
-        weights=np.zeros(0),
-        limits=np.zeros(0),
-        settings=np.array([tol, budget, 1e8]),
-        scenes=np.zeros((0, 2), np.int64),
-        dt=1e-3,
-        cubic=False,
-        coupled=False,
-    )
+    own = d.Controller(d.load_robot("ur5"), d.DoubleIndicator()).control_step.plan.yielding
+    return own._replace(settings=np.array([tol, budget]))
 
 
 def limited(G: object = None, h: object = None, n: int = 3) -> QP:
