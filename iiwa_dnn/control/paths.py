@@ -13,7 +13,7 @@ from iiwa_dnn.qp import Matrix
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.collision import unwatched_links
-from iiwa_dnn.schemes import OrientationTask, PoseTask
+from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.limits import largest_gain
 from iiwa_dnn.schemes.program import StepProgram
@@ -97,7 +97,7 @@ def _doubts_of_tasks(program: StepProgram, dt: float) -> Iterator[str]:
 
 
 def far_targets(
-    scheme: object,
+    scheme: Scheme,
     frames: Sequence[str],
     start: Configuration,
     targets: Matrix,
@@ -110,9 +110,7 @@ def far_targets(
         start: The configuration.
         targets: The targets, (k, 18).
     """
-    turns = any(
-        isinstance(task, OrientationTask | PoseTask) for task in getattr(scheme, "tasks", ())
-    )
+    turns = any(isinstance(task, OrientationTask | PoseTask) for task in scheme.tasks)
     for name, data in zip(frames, targets, strict=True):
         frame = start.frame(name)
         target = Target.from_data(data)

@@ -8,17 +8,8 @@ import numpy as np
 import pytest
 
 import iiwa_dnn as d
+from iiwa_dnn.control import stopping
 from iiwa_dnn.control.state import REST
-from iiwa_dnn.control.stopping import (
-    Motion,
-    bend_of,
-    least_periods,
-    least_way,
-    next_velocity,
-    velocity_at,
-    way_along,
-    within_rates,
-)
 from iiwa_dnn.schemes.scene import second_order
 from judge_limits import breaches
 
@@ -34,13 +25,13 @@ def limits_of(jerk: float) -> np.ndarray:
 
 def way_to_rest(x: np.ndarray, before: np.ndarray, jerk: float, dt: float) -> np.ndarray:
     """Velocities from before x to rest, each from the two before it, as a controller has them."""
-    periods = least_periods(x, before, limits_of(jerk), dt, jerk < np.inf)
+    periods = stopping.least_periods(x, before, limits_of(jerk), dt, jerk < np.inf)
     assert np.isfinite(periods)
     cubic = jerk < np.inf
     path = [before, x]
     while periods > 0:
         pairs = zip(path[-1], path[-2], strict=True)
-        path.append(np.array([next_velocity(a, b, periods, cubic) for a, b in pairs]))
+        path.append(np.array([stopping.next_velocity(a, b, periods, cubic) for a, b in pairs]))
         periods -= 1
     return np.array(path)
 
@@ -70,11 +61,13 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
     for _ in range(200):
         x = 10.0 ** random.uniform(-2.0, 0.0) * random.uniform(-2.0, 2.0, 3)
         before = x - random.uniform(-1.0, 1.0, 3) * min(10.0, 30.0 * jerk * dt) * dt
-        periods = least_periods(x, before, limits_of(jerk), dt, jerk < np.inf)
+        periods = stopping.least_periods(x, before, limits_of(jerk), dt, jerk < np.inf)
         least = float(np.ceil(np.abs(x).max() / (10.0 * dt)))
         if jerk < np.inf:
             pairs = list(zip(x, before, strict=True))
-            while not all(within_rates(*pair, least, 10.0 * dt, jerk * dt**2) for pair in pairs):
+            while not all(
+                stopping.within_rates(*pair, least, 10.0 * dt, jerk * dt**2) for pair in pairs
+            ):
                 least += 1.0
         ratios.append(periods / least)
     assert min(ratios) == 1.0
@@ -87,17 +80,17 @@ def test_the_way_along_a_motion_is_the_sum_of_its_velocities(cubic: bool) -> Non
     for _ in range(300):
         M = float(random.integers(1, 40))
         x, before = random.standard_normal(2)
-        b = bend_of(x, before, M) if cubic else 0.0
-        motion = Motion(np.array([x]), np.array([b]), M, cubic)
+        b = stopping.bend_of(x, before, M) if cubic else 0.0
+        motion = stopping.Motion(np.array([x]), np.array([b]), M, cubic)
         u = np.arange(M) / M
         velocities = x * (1 - u)
         if cubic:
             velocities = (1 - u) ** 2 * (x * (1 + 2 * u) + b * u)
-        found = [velocity_at(x, b, at, cubic) for at in u]
+        found = [stopping.velocity_at(x, b, at, cubic) for at in u]
         np.testing.assert_allclose(found, velocities, rtol=0, atol=1e-12)
         ways = np.append(0.0, np.cumsum(velocities)) * 1e-3
-        assert least_way(motion, x, b, 1e-3) == pytest.approx(ways.min(), abs=1e-12)
-        assert way_along(motion, x, b, M, 1e-3) == pytest.approx(ways[-1], abs=1e-12)
+        assert stopping.least_way(motion, x, b, 1e-3) == pytest.approx(ways.min(), abs=1e-12)
+        assert stopping.way_along(motion, x, b, M, 1e-3) == pytest.approx(ways[-1], abs=1e-12)
 
 
 START = d.Configuration(ROBOT, ROBOT.start_posture())
