@@ -98,26 +98,19 @@ class Contact(NamedTuple):
     distance: float
 
 
-class Pair(NamedTuple):
-    """Two bodies that are kept apart: a link or an obstacle, and a link that moves beside it."""
-
-    first: str
-    second: str
-
-
 class Scene(NamedTuple):
     """Bodies and pairs of a robot among obstacles.
 
     Attributes:
         robot: The robot, n joints.
-        pairs: The pairs.
+        pairs: Names of the bodies of each pair: a link or an obstacle, and a link beside it.
         frames: Links whose placements are needed.
         moving: Obstacles that move, each with the part of `constants` that its centre takes.
         constants: Numbers that compiled code sees through `scene_views`, (k,).
     """
 
     robot: Robot
-    pairs: list[Pair]
+    pairs: list[tuple[str, str]]
     frames: tuple[str, ...]
     moving: list[tuple[Obstacle, slice]]
     constants: Vector
@@ -193,7 +186,7 @@ def make_scene(
     centers = [slice(at, at + 3) for at in first + PER_BODY * np.arange(len(obstacles))]
     moving = [pair for pair in zip(obstacles, centers, strict=True) if pair[0].speed]
     frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
-    names = [Pair(bodies[i].name, bodies[k].name) for i, k in pairs]
+    names = [(bodies[i].name, bodies[k].name) for i, k in pairs]
     head = np.array([least, gain, len(bodies), len(pairs)])
     constants = np.concatenate([head, robot.dq_max, _layout(robot, bodies, pairs)])
     return Scene(robot, names, frames, moving, constants)
