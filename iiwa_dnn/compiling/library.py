@@ -165,10 +165,9 @@ _FLAT: dict[str, list[Any]] = {
 
 
 def _rebuilt(hint: Any, codes: Iterator[str], values: Iterator[Any]) -> Any:
-    """Make an argument of Python from flat ones of C."""
+    """Make an argument of Python from flat ones of C; a named tuple holds no other."""
     if hasattr(hint, "_fields"):
-        kinds = get_type_hints(hint)
-        return hint(*[_rebuilt(kinds[name], codes, values) for name in hint._fields])
+        return hint(*[_rebuilt(None, codes, values) for _ in hint._fields])
     code = next(code for code in codes if code in _FLAT)
     first = next(values)
     if code in "idb":

@@ -1,4 +1,4 @@
-"""KUKA's example and the exported client, built with KUKA's SDK, against a robot of our own.
+"""The exported client, built with KUKA's SDK, against a robot of our own.
 
 `FRI_SDK` names the folder of an SDK. Without it nothing is tested here: it cannot be downloaded.
 """
@@ -11,104 +11,62 @@ import threading
 from pathlib import Path
 
 import numpy as np
-import pytest
 
-from fri_robot import FriController, serve
+from fri_robot import FriController, SessionState, serve
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start
 from iiwa_dnn import DoubleIndicator, export, simulate
 from iiwa_dnn.control.controller import Controller
 
+PERIODS = 2001
+"""Periods in which commands are followed."""
 
-class Robot(threading.Thread):
-    """A robot at the paper's start that waits for its client's answers, and what it was told."""
 
-    def __init__(self, periods):
-        super().__init__(daemon=True)
-        self.commanded = []
-        self.states = []
-        self.periods = periods
-        self.controller = FriController(paper_robot(), paper_start().q, 5e-3)
+def follow(program: Path) -> np.ndarray:
+    """Let a robot at the paper's start follow a client; return where it was told to be, (k, 7)."""
+    controller = FriController(paper_robot(), paper_start().q, 5e-3)
+    commanded = []
 
-    def run(self):
-        serve(self.controller, 30200, self.note)  # KUKA's port is fixed
-
-    def note(self, controller):
-        self.commanded.append(controller.commanded)
-        self.states.append(controller.state.name)
-        if self.states.count("COMMANDING_ACTIVE") == self.periods:
+    def note(controller: FriController) -> None:
+        if controller.state is SessionState.COMMANDING_ACTIVE:
+            commanded.append(controller.commanded)
+        if len(commanded) == PERIODS:
             controller.end()
+
+    # KUKA's port is fixed.
+    robot = threading.Thread(target=serve, args=(controller, 30200, note), daemon=True)
+    robot.start()
+    subprocess.run([program], check=True, timeout=60)
+    robot.join(5.0)
+    assert controller.fault is None
+    return np.array(commanded)
+
+
+def compile_client(sdk: Path, folder: Path) -> Path:
+    """Compile KUKA's client library from its SDK as it is, and the exported client with it."""
+    parts = ("base", "client_lbr", "client_trafo", "connection", "protobuf", "protobuf_gen")
+    nanopb = next(sdk.glob("src/nanopb-*"))
+    folders = [sdk / "include", nanopb, *(sdk / "src" / part for part in parts)]
+    names = ("SOCKLEN_T", "STDINT_H", "STDDEF_H", "STDBOOL_H", "STDLIB_H", "STRING_H")
+    flags = ["-O1", "-w", '-DPB_SYSTEM_HEADER="pb_syshdr.h"', "-DPB_FIELD_16BIT"]
+    flags += [*(f"-DHAVE_{name}" for name in names), *(f"-I{place}" for place in folders)]
+    sources = [file for part in parts for file in (sdk / "src" / part).glob("*.c*")]
+    for file in [*sources, *nanopb.glob("*.c"), folder / "controller.c"]:
+        compiler = "g++" if file.suffix == ".cpp" else "gcc"
+        command = [compiler, *flags, "-c", str(file), "-o", f"{file.name}.o"]
+        subprocess.run(command, cwd=folder, check=True)
+    words = ["g++", *flags, "example_fri.cpp", *map(str, folder.glob("*.o")), "-o", "client"]
+    subprocess.run(words, cwd=folder, check=True)
+    return folder / "client"
 
 
 # Not as a skipped test: with CI=true that is a failure, and KUKA's SDK cannot be downloaded there.
 if "FRI_SDK" in os.environ:
-    SDK = Path(os.environ["FRI_SDK"])
-    SYSTEM = ['-DPB_SYSTEM_HEADER="pb_syshdr.h"', "-DPB_FIELD_16BIT"]
-    HEADERS = ["SOCKLEN_T", "STDINT_H", "STDDEF_H", "STDBOOL_H", "STDLIB_H", "STRING_H"]
 
-    @pytest.fixture(scope="module")
-    def library(tmp_path_factory):
-        """KUKA's client library, compiled from its SDK as it is."""
-        folder = tmp_path_factory.mktemp("sdk")
-        parts = ("base", "client_lbr", "client_trafo", "connection", "protobuf", "protobuf_gen")
-        nanopb = next(SDK.glob("src/nanopb-*"))
-        sources = [file for part in parts for file in (SDK / "src" / part).glob("*.c*")]
-        include = [f"-I{SDK / 'include'}", f"-I{nanopb}"]
-        include += [f"-I{SDK / 'src' / part}" for part in parts]
-        flags = ["-O1", "-w", *SYSTEM, *(f"-DHAVE_{name}" for name in HEADERS)]
-        for file in [*sources, *nanopb.glob("*.c")]:
-            compiler = "g++" if file.suffix == ".cpp" else "gcc"
-            command = [compiler, *flags, *include, "-c", str(file), "-o", f"{file.name}.o"]
-            subprocess.run(command, cwd=folder, check=True)
-        return sorted(folder.glob("*.o"))
-
-    def build(folder, sources, library, *flags):
-        program = folder / "program"
-        command = ["g++", "-O1", "-w", f"-I{SDK / 'include'}", *flags, *sources, *library]
-        subprocess.run([*map(str, command), "-o", program], cwd=folder, check=True)
-        return program
-
-    def run_against_robot(program, periods):
-        """Commanded positions while commands are followed, (periods, 7)."""
-        robot = Robot(periods)
-        robot.start()
-        finished = subprocess.run([program], capture_output=True, text=True, timeout=60)
-        robot.controller.end(robot.controller.fault)
-        robot.join(5.0)
-        assert robot.controller.fault is None
-        begun = robot.states.index("COMMANDING_ACTIVE")
-        return np.array(robot.commanded[begun:]), finished
-
-    def test_kuka_s_sine_overlay(library, tmp_path) -> None:
-        example = SDK / "example" / "LBRJointSineOverlay"
-        program = build(tmp_path, example.glob("*.cpp"), library, f"-I{example}")
-        q, finished = run_against_robot(program, 2000)
-        for before, after in zip(range(4), range(1, 5), strict=True):
-            assert f"state changed from {before} to {after}" in finished.stdout
-        # The example's defaults: joint 4, 0.25 Hz, 0.04 rad, a filter of 0.99.
-        offset = 0.0
-        expected = []
-        for k in range(len(q) - 2):
-            offset = 0.99 * offset + 0.01 * 0.04 * np.sin(2 * np.pi * 0.25 * 5e-3 * k)
-            expected.append(offset)
-        moved = q - paper_start().q
-        np.testing.assert_allclose(moved[1 : len(expected) + 1, 3], expected, atol=1e-12)
-        np.testing.assert_array_equal(np.delete(moved, 3, axis=1), 0.0)
-
-    def test_the_exported_client_draws_the_heart_as_python_does(library, tmp_path) -> None:
+    def test_the_exported_client_draws_the_heart_as_python_does(tmp_path: Path) -> None:
         scheme = DoubleIndicator(tracking="next")
-        controller = Controller(paper_robot(), scheme, heart(), dt=5e-3)
-        export.c99(controller, tmp_path, paper_start().q)
-        subprocess.run(["gcc", "-O2", "-c", "controller.c"], cwd=tmp_path, check=True)
-        sources = [tmp_path / "example_fri.cpp", tmp_path / "controller.o"]
-        q, finished = run_against_robot(build(tmp_path, sources, library), 2001)
-        assert finished.returncode == 0
-        ideal = simulate(
-            paper_robot(),
-            scheme,
-            heart(),
-            paper_start().q,
-            dt=5e-3,
-            duration=10.0,
-            check=UNCHECKED,
-        )
-        np.testing.assert_allclose(q[:2001], ideal.q, atol=1e-9)
+        q0 = paper_start().q
+        export.c99(Controller(paper_robot(), scheme, heart(), dt=5e-3), tmp_path, q0)
+        q = follow(compile_client(Path(os.environ["FRI_SDK"]), tmp_path))
+        given = {"dt": 5e-3, "duration": 10.0, "check": UNCHECKED}
+        ideal = simulate(paper_robot(), scheme, heart(), q0, **given)
+        np.testing.assert_allclose(q, ideal.q, atol=1e-9)
