@@ -14,7 +14,7 @@ ENTRY = "entry"
 """Decorator of a function without a body, which calls the kernel at an address."""
 
 
-class TranslationError(ValueError):
+class TranslationError(Exception):
     """A kernel leaves the subset of Python that is translated; the message names file and line."""
 
 

@@ -21,7 +21,6 @@ from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.state import DELAY, ROWS, YIELDS
 from iiwa_dnn.control.step import StepPlan, sample_targets, take_step
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp import Vector
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -31,7 +30,8 @@ _PACKAGE = Path(__file__).parents[1]
 def filled(template: str, values: dict[str, Any]) -> str:
     """Return a template with values in the places of their names."""
     text = (_PACKAGE / "export" / "templates" / template).read_text(encoding="utf-8")
-    return re.sub(r"@(\w+)@", lambda found: str(values[found[1]]), text)
+    text = re.sub(r"@(\w+)@", lambda found: str(values[found[1]]), text)
+    return re.sub(r"\bint64_t\b", "ptrdiff_t", text)  # half as long on a microcontroller
 
 
 def code_of(controller: Controller, shield: shields.Shield | None = None) -> dict[str, Any]:
@@ -142,7 +142,8 @@ class _Code:
             "inertia": "c->inertia" if needs_inertia else "NULL",
         }
         self._translator = Translator(_PACKAGE)
-        self._translator.parts = []
+        self._parts: list[Function] = []
+        self._translator.parts = self._parts
         self._numbers = {0: 0}
 
     def numbered(self, plan: StepPlan) -> StepPlan:
@@ -156,11 +157,9 @@ class _Code:
 
     def _part(self, address: int) -> int:
         """Translate the function at an address, once; return its number."""
-        parts = self._translator.parts
-        assert parts is not None
         if address not in self._numbers:
-            parts.append(self._translated(Entry.functions[address]))
-            self._numbers[address] = len(parts)
+            self._parts.append(self._translated(Entry.functions[address]))
+            self._numbers[address] = len(self._parts)
         return self._numbers[address]
 
     def kernel(self, kernel: Any) -> str:
@@ -173,7 +172,7 @@ class _Code:
             own = function.__module__.startswith("iiwa_dnn.")
             file = None if own else Path(inspect.getfile(function))
             module = self._translator.package.module(function.__module__, file)
-            return self._translator.function(module, module.names[function.__name__])
+            return self._translator.function(module, module.names[function.__qualname__])
         except (AttributeError, KeyError, OSError, TypeError, TranslationError) as error:
             problem = f"{function!r} cannot be exported: {error}"
             raise InvalidInputError("controller", problem) from error
@@ -184,7 +183,9 @@ class _Code:
         Members of named tuples that do not live in the struct are constants of the kernels.
         """
         if isinstance(own, np.ndarray):
-            data = self._fields.get(name) or self.table(name, own)
+            # In C no table is empty.
+            numbers = (own if own.size else np.zeros(1, own.dtype)).ravel().tolist()
+            data = self._fields.get(name) or self._translator.table(f"table_{name}", numbers).text
             return f"{{{', '.join([data, *map(str, own.shape)])}}}"
         if not isinstance(own, tuple):
             return number_text(own)
@@ -195,21 +196,10 @@ class _Code:
         self._translator.constants[tag] = plain
         return f"{{{', '.join(values.values())}}}"
 
-    def table(self, name: str, values: Vector) -> str:
-        """Write a table of constants, which in C is never empty; return its place."""
-        filled_up = values if values.size else np.zeros(1, values.dtype)
-        place = self._translator.table(f"table_{name}", filled_up.ravel().tolist())
-        return _for_small_machines(place.text)
-
     def text(self) -> str:
         """Return structs, tables and functions, and before them those of C's own that they call."""
         text = self._translator.text()
         shared = prelude("kernels.h").split("\n\n")
         found = [re.match(r"static inline \S+ \*?(\w+)\(", each) for each in shared]
         used = [e for e, own in zip(shared, found, strict=True) if not own or own[1] in text]
-        return _for_small_machines("\n\n".join([*used, filled("arena.c", {}), text]))
-
-
-def _for_small_machines(text: str) -> str:
-    """Let whole numbers be half as long on a microcontroller."""
-    return re.sub(r"\bint64_t\b", "ptrdiff_t", text)
+        return "\n\n".join([*used, filled("arena.c", {}), text])
