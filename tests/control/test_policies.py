@@ -218,16 +218,3 @@ def test_the_codes_in_a_record_stay_what_they_are() -> None:
     assert codes == {"none": 0, "slow": 2, "relax": 3, "stop": 4, "euler": 5}
     assert {code: name for name, code in codes.items() if code} == ACTIONS
     assert [kind.name for kind in ProgramKind] == ["OWN", "SCALED", "SOFTENED", "HELD", "STOPPED"]
-
-
-@pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
-@pytest.mark.parametrize("acceleration", [None, 10.0])
-def test_the_residuals_of_an_answer_are_its_own(policy: Policy, acceleration: float | None) -> None:
-    robot = paper_robot().with_limits(velocity=0.3, acceleration=acceleration)
-    controller = d.Controller(robot, d.DoubleIndicator(home=PAPER_Q0), policy=policy)
-    for k in range(3):
-        command = controller.step(PAPER_Q0, 1e-3 * k, near_target(PAPER_Q0, 3, 0.3))
-        assert command.action in (Action.SLOW, Action.RELAX, Action.STOP)
-        found = command.solution
-        own = command.qp.residuals(found.point)
-        np.testing.assert_allclose(found.residuals, own, rtol=0, atol=1e-12)

@@ -14,7 +14,6 @@ import pytest
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, paper_start
-from iiwa_dnn.qp.crosscheck import CrossCheck
 
 DT = 1e-3
 ACCELERATION = 5.0
@@ -113,21 +112,6 @@ def test_threads_keep_the_acceleration_limit_between_them() -> None:
     for command in commands:
         change = np.abs(command.dq - command.past[1]).max()
         assert change <= ACCELERATION * DT * (1.0 + 1e-9)
-
-
-@pytest.mark.parametrize("scale", [3.45e-3, 0.02], ids=["fits", "too quick"])
-@pytest.mark.parametrize("limits", [(), (d.AccelerationLimits(5.0), d.JerkLimits(500.0))])
-def test_a_simulation_is_a_loop_of_steps_to_the_last_bit(scale: float, limits: Any) -> None:
-    scheme = d.DoubleIndicator(extra_limits=limits)
-    path = d.Heart(scale=scale, period=3.0).anchored(paper_start())
-    run = {"dt": 2e-3, "duration": 1.2, "check": CrossCheck(())}
-    record = d.simulate(paper_robot(), scheme, path, PAPER_Q0, **run)
-    controller = d.Controller(paper_robot(), scheme, path, dt=2e-3)
-    q = np.array(PAPER_Q0)
-    for k in range(record.steps):
-        np.testing.assert_array_equal(q, record.q[k])
-        q = q + 2e-3 * controller.step(q, k * 2e-3).dq
-    np.testing.assert_array_equal(q, record.q[-1])
 
 
 @pytest.mark.parametrize("times", [1, 2])
