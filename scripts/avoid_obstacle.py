@@ -11,7 +11,7 @@ import tyro
 
 import iiwa_dnn
 from iiwa_dnn.app.command_line import run_script
-from iiwa_dnn.results.pictures import ArmRenderer
+from iiwa_dnn.results.pictures import draw_arm
 from iiwa_dnn.results.plots import new_figure, write_figures
 
 START = [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]  # [rad]
@@ -33,8 +33,8 @@ def draw(robot, records, names, distances):
     panels = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 1.1))
     near = int(distances[0].argmin())
     for panel, record, name in zip(panels, records, names, strict=False):
-        with ArmRenderer(robot, record, (700, 700)) as renderer:
-            panel.imshow(renderer.draw(near), interpolation="lanczos")
+        (image,) = draw_arm(robot, record, [near], (700, 700))
+        panel.imshow(image, interpolation="lanczos")
         panel.set_title(name, fontsize=8, pad=3)
         panel.set_axis_off()
     for record, distance, style, name in zip(records, distances, ("--", "-"), names, strict=True):

@@ -1,16 +1,11 @@
 """The reasons why a run is not a success, in plain words, from its metrics."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from iiwa_dnn.files import percent
 from iiwa_dnn.naming import describe
-from iiwa_dnn.results.metrics import (
-    BOUNDS,
-    EXCESS_TOLERANCE,
-    JOINT_LIMITS,
-    compute_metrics,
-)
+from iiwa_dnn.results.metrics import JOINT_LIMITS, compute_metrics
 from iiwa_dnn.results.record import Record
 
 LIMIT_SLACK = 1e-9
@@ -34,15 +29,9 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
     """
     if isinstance(run, Record):
         return failures(compute_metrics(run))
-    converged = run["settings"]["mode"] == "converged"
     check = run["crosscheck"]
-    reasons = [
-        *_incomplete(run),
-        *(_policies(run) if converged else ()),
-        *(_unsolved(run) if converged else ()),
-        *_crosscheck(check, run["steps"]),
-        *_broken_limits(run),
-    ]
+    judged = [*_policies(run), *_unsolved(run)] if run["settings"]["mode"] == "converged" else []
+    reasons = [*_incomplete(run), *judged, *_crosscheck(check, run["steps"]), *_broken_limits(run)]
     if not reasons and any(steps for kind, steps in check["kinds"].items() if kind != "own"):
         return [programs_checked(check)]
     return reasons
@@ -80,12 +69,6 @@ def counted(steps: int) -> str:
     return f"{steps:,} step" if steps == 1 else f"{steps:,} steps"
 
 
-def _named(limits: Sequence[Mapping[str, Any]]) -> str:
-    """Name three limits, and count the others."""
-    others = f" and {len(limits) - 3} more" if len(limits) > 3 else ""
-    return ", ".join(map(describe, limits[:3])) + others
-
-
 def _incomplete(metrics: Mapping[str, Any]) -> Iterator[str]:
     """Report an incomplete path, an early end, and a program without a solution."""
     settings = metrics["settings"]
@@ -112,25 +95,24 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
     if not done:
         return
     counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items())
-    first = _at(incidents["first"])
     pose = "no bound, a singular pose or tasks against each other"
-    parts = [
-        f"{counted(sum(done.values()))} without a solution ({counts}), the first at {first}",
-        f"most often in the way: {_named(incidents['blocking']) or pose}",
-    ]
+    blocking = ", ".join(map(describe, incidents["blocking"][:3])) or pose
+    advice = ""
     if "slowed" in done and incidents["path_time_s"]:
-        pace = metrics["duration_s"] / incidents["path_time_s"]
-        parts.append(f"give the path {_show(pace)} times the time (--period, --stretch) or more")
-    yield "; ".join(parts)
+        pace = _show(metrics["duration_s"] / incidents["path_time_s"])
+        advice = f"; give the path {pace} times the time (--period, --stretch) or more"
+    yield (
+        f"{counted(sum(done.values()))} without a solution ({counts}), the first at "
+        f"{_at(incidents['first'])}; most often in the way: {blocking}{advice}"
+    )
 
 
 def _unsolved(metrics: Mapping[str, Any]) -> Iterator[str]:
     first = metrics["unsolved"]
     if first is not None:
-        tolerance = _show(metrics["settings"]["tol"])
         yield (
-            f"{_at(first)}: KKT residual {_show(first['residual'])}, tolerance {tolerance}; "
-            f"{counted(first['steps'])} unsolved in all"
+            f"{_at(first)}: KKT residual {_show(first['residual'])}, tolerance "
+            f"{_show(metrics['settings']['tol'])}; {counted(first['steps'])} unsolved in all"
         )
 
 
@@ -138,27 +120,21 @@ def _crosscheck(check: Mapping[str, Any], steps: int) -> Iterator[str]:
     """Report disagreements, and what the references could not judge."""
     first = check["first_disagreement"]
     if first is not None:
-        count = counted(check["disagreements"])
-        yield f"{_at(first)}: {_disagreement(check, first)}; {count} in all"
+        yield (
+            f"{_at(first)}: the gap to {first['solver']} is {_show(first['gap'])} rad/s, tolerance "
+            f"{_show(first['tolerance'])}; {counted(check['disagreements'])} in all"
+        )
     if not check["judged"]:  # in continuous mode the gap is a lag
         return
-    missing = check["reference_failures"]
-    if missing:
+    if check["reference_failures"]:
         yield (
-            f"reference answers missing or not accurate enough to judge by: {missing:,} "
-            f"({check['solver']}); the check 'proof' needs no other solver"
+            "reference answers missing or not accurate enough to judge by: "
+            f"{check['reference_failures']:,} ({check['solver']}); the check 'proof' needs no "
+            "other solver"
         )
     unchecked = steps - check["steps_checked"] - check["kinds"]["stopped"]
     if unchecked:
         yield f"{counted(unchecked)} of {steps:,} not checked"
-
-
-def _disagreement(check: Mapping[str, Any], first: Mapping[str, Any]) -> str:
-    """State by whom and by how much a step is found wrong."""
-    gap = _show(first["gap"])
-    if first["solver"] == BOUNDS:
-        return f"the command is {gap} outside of its bounds and rows, tolerance {EXCESS_TOLERANCE}"
-    return f"{first['solver']} differs by {gap} rad/s, tolerance {_show(check['tolerance'])}"
 
 
 def _broken_limits(metrics: Mapping[str, Any]) -> Iterator[str]:
@@ -169,17 +145,19 @@ def _broken_limits(metrics: Mapping[str, Any]) -> Iterator[str]:
             yield f"a joint {kind} is not finite"
         elif worst > LIMIT_SLACK:
             where = metrics["violations"][name]
-            broken = f"joint {kind} limit broken by {_show(worst)} {unit}"
-            yield f"{broken}; {where['joint']} at {_at(where)}"
+            yield (
+                f"joint {kind} limit broken by {_show(worst)} {unit}; {where['joint']} at "
+                f"{_at(where)}"
+            )
     near = metrics.get("collisions")
     if near is not None and near["missing_m"] > LIMIT_SLACK:
-        start = "; begin farther away: another start posture" if near["time_s"] == 0.0 else ""
         yield (
-            f"{near['second']} and {near['first']} came as near as "
-            f"{near['least_distance_m']:.6g} m at t = {near['time_s']:.6g} s, "
-            f"allowed {near['allowed_m']:.6g} m{start}"
+            f"{near['second']} and {near['first']} came as near as {near['least_distance_m']:.6g} "
+            f"m at t = {near['time_s']:.6g} s, allowed {near['allowed_m']:.6g} m"
         )
     reached = metrics.get("physics", {}).get("torque_limit_reached")
     if reached is not None:
-        by = f"{', '.join(reached['joints'])}, first at {_at(reached)}"
-        yield f"torque limit reached by {by}; {counted(reached['steps'])}"
+        yield (
+            f"torque limit reached by {', '.join(reached['joints'])}, first at {_at(reached)}; "
+            f"{counted(reached['steps'])}"
+        )

@@ -12,9 +12,6 @@ from iiwa_dnn.files import plain
 from iiwa_dnn.naming import in_the_way
 from iiwa_dnn.results.record import RATES, FloatArray, Record
 
-PROOF = "proof"
-"""Name of the proof among a run's reference solvers."""
-
 PROGRAMS = ("own", "scaled", "softened", "held", "stopped")
 """Kinds of a step by their codes in `Record.kind`."""
 
@@ -138,6 +135,12 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     distance = np.linalg.norm(error, axis=1)
     duration = float(record.t[-1] - record.t[0])
     excesses = _excesses(record)
+    further = {
+        "physics": _physics(record, distance),
+        "incidents": _incidents(record),
+        "frames": _frames(record),
+        "collisions": _collisions(record),
+    }
     metrics: dict[str, Any] = plain(
         {
             "path_completed": record.path_completed,
@@ -162,10 +165,7 @@ def compute_metrics(record: Record) -> dict[str, Any]:
                 "max": _max(record.iterations),
             },
             "crosscheck": _crosscheck(record),
-            **_physics(record, distance),
-            **_incidents(record),
-            **_frames(record),
-            **_collisions(record),
+            **{name: sums for name, sums in further.items() if sums},
             "settings": {key: value for key, value in settings.items() if key != "versions"},
             "versions": settings.get("versions", {}),
         }
@@ -221,18 +221,21 @@ def _crosscheck(record: Record) -> dict[str, Any]:
     # A residual without a gap is an answer too: the network's own was then not a number.
     asked = ~(np.isnan(gap) & np.isnan(residual)) & (kind != _STOPPED)[:, np.newaxis]
     believed = asked & (residual <= check["reference_tolerance"]) & ~np.isinf(gap)
-    # Not `gap > tolerance`, which a NaN would pass.
-    differs = believed & ~(gap <= check["tolerance"]) & converged
     excess = record.filled("excess")
-    outside = ~(excess <= EXCESS_TOLERANCE) & (kind != _STOPPED) & converged
-    disagrees = np.column_stack([differs, outside])
-    checked = asked.all(axis=1) & (record.references > 0)
+    # Not `gap > tolerance`, which a NaN would pass.
+    outside = ~(excess <= EXCESS_TOLERANCE) & (kind != _STOPPED)
+    disagrees = np.column_stack([believed & ~(gap <= check["tolerance"]), outside]) & converged
+    checked = asked.all(axis=1) & bool(check["solvers"])
     first = _first(record, disagrees.any(axis=1))
     if first is not None:
         step = first["step"]
         gaps = np.where(disagrees[step], [*gap[step], excess[step]], -np.inf)
         judge = int(gaps.argmax())
-        first = first | {"solver": [*check["solvers"], BOUNDS][judge], "gap": gaps[judge]}
+        first |= {
+            "solver": [*check["solvers"], BOUNDS][judge],
+            "gap": gaps[judge],
+            "tolerance": check["tolerance"] if judge < len(check["solvers"]) else EXCESS_TOLERANCE,
+        }
     return {
         "solver": "+".join(check["solvers"]) or "none",
         "steps_checked": checked.sum(),
@@ -246,7 +249,7 @@ def _crosscheck(record: Record) -> dict[str, Any]:
         "max_solution_gap": _max(gap[believed]),
         "max_objective_gap": _max(record.objective_gap[believed]),
         "max_reference_residual": _max(residual[np.isfinite(residual)]),
-        "judged": converged and record.references > 0,
+        "judged": converged and bool(check["solvers"]),
         "tolerance": check["tolerance"],
         "first_disagreement": first,
     }
@@ -254,12 +257,12 @@ def _crosscheck(record: Record) -> dict[str, Any]:
 
 def _judged_by(record: Record, asked: NDArray[np.bool_]) -> dict[str, int]:
     """Count the answers that each solver judged: those asked for, and the second ones."""
-    counts: Counter[str] = Counter()
     check = record.settings["check"]
-    for column, pair in enumerate(zip(check["solvers"], check["second"], strict=True)):
-        for code, solver in enumerate(pair):
-            counts[solver] += int((asked & (record.filled("judge") == code))[:, column].sum())
-    return dict(+counts)  # without those of none
+    judge = np.where(asked, record.filled("judge"), -1)
+    counts: Counter[str] = Counter()
+    for code, solvers in enumerate((check["solvers"], check["second"])):
+        counts += Counter(dict(zip(solvers, (judge == code).sum(axis=0).tolist(), strict=True)))
+    return dict(counts)  # a sum has no counts of zero
 
 
 def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
@@ -271,14 +274,13 @@ def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
     reached = ~(torque < limit)
     names = np.array(record.settings["joints"])[reached.any(axis=0)]
     first = _first(record, reached.any(axis=1))
-    physics = {
+    return {
         "settled_after_s": SETTLED_AFTER,
         "max_position_error_settled_m": _max(distance[record.t >= record.t[0] + SETTLED_AFTER]),
         "max_torque_n_m": torque.max(axis=0),
         "max_torque_share": (torque.max(axis=0) / limit).max(),
         "torque_limit_reached": first and first | {"joints": names},
     }
-    return {"physics": physics}
 
 
 def _frames(record: Record) -> dict[str, Any]:
@@ -286,11 +288,10 @@ def _frames(record: Record) -> dict[str, Any]:
     if not len(record.frame_position):
         return {}
     largest = [errors.max(axis=0) for errors in frame_errors(record)]
-    frames = {
+    return {
         name: {"max_position_error_m": distance, "max_orientation_error_rad": angle}
         for name, distance, angle in zip(record.settings["frames"], *largest, strict=True)
     }
-    return {"frames": frames}
 
 
 def _collisions(record: Record) -> dict[str, Any]:
@@ -300,7 +301,7 @@ def _collisions(record: Record) -> dict[str, Any]:
     least = int(record.distance.argmin())
     stated = record.settings["collisions"]
     first, second = stated["pairs"][record.nearest[least]]
-    found = {
+    return {
         "least_distance_m": record.distance[least],
         "first": first,
         "second": second,
@@ -308,7 +309,6 @@ def _collisions(record: Record) -> dict[str, Any]:
         "allowed_m": stated["distance"],
         "missing_m": max(0.0, stated["distance"] - float(record.distance[least])),
     }
-    return {"collisions": found}
 
 
 def _incidents(record: Record) -> dict[str, Any]:
@@ -326,14 +326,12 @@ def _incidents(record: Record) -> dict[str, Any]:
     acting[:, : record.dof] *= kinds
     blocking = np.hstack([record.filled(name) for name in ("blocking", "blocking_rows")])
     return {
-        "incidents": {
-            "clipped_steps": clipped.sum(),
-            **{f"{name}_steps": (action == code).sum() for code, name in ACTIONS.items()},
-            "path_time_s": record.path_time,
-            "first": _first(record, action != 0),
-            "blocking": _limits(record, blocking),
-            "active": _limits(record, acting),
-        }
+        "clipped_steps": clipped.sum(),
+        **{f"{name}_steps": (action == code).sum() for code, name in ACTIONS.items()},
+        "path_time_s": record.path_time,
+        "first": _first(record, action != 0),
+        "blocking": _limits(record, blocking),
+        "active": _limits(record, acting),
     }
 
 

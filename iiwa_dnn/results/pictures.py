@@ -7,7 +7,7 @@ record, nothing is simulated.
 from __future__ import annotations
 
 import os
-from contextlib import AbstractContextManager
+from collections.abc import Iterable, Iterator
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -44,9 +44,8 @@ FRAME_RATE = 25
 SIZE = (960, 540)
 """Width and height of the video [pixel]."""
 
-OBSTACLE_COLOR = (0.25, 0.45, 0.75)
+OBSTACLE_COLOR = (0.25, 0.45, 0.75, 1.0)
 _PIECES = 400  # straight ones that a path is drawn with
-_SHAPE: dict[str, Any] = {"group": VISUAL_GROUP, "contype": 0, "conaffinity": 0}
 _SCENERY = f"""
 <mujoco>
   <visual>
@@ -92,11 +91,11 @@ def moments_figure(robot: Robot, record: Record, pixels: int = 560) -> Figure:
     """
     figure = new_figure(DOUBLE_COLUMN, DOUBLE_COLUMN / MOMENTS + 0.2)
     samples = np.linspace(0, record.steps, MOMENTS + 1).astype(int)[1:]
-    with ArmRenderer(robot, record, (pixels, pixels)) as renderer:
-        for panel, sample in zip(figure.subplots(1, MOMENTS), samples, strict=True):
-            panel.imshow(renderer.draw(sample), interpolation="lanczos")
-            panel.set_axis_off()
-            panel.set_title(f"$t$ = {record.t[sample]:.3g} s", fontsize=8, pad=3)
+    images = draw_arm(robot, record, samples, (pixels, pixels))
+    for panel, sample, image in zip(figure.subplots(1, MOMENTS), samples, images, strict=True):
+        panel.imshow(image, interpolation="lanczos")
+        panel.set_axis_off()
+        panel.set_title(f"$t$ = {record.t[sample]:.3g} s", fontsize=8, pad=3)
     return figure
 
 
@@ -110,105 +109,98 @@ def save_video(robot: Robot, record: Record, path: str | os.PathLike[str]) -> No
         FileError: The file cannot be written.
     """
     encoder = import_extra("imageio.v2", "pip install 'iiwa-dnn[sim]'")
-
     count = max(1, round(float(record.t[-1] - record.t[0]) * FRAME_RATE)) + 1
+    samples = np.linspace(0, record.steps, count).astype(int)
     # The index at the front, so that a page can start to play it at once.
     options = {"macro_block_size": 2, "output_params": ["-movflags", "+faststart"]}
 
     def encode(file: BinaryIO) -> None:
-        with (
-            encoder.get_writer(file, format="mp4", fps=FRAME_RATE, **options) as writer,
-            ArmRenderer(robot, record) as renderer,
-        ):
-            for sample in np.linspace(0, record.steps, count).astype(int):
-                writer.append_data(renderer.draw(sample))
+        with encoder.get_writer(file, format="mp4", fps=FRAME_RATE, **options) as writer:
+            for image in draw_arm(robot, record, samples, SIZE):
+                writer.append_data(image)
 
     write_atomically(path, encode)
 
 
-class ArmRenderer(AbstractContextManager["ArmRenderer"]):
-    """A renderer of an arm that follows a record, with the path so far; a context manager."""
+def draw_arm(
+    robot: Robot, record: Record, samples: Iterable[int], size: tuple[int, int]
+) -> Iterator[Image]:
+    """Yield pictures of the arm, with the path so far, at samples of a record, 0 to N each.
 
-    def __init__(self, robot: Robot, record: Record, size: tuple[int, int] | None = None) -> None:
-        """Lay out the scene around the arm and the record's path, width by height [pixel].
+    A picture has the shape (height, width, 3) and colors to 255; the size is width by height
+    [pixel].
 
-        Raises:
-            MissingDependencyError: MuJoCo or an OpenGL library is not installed.
-            InvalidInputError: MuJoCo cannot take the robot.
-        """
-        self._mj = import_mujoco()
-        prepare_renderer()  # before the slow part
-        self._record = record
-        self._obstacles = obstacles_of(record)
-        self._model = self._scene(robot)
-        self._data = self._mj.MjData(self._model)
-        self._camera = self._mj.MjvCamera()
-        _aim(self._camera, record)
-        self._options = self._mj.MjvOption()
-        self._options.geomgroup[:] = np.arange(self._options.geomgroup.size) == VISUAL_GROUP
-        self._options.sitegroup[:] = 0
-        width, height = size or SIZE
-        most = self._model.ngeom + 2 * _PIECES + 10
-        self._renderer = self._mj.Renderer(self._model, height, width, most)
+    Raises:
+        MissingDependencyError: MuJoCo or an OpenGL library is not installed.
+        InvalidInputError: MuJoCo cannot take the robot.
+    """
+    mujoco = import_mujoco()
+    prepare_renderer()  # before the slow part
+    obstacles = obstacles_of(record)
+    model = _scene(mujoco, robot, obstacles)
+    data = mujoco.MjData(model)
+    camera = mujoco.MjvCamera()
+    _aim(camera, record)
+    options = mujoco.MjvOption()
+    options.geomgroup[:] = np.arange(options.geomgroup.size) == VISUAL_GROUP
+    options.sitegroup[:] = 0
+    corners = np.linspace(0, record.steps, min(record.steps, _PIECES) + 1).astype(int)
+    width = max(3.0, size[1] / 130.0)
+    with mujoco.Renderer(model, size[1], size[0], model.ngeom + 2 * _PIECES + 10) as renderer:
+        for sample in samples:
+            data.qpos[:] = record.q[sample]
+            for i, obstacle in enumerate(obstacles):
+                data.mocap_pos[i] = obstacle.shift(float(record.t[sample]))
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_camlight(model, data)
+            renderer.update_scene(data, camera, options)
+            # A little farther off than what is drawn, so that it never shows through that.
+            behind = 2e-3 * camera.distance * renderer.scene.camera[0].forward
+            desired = record.position_desired[corners] + behind
+            _add_line(mujoco, renderer.scene, desired, 0.4 * width, (0.2, 0.25, 0.35, 1.0))
+            drawn = record.position[[*corners[corners < sample], sample]]
+            _add_line(mujoco, renderer.scene, drawn, width, (0.86, 0.0, 0.1, 1.0))
+            yield renderer.render()
 
-    def __exit__(self, *_: object) -> None:
-        """Give the OpenGL context back."""
-        self._renderer.close()
 
-    def draw(self, sample: int) -> Image:
-        """Draw the arm at a sample of the record, 0 to N: (height, width, 3), colors to 255."""
-        record = self._record
-        renderer = self._renderer
-        self._data.qpos[:] = record.q[sample]
-        for i, obstacle in enumerate(self._obstacles):
-            self._data.mocap_pos[i] = obstacle.shift(float(record.t[sample]))
-        self._mj.mj_kinematics(self._model, self._data)
-        self._mj.mj_camlight(self._model, self._data)
-        renderer.update_scene(self._data, self._camera, self._options)
-        width = max(3.0, renderer.height / 130.0)
-        # A little farther off than what is drawn, so that it never shows through that.
-        behind = 2e-3 * self._camera.distance * renderer.scene.camera[0].forward
-        corners = np.linspace(0, record.steps, min(record.steps, _PIECES) + 1).astype(int)
-        self._line(record.position_desired[corners] + behind, 0.4 * width, (0.2, 0.25, 0.35))
-        drawn = record.position[[*corners[corners < sample], sample]]
-        self._line(drawn, width, (0.86, 0.0, 0.1))
-        image: Image = renderer.render()
-        return image
+def _scene(mujoco: Any, robot: Robot, obstacles: Iterable[Obstacle]) -> Any:
+    """Compile robot, floor and light, and the obstacles as bodies that can be displaced."""
+    spec = mujoco.MjSpec.from_string(_SCENERY)
+    arm = build_spec(robot)
+    shell = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+    shape = {
+        "type": mujoco.mjtGeom.mjGEOM_MESH,
+        "group": VISUAL_GROUP,
+        "contype": 0,
+        "conaffinity": 0,
+    }
+    joints = {joint.name: joint.parent for joint in arm.joints}
+    for i, mesh in enumerate(visual_meshes(robot)):
+        faces = mesh.faces.ravel()
+        name = f"mesh_{i}"
+        arm.add_mesh(name=name, uservert=mesh.corners.ravel(), userface=faces, inertia=shell)
+        body = joints[robot.model.names[mesh.joint]] if mesh.joint else arm.worldbody
+        body.add_geom(meshname=name, rgba=[*mesh.color, 1.0], **shape)
+    spec.attach(arm, prefix="arm_", frame=spec.worldbody.add_frame())
+    for i, obstacle in enumerate(obstacles):
+        body = spec.worldbody.add_body(name=f"obstacle_{i}", mocap=True)
+        vertices, triangles = outline(obstacle)
+        spec.add_mesh(name=body.name, uservert=vertices.ravel(), userface=triangles.ravel())
+        body.add_geom(meshname=body.name, rgba=OBSTACLE_COLOR, **shape)
+    return spec.compile()
 
-    def _scene(self, robot: Robot) -> Any:
-        """Compile robot, floor and light, and the obstacles as bodies that can be displaced."""
-        spec = self._mj.MjSpec.from_string(_SCENERY)
-        arm = build_spec(robot)
-        mesh_type = self._mj.mjtGeom.mjGEOM_MESH
-        shell = self._mj.mjtMeshInertia.mjMESH_INERTIA_SHELL
-        joints = {joint.name: joint.parent for joint in arm.joints}
-        for i, mesh in enumerate(visual_meshes(robot)):
-            faces = mesh.faces.ravel()
-            arm.add_mesh(
-                name=f"mesh_{i}", uservert=mesh.corners.ravel(), userface=faces, inertia=shell
-            )
-            body = joints[robot.model.names[mesh.joint]] if mesh.joint else arm.worldbody
-            body.add_geom(type=mesh_type, meshname=f"mesh_{i}", rgba=[*mesh.color, 1.0], **_SHAPE)
-        spec.attach(arm, prefix="arm_", frame=spec.worldbody.add_frame())
-        for i, obstacle in enumerate(self._obstacles):
-            body = spec.worldbody.add_body(name=f"obstacle_{i}", mocap=True)
-            vertices, triangles = outline(obstacle)
-            spec.add_mesh(name=body.name, uservert=vertices.ravel(), userface=triangles.ravel())
-            rgba = [*OBSTACLE_COLOR, 1.0]
-            body.add_geom(type=mesh_type, meshname=body.name, rgba=rgba, **_SHAPE)
-        return spec.compile()
 
-    def _line(self, points: FloatArray, width: float, color: tuple[float, ...]) -> None:
-        """Add a path (M, 3) [m] to the scene as lines of this width [pixel]."""
-        scene = self._renderer.scene
-        kind = self._mj.mjtGeom.mjGEOM_LINE
-        rgba = np.array([*color, 1.0], dtype=np.float32)
-        for start, end in pairwise(points):
-            geom = scene.geoms[scene.ngeom]
-            self._mj.mjv_initGeom(geom, kind, np.zeros(3), start, np.eye(3).ravel(), rgba)
-            self._mj.mjv_connector(geom, kind, width, start, end)
-            geom.emission = 1.0  # the color as it is, whatever the light
-            scene.ngeom += 1
+def _add_line(
+    mujoco: Any, scene: Any, points: FloatArray, width: float, color: tuple[float, ...]
+) -> None:
+    """Add a path (M, 3) [m] to the scene as lines of this width [pixel]."""
+    kind = mujoco.mjtGeom.mjGEOM_LINE
+    for start, end in pairwise(points):
+        geom = scene.geoms[scene.ngeom]
+        mujoco.mjv_initGeom(geom, kind, np.zeros(3), start, np.eye(3).ravel(), color)
+        mujoco.mjv_connector(geom, kind, width, start, end)
+        geom.emission = 1.0  # the color as it is, whatever the light
+        scene.ngeom += 1
 
 
 def obstacles_of(record: Record) -> list[Obstacle]:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from iiwa_dnn.files import prepare_folder, write_atomically
 from iiwa_dnn.naming import short_names
@@ -22,6 +23,8 @@ from iiwa_dnn.results.record import FloatArray, Record
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    Panel = Callable[[Axes, Record], None]
 
 COLUMN = 3.5  # width in a two-column journal [in]
 DOUBLE_COLUMN = 7.0
@@ -38,7 +41,7 @@ CAPTIONS = {
 _JOINTS = {
     "q": (r"$q_{{{}}}$", "Joint angle [rad]", "q_upper"),
     "dq": (r"$\dot{{q}}_{{{}}}$", "Joint velocity [rad/s]", "dq_max"),
-    "torque": (r"$\tau_{{{}}}$", "Joint torque [% of its limit]", "torque_max"),
+    "torque": (r"$\tau_{{{}}}$", "Joint torque [N m]", "torque_max"),
 }
 _ERRORS = (
     ("$e_x$", "0.35", "--"),
@@ -47,7 +50,6 @@ _ERRORS = (
     (r"$\|e\|$", "0.0", "-"),
 )
 _DASHES = ("-", "--", "-.", ":")
-_MARKERS = "os^Dv<>PXd"
 
 
 def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
@@ -77,15 +79,11 @@ def write_figures(
     with matplotlib.style.context(["default", STYLE]):
         for name, draw in figures.items():
             figure = draw()
-            # Both files share one layout. With an engine, each would be drawn twice.
-            if layout := figure.get_layout_engine():
-                layout.execute(figure)
-                figure.set_layout_engine(None)
-            for suffix in ("png", "pdf"):
-                metadata = {"CreationDate": None} if suffix == "pdf" else None
+            for suffix, metadata in (("png", {}), ("pdf", {"CreationDate": None})):
                 written.append(folder / f"{name}.{suffix}")
                 save = partial(figure.savefig, format=suffix, metadata=metadata)
                 write_atomically(written[-1], save)
+                figure.set_layout_engine("none")  # both files share one layout
     return written
 
 
@@ -115,39 +113,40 @@ def envelope(
 def overview_figure(record: Record) -> Figure:
     """Draw path, joints, errors and kinetic index; (a)-(d) are the panels of the paper's Fig. 1.
 
-    A run in physics, one that was slowed, one that avoids collisions and one that tracks several
-    frames have further panels.
+    A run in physics, one that avoids collisions and one that tracks several frames have further
+    panels.
     """
-    further: dict[Callable[[Axes, Record], None], Any] = {
-        partial(draw_joints, name="torque"): len(record.torque),
-        draw_frames: len(record.frame_position),
-        draw_path_time: (record.fraction < 1.0).any(),
-        draw_distance: len(record.distance),
+    further: dict[Panel, NDArray[Any]] = {
+        partial(draw_joints, name="torque"): record.torque,
+        draw_frames: record.frame_position,
+        draw_distance: record.distance,
     }
-    panels: list[Callable[[Axes, Record], None]] = [
+    panels: list[Panel] = [
         draw_path,
         partial(draw_joints, name="q"),
         partial(draw_joints, name="dq"),
         draw_error,
         draw_orientation_error,
         draw_kinetic_index,
-        *(draw for draw, is_there in further.items() if is_there),
+        *(draw for draw, column in further.items() if len(column)),
     ]
-    rows = (len(panels) + 1) // 2
-    figure = new_figure(DOUBLE_COLUMN, 2.7 * rows)
-    for number, draw in enumerate(panels):
-        axes = figure.add_subplot(rows, 2, number + 1)
-        draw(axes, record)
-        axes.set_title(f"({chr(ord('a') + number)})", loc="left", fontsize=8)
-    return figure
+    return _draw_panels(record, panels, 2, 2.7)
 
 
 def convergence_figure(record: Record) -> Figure:
     """Draw KKT residual and, if there were references, the gap to each; with their tolerances."""
-    panels = [draw_residual, draw_gap][: 2 if record.references else 1]
-    figure = new_figure(COLUMN, 1.9 * len(panels))
-    for axes, draw in zip(figure.subplots(len(panels), squeeze=False).flat, panels, strict=True):
+    panels: list[Panel] = [draw_residual, draw_gap]
+    return _draw_panels(record, panels[: 1 + min(record.solution_gap.shape[1], 1)], 1, 1.9)
+
+
+def _draw_panels(record: Record, panels: Sequence[Panel], columns: int, height: float) -> Figure:
+    """Draw panels of this height [in] in one or two columns, lettered from the left."""
+    rows = -(-len(panels) // columns)
+    figure = new_figure(columns * COLUMN, rows * height)
+    for number, draw in enumerate(panels):
+        axes = figure.add_subplot(rows, columns, number + 1)
         draw(axes, record)
+        axes.set_title(f"({chr(ord('a') + number)})", loc="left", fontsize=8)
     return figure
 
 
@@ -168,7 +167,7 @@ def draw_path(axes: Axes, record: Record) -> None:
 
 
 def draw_joints(axes: Axes, record: Record, name: str) -> None:
-    """Draw one curve a joint over time, told apart by luminance, dashes and markers.
+    """Draw one curve a joint over time, told apart by luminance and dashes.
 
     The name is ``"q"``, ``"dq"`` or ``"torque"``; limits near the curves have the color of their
     joint.
@@ -176,25 +175,15 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     import matplotlib
 
     symbol, quantity, limit = _JOINTS[name]
-    curves: FloatArray = getattr(record, name).T
     upper = limits(record, limit)
-    if name == "torque":
-        curves = 100.0 * curves / upper[:, np.newaxis]
-        upper = np.full(record.dof, 100.0)
     bounds = np.array([limits(record, "q_lower", -np.inf) if name == "q" else -upper, upper])
     colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, record.dof))
     names = short_names(record.settings)
-    every = max(min(curves.shape[1], BUCKETS) // 7, 1)
-    for joint, curve in enumerate(curves):
-        style = {
-            "color": colors[joint],
-            "linestyle": _DASHES[joint % len(_DASHES)],
-            "marker": _MARKERS[joint % len(_MARKERS)],
-            # Each joint's markers start elsewhere, lest they lie on top of each other.
-            "markevery": (every * joint // record.dof, every),
-            "label": symbol.format(names[joint]) if names[joint].isdigit() else names[joint],
-        }
-        _draw_curve(axes, record.t[: len(curve)], curve, **style)
+    for joint, curve in enumerate(getattr(record, name).T):
+        label = symbol.format(names[joint]) if names[joint].isdigit() else names[joint]
+        dashes = _DASHES[joint % len(_DASHES)]
+        t = record.t[: len(curve)]
+        _draw_curve(axes, t, curve, color=colors[joint], linestyle=dashes, label=label)
     low, high = axes.get_ylim()
     margin = 0.15 * (high - low)  # a limit farther off would only flatten the curves
     for i, joint in np.argwhere((low - margin <= bounds) & (bounds <= high + margin)):
@@ -204,15 +193,10 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
 
 
 def _draw_curve(axes: Axes, t: FloatArray, curve: FloatArray, **line: Any) -> None:
-    """Draw the mean of each stretch as a line, and in a pale band its extremes.
-
-    A band thinner than the line is left out; a noisy curve stays readable among others.
-    """
-    curve = np.where(np.isfinite(curve), curve, np.nan)  # a gap in the line
+    """Draw the mean of each stretch as a line, and in a pale band its extremes."""
     times, mean, least, greatest = envelope(t, curve)
     axes.plot(times, mean, **line)
-    if len(times) < len(t) and not np.max(greatest - least) <= 0.01 * np.ptp(curve):
-        axes.fill_between(times, least, greatest, color=line["color"], alpha=0.25, linewidth=0.3)
+    axes.fill_between(times, least, greatest, color=line["color"], alpha=0.25, linewidth=0.0)
 
 
 def draw_error(axes: Axes, record: Record) -> None:
@@ -245,7 +229,7 @@ def draw_kinetic_index(axes: Axes, record: Record) -> None:
 def draw_residual(axes: Axes, record: Record) -> None:
     """Draw the KKT residual of the network's answers over time, and its tolerance."""
     # In continuous mode it is a lag, which no tolerance is meant for.
-    tolerance = (record.settings["mode"] == "converged") * record.settings["tol"]
+    tolerance = record.settings["tol"] if record.settings["mode"] == "converged" else None
     draw_log(axes, record.t[:-1], record.kkt_residual[:, np.newaxis], ["network"], tolerance)
     label_time(axes, record, "KKT residual")
 
@@ -253,7 +237,7 @@ def draw_residual(axes: Axes, record: Record) -> None:
 def draw_gap(axes: Axes, record: Record) -> None:
     """Draw the gap to each reference over time, and its tolerance; missing answers are gaps."""
     check = record.settings["check"]
-    tolerance = (record.settings["mode"] == "converged") * check["tolerance"]
+    tolerance = check["tolerance"] if record.settings["mode"] == "converged" else None
     draw_log(axes, record.t[:-1], record.solution_gap, check["solvers"], tolerance)
     label_time(axes, record, "Gap to reference [rad/s]")
 
@@ -266,36 +250,31 @@ def draw_frames(axes: Axes, record: Record) -> None:
 
 def draw_distance(axes: Axes, record: Record) -> None:
     """Draw the distance of the nearest pair [m] over time, and the least that is allowed."""
-    times, _, least, _ = envelope(record.t, record.distance)
-    axes.plot(times, least, color="0.0", label="nearest pair")
+    _draw_curve(axes, record.t, record.distance, color="0.0", label="nearest pair")
     allowed = record.settings["collisions"]["distance"]
     axes.axhline(allowed, color="0.0", linestyle="--", label="least allowed")
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     label_time(axes, record, "Distance [m]")
 
 
-def draw_path_time(axes: Axes, record: Record) -> None:
-    """Draw the path's time over time, as planned and as a slowed run reached it."""
-    reached = np.append(0.0, np.cumsum(record.settings["dt"] * record.filled("fraction")))
-    axes.plot(record.t, record.t - record.t[0], color="0.55", linestyle="--", label="as planned")
-    axes.plot(*envelope(record.t, reached)[:2], color="0.0", label="reached")
-    label_time(axes, record, "Path time [s]")
-
-
 def draw_log(
-    axes: Axes, t: FloatArray, values: FloatArray, names: Sequence[str], tolerance: float = 0.0
+    axes: Axes,
+    t: FloatArray,
+    values: FloatArray,
+    names: Sequence[str],
+    tolerance: float | None = None,
 ) -> None:
     """Draw positive values on a log scale, of each stretch the largest.
 
-    The times (N,) are in [s], the values (N, k) have k names. A tolerance above zero is a dashed
-    line. Zero and infinity have no point there.
+    The times (N,) are in [s], the values (N, k) have k names. A tolerance is a dashed line.
+    Zero and infinity have no point there.
     """
     axes.set_yscale("log", nonpositive="mask")
     for name, curve in zip(names, values.T, strict=True):
         shown = (curve > 0.0) & np.isfinite(curve)
         times, _, _, greatest = envelope(t[shown], curve[shown])
         axes.plot(times, greatest, ".-", markersize=1.0, linewidth=0.8, label=name)
-    if tolerance > 0.0:
+    if tolerance is not None:
         axes.axhline(tolerance, color="0.0", linestyle="--", label="tolerance")
 
 

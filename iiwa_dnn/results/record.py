@@ -39,10 +39,8 @@ class Column(NamedTuple):
         """Make the array of a run of so many steps, of `fill` alone; further sizes as ``n=7``."""
         known = {"N": steps, "N+1": steps + 1, **sizes}
         lengths = [known.get(size, 0) if isinstance(size, str) else size for size in self.shape]
-        array = np.zeros(lengths, self.dtype)  # no memory before they are written, unlike np.full
-        if self.fill:
-            array[:] = self.fill
-        return array
+        # Zeros take no memory before something else is written.
+        return np.full(lengths, self.fill) if self.fill else np.zeros(lengths, self.dtype)
 
     def check(self, name: str, value: ArrayLike, sizes: dict[str | int, int]) -> NDArray[Any]:
         """Return a read-only copy of an array of this column.
@@ -55,13 +53,13 @@ class Column(NamedTuple):
         array = np.array(value)
         if name in OPTIONAL and not array.size:
             return np.zeros((0, *(sizes.get(axis, 0) for axis in self.shape[1:])), self.dtype)
-        axes = zip(self.shape, array.shape, strict=False)
+        lengths = (*array.shape, *[0] * len(self.shape))
+        axes = zip(self.shape, lengths, strict=False)
         expected = tuple(sizes.setdefault(axis, length) for axis, length in axes)
-        fits = array.shape == expected and array.ndim == len(self.shape)
-        if not fits or not np.can_cast(array.dtype, self.dtype, "same_kind"):
-            symbols = ", ".join(map(str, self.shape))
-            problem = f"{array.dtype} of shape {array.shape}, expected numbers ({symbols})"
-            raise InvalidInputError(name, f"{problem} = {expected}", value)
+        if array.shape != expected or not np.can_cast(array.dtype, self.dtype, "same_kind"):
+            symbols = f"({', '.join(map(str, self.shape))}) = {expected}"
+            problem = f"{array.dtype} of shape {array.shape}, expected numbers {symbols}"
+            raise InvalidInputError(name, problem, value)
         array = array.astype(self.dtype, order="C", copy=False)
         array.flags.writeable = False
         return array
@@ -246,10 +244,9 @@ class Record:
 
     def __repr__(self) -> str:
         error = np.linalg.norm(self.position - self.position_desired, axis=1).max()
-        status = " ".join(self.settings["status"].split())
         return (
             f"Record({self.settings['robot']}, {self.steps:,} steps of {self.settings['dt']:g} s, "
-            f"{status}, {percent(self.path_completed)} of the path asked for, "
+            f"{self.settings['status']}, {percent(self.path_completed)} of the path asked for, "
             f"position error max {error:.4g} m)"
         )
 
@@ -262,11 +259,6 @@ class Record:
     def dof(self) -> int:
         """n, the number of joints."""
         return int(self.q.shape[1])
-
-    @property
-    def references(self) -> int:
-        """k, the number of reference solvers; their names are in the settings."""
-        return int(self.solution_gap.shape[1])
 
     @property
     def crosscheck_gap(self) -> FloatArray:
@@ -296,7 +288,7 @@ class Record:
         """Return the column of this name, or if the run lacks it one of its fill values."""
         array: NDArray[Any] = getattr(self, name)
         rows = len(self.settings.get("rows") or ())
-        sizes = {"n": self.dof, "k": self.references, "m": rows}
+        sizes = {"n": self.dof, "k": self.solution_gap.shape[1], "m": rows}
         return array if len(array) else COLUMNS[name].allocate(self.steps, **sizes)
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -333,8 +325,7 @@ class Record:
         Raises:
             FileError: If the file is missing, damaged or not a record of this version.
         """
-        from iiwa_dnn.results.metrics import compute_metrics
-        from iiwa_dnn.results.report import summary
+        from iiwa_dnn.results.failures import failures
 
         try:
             # Not np.load, which takes any file that is no archive for a pickled object.
@@ -347,7 +338,7 @@ class Record:
             if len(arrays["rotation_desired"]) == 1:
                 arrays["rotation_desired"] = arrays["rotation_desired"].repeat(len(arrays["t"]), 0)
             record = cls(settings=settings, **arrays)
-            summary(compute_metrics(record))  # lest settings edited by hand fail later
+            failures(record)  # lest settings edited by hand fail later
             return record
         except Exception as error:  # whatever NumPy, zip and JSON meet in a damaged file
             raise FileError(path, f"cannot be read as a record: {one_line(error)}") from error

@@ -15,12 +15,9 @@ from tabulate import tabulate
 from iiwa_dnn.files import prepare_folder, write_json, write_text
 from iiwa_dnn.naming import describe, unwatched
 from iiwa_dnn.results.failures import completed, counted, failures, programs_checked
-from iiwa_dnn.results.metrics import JOINT_LIMITS, PROOF, compute_metrics
+from iiwa_dnn.results.metrics import JOINT_LIMITS, compute_metrics
 from iiwa_dnn.results.plots import CAPTIONS, save_figures
 from iiwa_dnn.results.record import Record
-
-Row = tuple[str, str, str]
-"""Quantity, value and unit."""
 
 _RESULTS = (
     ("largest position error", "max_position_error_m", "m"),
@@ -77,23 +74,18 @@ def save_run(
     write_json(folder / "metrics.json", metrics)
     figures = save_figures(record, folder) if plots else []
     figures += more(record, folder) if more is not None else []
-    write_report(metrics, folder, figures, paper)
+    write_text(folder / "report.md", report(metrics, figures, paper))
     return metrics
 
 
-def write_report(
+def report(
     metrics: Mapping[str, Any],
-    folder: str | os.PathLike[str],
     figures: Iterable[Path] = (),
     paper: Mapping[str, float] | None = None,
-) -> Path:
-    """Write report.md into a folder that exists, and return the file.
+) -> str:
+    """Write a report in Markdown, with the PNG files among the figures, which lie beside it.
 
-    Every number in it is one of the metrics, or one of the paper's. It shows the PNG files among
-    the figures, which lie in that folder.
-
-    Raises:
-        FileError: If it cannot be written.
+    Every number in it is one of the metrics, or one of the paper's.
     """
     settings = metrics["settings"]
     shown = [(key, _text(value)) for key, value in settings.items() if value not in (None, [], {})]
@@ -109,9 +101,7 @@ def write_report(
         *(f"- {name}: {value}" for name, value in made(metrics["versions"]).items()),
         *(f"![{CAPTIONS[path.stem]}]({path.name})" for path in figures if path.suffix == ".png"),
     ]
-    path = Path(folder) / "report.md"
-    write_text(path, "\n\n".join(parts).replace("\n\n- ", "\n- ") + "\n")
-    return path
+    return "\n\n".join(parts).replace("\n\n- ", "\n- ") + "\n"
 
 
 def made(versions: Mapping[str, str]) -> dict[str, str]:
@@ -127,14 +117,15 @@ def made(versions: Mapping[str, str]) -> dict[str, str]:
 
 def summary(metrics: Mapping[str, Any]) -> str:
     """Sum up a run in aligned lines of ASCII, for the terminal, the verdict first."""
-    verdict = _verdict(metrics)
-    lines = list(zip(["verdict", *[""] * len(verdict)], verdict, strict=False))
+    lines = [("verdict", line) for line in _verdict(metrics)]
     lines += [(name, f"{value} {unit}") for name, value, unit in rows(metrics)]
     table = tabulate(lines, tablefmt="plain", disable_numparse=True)
     return re.sub(" +$", "", table, flags=re.MULTILINE).replace("²", "^2").replace("³", "^3")
 
 
-def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -> Iterator[Row]:
+def rows(
+    metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None
+) -> Iterator[tuple[str, str, str]]:
     """Yield the results of a run: quantity, value in words, and unit.
 
     Numbers that do not exist are left out, and counts of no steps.
@@ -154,16 +145,13 @@ def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -
         least = f"{_text(near['least_distance_m'])}, allowed {_text(near['allowed_m'])}"
         yield f"nearest pair: {near['second']} and {near['first']}", least, "m"
     for frame, errors in metrics.get("frames", {}).items():
-        yield f"largest position error, {frame}", _text(errors["max_position_error_m"]), "m"
-        angle = _text(errors["max_orientation_error_rad"])
-        yield f"largest orientation error, {frame}", angle, "rad"
+        for name, place, unit in _RESULTS:
+            if place in errors:
+                yield f"{name}, {frame}", _text(errors[place]), unit
     for verb, key in (("active", "active"), ("in the way", "blocking")):
-        limits = metrics.get("incidents", {}).get(key, ())
-        for limit in limits[:_MOST]:
-            steps = f"{counted(limit['steps'])}, from {_text(limit['time_s'])} s on"
-            yield f"{describe(limit)} {verb}", steps, ""
-        if len(limits) > _MOST:
-            yield f"further limits {verb}", str(len(limits) - _MOST), ""
+        for limit in metrics.get("incidents", {}).get(key, ())[:_MOST]:
+            since = f"{counted(limit['steps'])}, from {_text(limit['time_s'])} s on"
+            yield f"{describe(limit)} {verb}", since, ""
 
 
 def _at(metrics: Mapping[str, Any], place: str) -> Any:
@@ -176,12 +164,10 @@ def _at(metrics: Mapping[str, Any], place: str) -> Any:
 
 def _checked(check: Mapping[str, Any]) -> str:
     """State what was checked, by whom, and with what result."""
-    if check["solver"] == "none":
-        return "not asked for"
-    judges = " or ".join(check["judged_by"]) or check["solver"]
     if not check["judged"]:
-        return f"{judges}: {check['steps_checked']:,} own programs compared, not judged"
+        return f"{check['solver']}: {check['steps_checked']:,} own programs compared, not judged"
     counts = f"{check['disagreements']:,} disagreements, {check['reference_failures']:,} failures"
+    judges = " or ".join(check["judged_by"]) or check["solver"]
     return f"{judges}: {programs_checked(check)}, {counts}"
 
 
@@ -196,13 +182,11 @@ def _success(metrics: Mapping[str, Any]) -> str:
     """State the verdict on a run without failures, no stronger than the check."""
     check = metrics["crosscheck"]
     if not check["judged"]:
-        doubt = f"the gap to {check['solver']} is a lag, not judged"
-        nobody = "no reference solver was asked"
-        return f"completed within all limits; {nobody if check['solver'] == 'none' else doubt}"
-    agreed = f"in agreement with {' or '.join(check['judged_by'])}"
-    if check["solver"] == PROOF:
-        agreed = "proven"
-    return f"all {counted(metrics['steps'])} solved, within all limits and {agreed}"
+        return "completed within all limits; not judged by a reference"
+    judges = " or ".join(check["judged_by"])
+    return (
+        f"all {counted(metrics['steps'])} solved, within all limits and in agreement with {judges}"
+    )
 
 
 def _text(value: object) -> str:

@@ -165,10 +165,11 @@ def test_crosscheck_counts_only_what_is_believed():
         "tolerance": 1e-6,
         "first_disagreement": {
             "steps": 1, "step": 1, "time_s": pytest.approx(0.1), "solver": "osqp", "gap": 9e-6,
+            "tolerance": 1e-6,
         },
     }  # fmt: skip
     assert failures(record) == [
-        "step 1 (t = 0.1 s): osqp differs by 9e-06 rad/s, tolerance 1e-06; 1 step in all",
+        "step 1 (t = 0.1 s): the gap to osqp is 9e-06 rad/s, tolerance 1e-06; 1 step in all",
         "reference answers missing or not accurate enough to judge by: 2 (proxqp+osqp); "
         "the check 'proof' needs no other solver",
         "1 step of 6 not checked",
@@ -207,12 +208,12 @@ def test_what_is_not_proven_and_what_is_not_a_number_are_failures():
         1,
     )
     wrong, missing = failures(make_record(**fields))
-    assert wrong.startswith("step 5 (t = 0.5 s): proof differs by 0.001 rad/s, tolerance 1e-06")
+    assert wrong.startswith("step 5 (t = 0.5 s): the gap to proof is 0.001 rad/s, tolerance 1e-06")
     assert "to judge by: 1 (proof)" in missing
     record = sample(make_record(), "solution_gap", 3, np.nan)  # its residual is finite
     check = compute_metrics(record)["crosscheck"]
     assert (check["steps_checked"], check["disagreements"]) == (10, 1)
-    assert "step 3 (t = 0.3 s): proxqp differs by not a number rad/s" in failures(record)[0]
+    assert "step 3 (t = 0.3 s): the gap to proxqp is not a number rad/s" in failures(record)[0]
 
 
 def test_each_kind_of_program_is_counted_and_a_stopped_step_has_nothing_to_check():
@@ -236,7 +237,7 @@ def test_a_command_outside_of_its_steps_bounds_disagrees(value):
     check = compute_metrics(record)["crosscheck"]
     assert check["disagreements"] == 1
     assert check["first_disagreement"]["solver"] == "bounds"
-    assert "step 6 (t = 0.6 s): the command is " in failures(record)[0]
+    assert "step 6 (t = 0.6 s): the gap to bounds is " in failures(record)[0]
     assert "tolerance 1e-09; 1 step in all" in failures(record)[0]
     both = dataclasses.replace(record, solution_gap=np.where(np.arange(10) == 2, 1e-3, 0)[:, None])
     assert compute_metrics(both)["crosscheck"]["disagreements"] == 2
@@ -281,7 +282,7 @@ def test_the_policies_are_named_with_their_steps():
         blocking[: 8 - joint, joint] = 1
     half = slowed([0.4] * 8 + [1.0] * 2, blocking=blocking)  # 5.2 of 10 periods
     limits = "joint 1 upper position limit, joint 2 upper position limit, "
-    limits += "joint 3 upper position limit and 2 more"
+    limits += "joint 3 upper position limit"
     pace = "give the path 1.92 times the time (--period, --stretch) or more"
     assert failures(half)[1].endswith(f"in the way: {limits}; {pace}")
     lag = make_record(action=action, settings={"mode": "continuous"})
@@ -345,7 +346,7 @@ def test_clipped_steps_and_limits_in_the_way():
     assert incidents["first"] == {"steps": 1, "step": 6, "time_s": pytest.approx(0.6)}
     assert failures(record) == [
         "1 step without a solution (1 relaxed), the first at step 6 (t = 0.6 s); most often in the "
-        "way: row 1 of Obstacle, arm_a upper position limit, arm_a upper velocity limit and 1 more"
+        "way: row 1 of Obstacle, arm_a upper position limit, arm_a upper velocity limit"
     ]
 
 

@@ -16,7 +16,6 @@ pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
 pytestmark = needs_opengl
 
 from iiwa_dnn.results import pictures  # noqa: E402 - only where there is something to draw with
-from iiwa_dnn.results.pictures import ArmRenderer  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -110,7 +109,7 @@ def test_a_video_that_cannot_be_written_or_is_interrupted_leaves_the_old_one(
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(ArmRenderer, "draw", interrupt)
+    monkeypatch.setattr(pictures, "_add_line", interrupt)
     with pytest.raises(KeyboardInterrupt):
         pictures.save_video(robot, cut(record, 10), path)
     assert path.read_bytes() == b"old"

