@@ -217,16 +217,6 @@ def test_the_gradient_network_descends_at_the_smallest_eigenvalue() -> None:
     np.testing.assert_allclose(end - rest, expected, atol=1e-6)
 
 
-def test_an_activated_networks_stable_step_follows_its_speed() -> None:
-    qp, _ = known_qp(np.random.default_rng(5), 5, 2, 2, inequalities=2)
-    network = ActivatedNetwork(activation=FixedTime())
-    state = np.random.default_rng(5).standard_normal(network.state_size(qp))
-    size, base = np.linalg.norm(dual_rates(qp, state)), DualNetwork().stable_step(qp, state)
-    assert network.stable_step(qp, state) == pytest.approx(base / (size**-0.5 + size))
-    assert not network.carries_x
-    assert network.settings()["activation"]["name"] == "FixedTime"
-
-
 def test_the_yardsticks_iterations_are_osqps() -> None:
     network = AdmmIteration()
     qp, x = known_qp(np.random.default_rng(6), 6, 2, 2, inequalities=3)
@@ -263,8 +253,9 @@ def test_x_of_the_state_is_disturbed() -> None:
     solver.solve(qp)
     solver.disturb(np.full(4, 0.5))
     np.testing.assert_allclose(solver.state[:4], x + 0.5, atol=1e-6)
-    with pytest.raises(InvalidInputError, match="network"):
-        DNNSolver(DualNetwork()).disturb(np.zeros(4))
+    for network in (DualNetwork(), SOURCES["activated"][0]):
+        with pytest.raises(InvalidInputError, match="network"):
+            DNNSolver(network).disturb(np.zeros(4))
 
 
 @pytest.mark.parametrize(

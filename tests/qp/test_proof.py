@@ -7,7 +7,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-import qpsolvers
 
 import exact
 import programs
@@ -251,16 +250,8 @@ def test_a_certificate_is_proven_or_is_not() -> None:
     assert prove(problem, refuted).reason == "proven: no point satisfies the constraints"
     del refuted.extras["certificate"]
     assert prove(problem, refuted).reason == "there is no answer: primal infeasible"
-
-
-@pytest.mark.parametrize("solver", ["daqp", "proxqp"])
-def test_what_another_solver_calls_infeasible_is_said_in_words(solver: str) -> None:
-    rows = np.array([[1.0, 1.0], [-1.0, -1.0]])
-    problem = qpsolvers.Problem(np.eye(2), np.ones(2), rows, -np.ones(2))
-    proof = prove(problem, qpsolvers.solve_problem(problem, solver))
-    assert proof.bound == np.inf
-    assert proof.reason.startswith("there is no answer: no certificate either")
-    assert "solve_problem" in proof.reason
+    del refuted.extras["status"]  # as of another solver
+    assert "solve_problem looks for one" in prove(problem, refuted).reason
 
 
 def test_a_check_hands_the_proof_on() -> None:

@@ -110,9 +110,6 @@ def test_settings_say_how_to_make_it_again(reference: d.Reference) -> None:
             getattr(targets[3], name)[0] = 0.0
 
 
-# Each path by its formula
-
-
 def test_the_heart_is_the_papers_formula_and_starts_at_rest() -> None:
     a, period = 3.45e-3, 10.0  # the defaults
     expected = []

@@ -105,11 +105,9 @@ def test_a_state_or_a_point_of_another_size_is_refused(
 
 
 def test_integrators_and_networks_name_themselves() -> None:
-    assert ExplicitEuler(np.int64(8)).settings() == {"name": "ExplicitEuler", "substeps": 8}
-    assert ImplicitEuler(step=np.float64(0.5)).settings()["step"] == 0.5
+    counted = json.loads(json.dumps(ExplicitEuler(np.int64(8)).settings()))
+    assert counted == {"name": "ExplicitEuler", "substeps": 8}
     network = ProjectionNetwork(rho=np.float64(1e-4), primal_projection=False)
     assert json.loads(json.dumps(network.settings())) == {
         "name": "ProjectionNetwork", "rho": 1e-4, "primal_projection": False,
     }  # fmt: skip
-    assert Doubled().settings()["name"] == "Doubled"
-    json.dumps(ExplicitEuler(np.int64(8)).settings())
