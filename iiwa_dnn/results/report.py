@@ -148,8 +148,13 @@ def rows(
         for name, place, unit in _RESULTS:
             if place in errors:
                 yield f"{name}, {frame}", _text(errors[place]), unit
+    yield from _limits(metrics.get("incidents", {}))
+
+
+def _limits(incidents: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """Yield the limits that were active and those that were in the way, as `rows` does."""
     for verb, key in (("active", "active"), ("in the way", "blocking")):
-        for limit in metrics.get("incidents", {}).get(key, ())[:_MOST]:
+        for limit in incidents.get(key, ())[:_MOST]:
             since = f"{counted(limit['steps'])}, from {_text(limit['time_s'])} s on"
             yield f"{describe(limit)} {verb}", since, ""
 

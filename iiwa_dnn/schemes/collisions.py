@@ -74,35 +74,11 @@ def collision_rows(
     gradients = np.zeros((candidates, dof))
     limits = np.empty(candidates)
     slacks = np.empty(candidates)
-    limits[:] = np.inf
     slacks[:] = np.inf
     placed = np.empty((len(scene.bodies), 12))
     place_bodies(scene, step.placements, placed)
-    gain = min(scene.gain, step.rate)
-    travel = np.empty(dof)
-    for j in range(dof):
-        travel[j] = abs(step.last[j]) / step.rate
     for k in range(len(scene.pairs)):
-        contact = contact_of(scene, k, placed)
-        most = scene.pairs[k, SPEED] - gain * (contact.distance - scene.least - ROOM)
-        for j in range(dof):
-            most += abs(scene.radii[k, j]) * scene.dq_max[j]
-        if most <= 0.0:
-            continue
-        second = int(scene.pairs[k, SECOND])
-        ends = ends_of(scene, placed, second)
-        is_point = scene.bodies[second, HALF_LENGTH] == 0.0
-        eps = second_order(scene.moves, scene.radii, k, travel)
-        for at in range(1 if is_point else ENDS):
-            left = contact.distance + height_of(ends[at], contact) - scene.least - ROOM
-            row = ENDS * k + at
-            gradient = gradients[row]
-            limits[row] = gain * left - scene.pairs[k, SPEED]
-            fastest = _write_gradient(scene, step.jacobian, k, ends[at], contact.normal, gradient)
-            slacks[row] = limits[row] - fastest
-            limits[row] -= gain * eps
-            if left < eps and step.rate < np.inf:
-                limits[row] -= (step.rate - gain) * min(eps - left, eps)
+        _write_ends(step, scene, placed, k, gradients, limits, slacks)
     G[:] = 0.0
     h[:] = np.inf
     row = 0
@@ -114,6 +90,45 @@ def collision_rows(
                 G[row, j] = gradients[k, j]
             h[row] = limits[k]
             row += 1
+
+
+@compiled
+def _write_ends(
+    step: StepViews,
+    scene: SceneViews,
+    placed: Matrix,
+    k: int,
+    gradients: Matrix,
+    limits: Vector,
+    slacks: Vector,
+) -> None:
+    """Write gradients (c, n), right-hand sides (c,) and slacks (c,) of both ends of pair k.
+
+    A pair that is too far away for any velocity within the limits is left out.
+    """
+    contact = contact_of(scene, k, placed)
+    gain = min(scene.gain, step.rate)
+    travel = np.empty(step.q.size)
+    most = scene.pairs[k, SPEED] - gain * (contact.distance - scene.least - ROOM)
+    for j in range(step.q.size):
+        travel[j] = abs(step.last[j]) / step.rate
+        most += abs(scene.radii[k, j]) * scene.dq_max[j]
+    if most <= 0.0:
+        return
+    second = int(scene.pairs[k, SECOND])
+    ends = ends_of(scene, placed, second)
+    is_point = scene.bodies[second, HALF_LENGTH] == 0.0
+    eps = second_order(scene.moves, scene.radii, k, travel)
+    for at in range(1 if is_point else ENDS):
+        row = ENDS * k + at
+        left = contact.distance + height_of(ends[at], contact) - scene.least - ROOM
+        limits[row] = gain * left - scene.pairs[k, SPEED]
+        normal = contact.normal
+        fastest = _write_gradient(scene, step.jacobian, k, ends[at], normal, gradients[row])
+        slacks[row] = limits[row] - fastest
+        limits[row] -= gain * eps
+        if left < eps and step.rate < np.inf:
+            limits[row] -= (step.rate - gain) * min(eps - left, eps)
 
 
 @compiled
