@@ -19,12 +19,20 @@ from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.results.metrics import ACTIONS, orientation_error, position_error
 from iiwa_dnn.results.pictures import obstacles_of
+from iiwa_dnn.results.plots import envelope
 from iiwa_dnn.results.report import markdown_table
 from iiwa_dnn.robot.obstacles import outline
 from iiwa_dnn.robot.shapes import read_shapes
 
 PIECES = 300
-"""Straight pieces of a drawn path."""
+"""Straight pieces of a drawn path, points of the curve, and parts of the time bar."""
+
+_STYLE = """<style>
+[style*="max-height: 60%"] { max-height: 40% !important }
+[style*="max-height: 60%"], [style*="max-height: 60%"] [style*="width: 20em"] {
+    width: 100% !important }
+</style>"""
+"""On a phone viser's controls would cover 60 % of the height, and leave a strip beside them."""
 
 
 def view(
@@ -83,6 +91,7 @@ def serve(title: str, host: str, port: int) -> Any:
         raise InvalidInputError("--host, --port", problem, (host, port)) from error
     server = viser.ViserServer(host=host, port=port, label=title, verbose=False)
     server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
+    server.gui.add_html(_STYLE)
     server.scene.add_grid("/floor", width=3.0, height=3.0, cell_size=0.1, section_size=0.5)
     return server
 
@@ -102,12 +111,18 @@ def show_robot(server: Any, robot: Robot) -> Any:
 
 
 def aim(server: Any, point: Vector) -> None:
-    """Aim the cameras at the arm and a point in front of it (3,) [m]."""
+    """Aim the cameras at the arm and a point in front of it (3,) [m]; on a phone from afar."""
     middle = 0.6 * point + [0.0, 0.0, 0.2]
     # The first vector lies across the way from the base to the point.
     view = 1.6 * np.array([point[1], -point[0], 0.0]) + 0.4 * point + [0.0, 0.0, 0.4]
     server.initial_camera.look_at = tuple(middle)
     server.initial_camera.position = tuple(middle + view)
+
+    @server.on_client_connect  # type: ignore[untyped-decorator]
+    def step_back(client: Any) -> None:
+        if client.camera.aspect < 1.0:
+            client.camera.position = tuple(middle + 1.8 * view)
+            client.camera.look_at = tuple(middle - [0.0, 0.0, 0.4])
 
 
 def draw_path(server: Any, name: str, points: Matrix, color: tuple[int, int, int]) -> None:
@@ -125,6 +140,7 @@ class Replay:
         record: The run.
         playing: Checkbox: the time passes, and begins again at the end.
         clock: Slider: the present time of the record [s].
+        marks: Bar below it, red where a policy acted.
         speed: Menu: seconds of the record in a second.
         obstacles: Obstacles, and their meshes on the page.
     """
@@ -147,13 +163,37 @@ class Replay:
         end = max(float(record.t[-1]), 1e-6)
         self.playing = gui.add_checkbox("play", False)
         self.clock = gui.add_slider("time [s]", 0.0, end, 1e-3 * end, 0.0)
+        self.marks = gui.add_html(self._bar())
         self.speed = gui.add_dropdown("speed", ("0.1", "0.5", "1", "2", "5"), initial_value="1")
         verdict = failures(record) or ["completed within all limits"]
         gui.add_markdown("\n".join(f"- {line}" for line in verdict))
         self._readout = gui.add_markdown("")
         self._distances = np.linalg.norm(position_error(record), axis=1)
         self._angles = orientation_error(record)
+        self._add_curve()
         self.show()
+
+    def _bar(self) -> str:
+        """Return the bar of time, red where a policy acted."""
+        acts = envelope(self.record.t[:-1], self.record.filled("action"), PIECES)[3]
+        colors = np.where(acts > 0, "#d6001c", "#e5e7ec")
+        parts = "".join(f'<i style="flex:1;background:{color}"></i>' for color in colors)
+        return f'<div style="display:flex;height:6px;margin:0 1em">{parts}</div>'
+
+    def _add_curve(self) -> None:
+        """Draw the largest position error of each stretch of time, by its decimal logarithm."""
+        from viser import uplot  # of an extra
+
+        shown = np.maximum(self._distances, 1e-15)  # less is rounding
+        times, _, _, errors = envelope(self.record.t, shown, PIECES)
+        self.server.gui.add_uplot(
+            (times, np.log10(errors)),
+            (uplot.Series(), uplot.Series(stroke="#d6001c", width=1)),
+            scales={"x": uplot.Scale(time=False)},
+            title="position error, decimal logarithm [m]",
+            legend=uplot.Legend(show=False),
+            height=170,
+        )
 
     def tick(self, elapsed: float) -> None:
         """Let `elapsed` seconds pass, and show the state if the time has changed."""

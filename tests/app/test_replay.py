@@ -161,7 +161,32 @@ def test_hands_move_the_clock_and_play(browser: Any, replay: Replay) -> None:
     assert wait_for(lambda: not replay.playing.value, "the pause")
 
 
-def test_obstacles_stand_where_they_are(slowed: Record) -> None:
+@needs_browser
+def test_on_a_phone_the_arm_stands_above_the_controls(browser: Any, replay: Replay) -> None:
+    first = browser.current_window_handle
+    browser.switch_to.new_window("tab")
+    phone = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", phone)
+    browser.get(address(replay))
+    wait_for(lambda: sliders(browser), "the page's controls")
+    left, top, width = browser.execute_script(
+        "let part = document.querySelector('[role=slider]');"
+        "while (getComputedStyle(part).position !== 'fixed') part = part.parentElement;"
+        "let box = part.getBoundingClientRect(); return [box.left, box.top, box.width]"
+    )
+    assert top > 0.59 * 844  # the scene has more than half
+    assert (left, width) == (0, 390)  # and no strip beside the controls
+
+    def seen() -> bool:
+        rows, columns = np.nonzero(arm(picture(browser)[: int(top)]))
+        return len(rows) > 100 and bool(columns.min() > 0 and columns.max() < 389)
+
+    assert wait_for(seen, "the whole arm above the controls")
+    browser.close()
+    browser.switch_to.window(first)
+
+
+def test_obstacles_stand_where_they_are_and_slowed_stretches_are_marked(slowed: Record) -> None:
     page = Replay(papers_robot(), slowed, port=0)
     try:
         drawn = dict(page.obstacles)
@@ -174,6 +199,11 @@ def test_obstacles_stand_where_they_are(slowed: Record) -> None:
         sphere = ball.vertices - [0.5, -0.45, 0.35]
         np.testing.assert_allclose(np.linalg.norm(sphere, axis=1), 0.05, 1e-5)
         np.testing.assert_allclose(np.ptp(box.vertices, axis=0), 0.2, 1e-5)
+        marks = re.findall("background:(#[0-9a-f]+)", page.marks.content)
+        red = np.flatnonzero([color == "#d6001c" for color in marks]) / len(marks)
+        acted = np.flatnonzero(slowed.action) / slowed.steps
+        assert 0.05 < len(red) / len(marks) < 0.95
+        np.testing.assert_allclose(red[[0, -1]], acted[[0, -1]], atol=1.0 / len(marks))
     finally:
         page.server.stop()
 
