@@ -62,7 +62,7 @@ BOUNDS = ("position", "speed", "lower", "upper", "velocity")
 
 CHECKS = {"both": ("proxqp", "osqp"), "none": ()}
 PLANTS: Choices = {"ideal": IdealPlant, "mujoco": MujocoPlant}
-PATHS: Choices = {
+PATHS: dict[str, Callable[..., Any]] = {
     "heart": Heart,
     "circle": Circle,
     "line": Line,
@@ -90,7 +90,7 @@ WORDS: dict[str, tuple[str, Any, str, str]] = {
     ),
     "robot": ("robot.name", str | None, "NAME", "iiwa7, panda, ... or a URDF file (iiwa7)"),
     "tip": ("robot.tip", str | None, "FRAME", "frame that follows the path"),
-    "lock": ("robot.locked", tuple[str, ...] | None, "JOINT ...", "joints held still"),
+    "lock": ("robot.locked", tuple[str, ...] | None, "JOINT ...", "joints held still; after PATH"),
     "q0": ("robot.q0", tuple[float, ...] | None, "X ...", "joint positions at the start [rad]"),
     "reference": ("reference.name", str | None, "NAME", "the path, as PATH"),
     "scale": (
@@ -368,8 +368,8 @@ def build(tables: Tables) -> Tables:
     q0 = checks.finite_array("q0", table.get("q0", sheet.start_posture()), (robot.dof,))
     table |= {"name": table.get("name", "iiwa7"), "q0": q0.tolist()}
     name = tables["reference"].setdefault("name", "heart")
-    is_file = str(name).lower().endswith(".csv")
-    paths = {name: partial(Waypoints.from_csv, name)} if is_file else PATHS
+    file = name if str(name).lower().endswith(".csv") else "FILE.csv"
+    paths = PATHS | {file: partial(Waypoints.from_csv, file)}
     reference = choose(paths, "reference", tables["reference"])
     if getattr(reference, "quaternions", None) is None:
         reference = reference.anchored(Configuration(robot, q0))

@@ -31,6 +31,23 @@ _FILES = (
     "README.md",
 )
 
+_TARGETS = {
+    "call": "controller_step",
+    "input": "target",
+    "numbers": "18 * CONTROLLER_FRAMES",
+    "input_words": "`target` has 18 numbers for each tracked frame:\nposition [m], rotation row "
+    "by row, linear velocity [m/s], angular velocity [rad/s], along the axes\nof the robot's base.",
+}
+_WISHES = {
+    "call": "shield_step",
+    "input": "wish",
+    "numbers": "CONTROLLER_DOF",
+    "target": "0.0",
+    "sample": "        wish[0] = 0.1; /* where wishes come from */\n",
+    "input_words": "`wish` is the joint velocity to come near\n[rad/s], NULL for no new one.",
+}
+"""What a step takes beside joint positions: the texts about a controller, and about a shield."""
+
 
 def c99(
     controller: Controller | Shield,
@@ -63,6 +80,7 @@ def c99(
     rows = run(twin, start.q, STEPS)
     folder = prepare_folder(folder)
     texts |= _texts(twin, start, rows[0], texts["has_reference"])
+    texts |= _TARGETS if shield is None else _WISHES
     counts = {"q": texts["dof"], "target": 18 * texts["frames"], "dq": texts["dof"]}
     names = [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
     write_csv(folder / "vectors.csv", ["t", *names, "action"], rows)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from iiwa_dnn.files import percent
-from iiwa_dnn.naming import describe
+from iiwa_dnn.naming import KINDS, describe
 from iiwa_dnn.results.metrics import JOINT_LIMITS, compute_metrics
 from iiwa_dnn.results.record import Record
 
@@ -95,10 +95,11 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
     if not done:
         return
     counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items())
-    pose = "no bound, a singular pose or tasks against each other"
+    pose = "no bound: a singular pose, a path out of reach or tasks against each other"
     blocking = ", ".join(map(describe, incidents["blocking"][:3])) or pose
     advice = ""
-    if "slowed" in done and incidents["path_time_s"]:
+    too_quick = any(limit.get("limit") in KINDS[1:] for limit in incidents["blocking"][:1])
+    if too_quick and "slowed" in done and incidents["path_time_s"]:
         pace = _show(metrics["duration_s"] / incidents["path_time_s"])
         advice = f"; give the path {pace} times the time (--period, --stretch) or more"
     yield (

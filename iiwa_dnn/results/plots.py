@@ -186,9 +186,11 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
         _draw_curve(axes, t, curve, color=colors[joint], linestyle=dashes, label=label)
     low, high = axes.get_ylim()
     margin = 0.15 * (high - low)  # a limit farther off would only flatten the curves
-    for i, joint in np.argwhere((low - margin <= bounds) & (bounds <= high + margin)):
+    near = np.argwhere((low - margin <= bounds) & (bounds <= high + margin))
+    for (i, joint), label in zip(near, ["limit", *["_"] * len(near)], strict=False):
         color = colors[joint] if np.ptp(bounds[i]) else "0.0"
-        axes.axhline(bounds[i, joint], color=color, linewidth=0.8, linestyle=(0, (8, 3)))
+        line = axes.axhline(bounds[i, joint], linewidth=0.8, linestyle=(0, (8, 3)))
+        line.set(color=color, label=label)
     label_time(axes, record, quantity, columns=4 if max(map(len, names)) < 8 else 2)
 
 

@@ -24,7 +24,7 @@ _RESULTS = (
     ("mean squared position error", "mse_position_error_m2", "m²"),
     ("largest orientation error", "max_orientation_error_rad", "rad"),
     ("joint drift, start to end", "joint_drift_rad", "rad"),
-    ("largest kinetic index", "max_kinetic_index", "rad²/s², with inertia J"),
+    ("largest kinetic index", "max_kinetic_index", "rad²/s² (J if G is the inertia)"),
     ("wall time", "wall_time_s", "s"),
     ("time simulated / wall time", "realtime_factor", ""),
     ("largest KKT residual", "max_kkt_residual", ""),
@@ -220,4 +220,4 @@ def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Lay out a table of texts in Markdown, its cells made fit to stand in one."""
     cells = [[" ".join(str(text).split()).replace("|", "\\|") for text in row] for row in rows]
     table = tabulate(cells, head, "pipe", disable_numparse=True)
-    return re.sub("  +", " ", re.sub("--+", "---", table))  # without the padding
+    return re.sub("  +", " ", re.sub(r"(?<=\|):?-+(?=\|)", ":---", table))  # without the padding

@@ -1,6 +1,5 @@
 """The recorder of a run: collects the outcomes of a loop and makes the arrays of a record."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,7 +8,6 @@ from numpy.typing import NDArray
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL
@@ -35,20 +33,16 @@ class Recorder:
         infeasible: A step of the continuous mode that was shown to have no solution; None: none.
     """
 
-    def __init__(
-        self, steps: int, controller: Controller, q0: Vector, settings: Mapping[str, Any]
-    ) -> None:
+    def __init__(self, steps: int, controller: Controller, q0: Vector) -> None:
         """Allocate for so many steps.
 
         Args:
             steps: Steps of the whole run.
             controller: The controller.
             q0: Joint positions at the start [rad], (n,).
-            settings: Settings of the run, with its inequality rows.
         """
         program = controller.program
         self._controller = controller
-        self._settings = settings
         self._steps = steps
         further = program.target_frames[1:]
         self._frame_ids = [program.robot.frame_id(name) for name in further]
@@ -146,15 +140,6 @@ class Recorder:
             name: array[: self._done + (COLUMNS[name].shape[0] == "N+1")]
             for name, array in self.arrays.items()
         }
-
-    def stop_reason(self) -> str:
-        """Describe the limits that stood in the way when a policy stopped the arm."""
-        stops = self._array("action") == Action.STOP
-        k = int(stops.argmax())
-        none = np.zeros((k + 1, len(self._settings["rows"])))
-        rows = self.arrays.get("blocking_rows", none)[k]
-        against = in_the_way(self._settings, self._array("blocking")[k], rows)
-        return f", against {', '.join(map(describe, against))}" if against else ""
 
     def _array(self, name: str, **sizes: int) -> NDArray[Any]:
         """Return a column, allocated when it is first asked for."""

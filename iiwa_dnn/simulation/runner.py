@@ -17,12 +17,11 @@ from iiwa_dnn.control.paths import References, by_frame
 from iiwa_dnn.control.policies import Policy
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.crosscheck import CrossCheck
+from iiwa_dnn.qp.crosscheck import CheckPool, CrossCheck
 from iiwa_dnn.results.record import RATES, Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import collision_arrays, collision_settings
-from iiwa_dnn.simulation.judgement import Judgement
 from iiwa_dnn.simulation.loop import Loop
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
 from iiwa_dnn.simulation.noise import NoiseEntry, SignalChain
@@ -130,17 +129,19 @@ def simulate(
         **plant.start(robot, start.q, controller.dt, seed),
     }
     loop = Loop(controller, plant, chain, MOTIONS[motion], start.q)
-    recorder = Recorder(steps, controller, loop.q, settings)
+    recorder = Recorder(steps, controller, loop.q)
     progress(0)
     stages = MOTIONS[motion].stages
-    with Judgement(check, steps, stages, controller.layout) as judgement:
-        for first in range(0, steps, BLOCK):
-            taken = loop.run(first, min(BLOCK, steps - first), recorder.observe)
-            judgement.submit(recorder.flush())
-            progress(taken)
-            if recorder.last_step is not None:
-                break
-        agreement = judgement.finish()
+    pool = CheckPool(check, steps * stages)
+    layout = controller.layout
+    for first in range(0, steps, BLOCK):
+        taken = loop.run(first, min(BLOCK, steps - first), recorder.observe)
+        rows = recorder.flush()
+        pool.submit(layout.view(rows, "program"), layout.sizes, layout.view(rows, "point"))
+        progress(taken)
+        if recorder.last_step is not None:
+            break
+    agreement = pool.finish().worst_of(stages)
     columns = recorder.finish()
     return Record(
         **columns,
@@ -224,13 +225,9 @@ def _status(recorder: Recorder, controller: Controller, fault: str | None) -> st
     k = recorder.last_step
     if k is None:
         return COMPLETED
-    where = f"stopped at step {k} (t = {k * controller.dt:g} s)"
-    if fault is not None:
-        return f"{where}: {fault}"
-    against = recorder.stop_reason()
-    if controller.mode == "continuous" and not against:
-        return f"{where}: the network diverged: take a smaller dt, larger rho or more substeps"
-    return f"{where}: no solution{against}"
+    diverged = "the network diverged: take a smaller dt, larger rho or more substeps"
+    reason = fault or (diverged if controller.mode == "continuous" else "no solution")
+    return f"stopped at step {k} (t = {k * controller.dt:g} s): {reason}"
 
 
 def _reference_settings(reference: References | None) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers_export import run
 from iiwa_dnn import Robot, Shield, Sphere, export, load_robot
 
 DT = 1e-3
@@ -42,6 +43,14 @@ def test_the_c_of_a_shield_gives_its_commands(
         q = q + DT * command.dq
         if k == 700:
             q = q + 0.05  # further than the tracking error
+
+
+def test_the_example_asks_the_shield(tmp_path: Path) -> None:
+    export.c99(Shield(SMOOTH, DT), tmp_path, START)
+    run("make", "example", "CFLAGS=-O0", cwd=tmp_path)
+    turned = float(run(tmp_path / "example").split()[2]) - START[0]
+    assert turned == pytest.approx(0.1, abs=2e-3)  # 0.1 rad/s for 1 s, less the time to start
+    assert "wish" in (tmp_path / "README.md").read_text(encoding="utf-8")
 
 
 def test_a_halt_in_c_lasts(tmp_path: Path) -> None:

@@ -274,17 +274,19 @@ def test_the_policies_are_named_with_their_steps():
     action = np.array([0, 0, 0, 2, 3, 4, 2, 0, 0, 0])
     assert failures(make_record(action=action, fraction=np.ones(10))) == [
         "4 steps without a solution (2 slowed, 1 relaxed, 1 stopped), the first at step 3 "
-        "(t = 0.3 s); most often in the way: no bound, a singular pose or tasks against each "
-        "other; give the path 1 times the time (--period, --stretch) or more",
+        "(t = 0.3 s); most often in the way: no bound: a singular pose, a path out of "
+        "reach or tasks against each other",
     ]
     blocking = np.zeros((10, 7), int)
     for joint in range(5):
-        blocking[: 8 - joint, joint] = 1
+        blocking[: 8 - joint, joint] = 2
     half = slowed([0.4] * 8 + [1.0] * 2, blocking=blocking)  # 5.2 of 10 periods
-    limits = "joint 1 upper position limit, joint 2 upper position limit, "
-    limits += "joint 3 upper position limit"
+    limits = "joint 1 upper velocity limit, joint 2 upper velocity limit, "
+    limits += "joint 3 upper velocity limit"
     pace = "give the path 1.92 times the time (--period, --stretch) or more"
     assert failures(half)[1].endswith(f"in the way: {limits}; {pace}")
+    out_of_reach = slowed([0.4] * 8 + [1.0] * 2, blocking=np.minimum(blocking, 1))
+    assert failures(out_of_reach)[1].endswith("joint 3 upper position limit")
     lag = make_record(action=action, settings={"mode": "continuous"})
     assert failures(lag) == []
 

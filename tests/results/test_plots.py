@@ -129,7 +129,7 @@ def test_curves_are_told_apart_without_colour_and_by_their_joints_names(heart):
     assert all(one != other for one, other in pairwise(dashes))
     named = heart.settings | {"joints": [f"arm_{letter}_joint" for letter in "abcdefg"]}
     axes = axes_of(draw_joints, dataclasses.replace(heart, settings=named), "q")
-    assert axes.get_legend_handles_labels()[1] == [*"abcdefg"]
+    assert axes.get_legend_handles_labels()[1] == [*"abcdefg", "limit"]
 
 
 def test_each_limit_near_the_curves_has_the_color_of_its_joint(heart):

@@ -158,8 +158,6 @@ def test_refusals(changes, words):
         {"kind": None},  # a file of before
         {"dq": np.zeros((3, 7))},
         {"settings": np.array("not json")},
-        {"settings": np.array("[1]")},
-        {"settings": np.array("{}")},
         {"q": np.full((41, 7), "x")},
         {"q": np.array([object()], dtype=object)},
     ],

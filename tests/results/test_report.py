@@ -52,7 +52,7 @@ def test_the_reports_numbers_are_the_metrics(run):
     for row, name, unit in [
         ("mean squared position error", "mse_position_error_m2", "m²"),
         ("largest orientation error", "max_orientation_error_rad", "rad"),
-        ("largest kinetic index", "max_kinetic_index", "rad²/s², with inertia J"),
+        ("largest kinetic index", "max_kinetic_index", "rad²/s² (J if G is the inertia)"),
         ("wall time", "wall_time_s", "s"),
     ]:
         assert float(table[row][0]) == pytest.approx(metrics[name], rel=1e-3), row
