@@ -1,7 +1,5 @@
 """The check can fail at every step that yields: a command other than the answer disagrees."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -58,9 +56,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("arm", "limits", "policy"), CASES)
-def test_solvers_and_the_proof_agree_with_an_answer_and_with_no_other(
-    arm: str, limits: str, policy: Policy
-) -> None:
+def test_solvers_and_the_proof_agree_with_an_answer_and_with_no_other(arm, limits, policy) -> None:
     layout, rows = yielding_steps(arm, limits, policy)
     programs = np.ascontiguousarray(layout.view(rows, "program"))
     points = np.ascontiguousarray(layout.view(rows, "point"))

@@ -1,7 +1,5 @@
 """Clipped commands: the nearest velocity within the bounds and the inequality rows."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal

@@ -1,7 +1,5 @@
 """A controller: its steps are their parts, one after the other, in every loop and mode."""
 
-from __future__ import annotations
-
 import copy
 import warnings
 from typing import Any
@@ -122,9 +120,7 @@ class Asked(d.DNNSolver):
 @pytest.mark.parametrize("substeps", [None, 5])
 @pytest.mark.parametrize("mode", ["converged", "continuous"])
 @pytest.mark.parametrize("scheme", SCHEMES.values(), ids=SCHEMES.keys())
-def test_a_compiled_step_is_its_parts_one_after_the_other(
-    scheme: d.Scheme, mode: Any, substeps: int | None
-) -> None:
+def test_a_compiled_step_is_its_parts_one_after_the_other(scheme, mode, substeps) -> None:
     follower = d.ExplicitEuler(substeps)
     robot = paper_robot()
     compiled, asked = (

@@ -1,7 +1,5 @@
 """The Kalman filter against a batch least-squares solution, and against the noise it is for."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The moving average against numpy's mean over the paper's window."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Steps without a solution: which program is answered, and that limits hold in it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -149,9 +147,7 @@ def test_a_joint_outside_its_limits_comes_back_whatever_the_task_says(policy: Po
 
 @pytest.mark.parametrize("policy", ["slow", "relax"])
 @pytest.mark.parametrize("h", [1.0, 1e-3, 0.0, -0.5, -2.0, -5.0])
-def test_a_wall_is_kept_and_a_row_that_asks_for_motion_gets_what_the_joints_can(
-    policy: Policy, h: float
-) -> None:
+def test_a_wall_is_kept_and_a_row_that_asks_for_motion_gets_what_the_joints_can(policy, h) -> None:
     """Both joints together retreat by 2 at most, and the task pushes the other way."""
     command = decide(two_joints(12.0, G=[[1.0, 1.0]], h=[h]), policy)
     assert command.action in (Action.SLOW, Action.RELAX)
@@ -179,9 +175,7 @@ def test_limits_that_contradict_each_other_stop_the_arm(policy: Policy) -> None:
     [(0.2, ProgramKind.SCALED), (0.04, ProgramKind.SOFTENED)],
     ids=["no singular pose", "the joints race, and the tip hardly moves"],
 )
-def test_slow_softens_where_the_joints_race_for_next_to_nothing(
-    row: float, kind: ProgramKind
-) -> None:
+def test_slow_softens_where_the_joints_race_for_next_to_nothing(row, kind) -> None:
     qp = d.QP(np.eye(1), np.zeros(1), A=[[row]], b=[1.5 * row], lb=[-1.0], ub=[1.0])
     command = decide(qp, "slow")
     assert (command.action, command.kind) == (Action.SLOW, kind)

@@ -1,7 +1,5 @@
 """Arguments that make no sense are named in one line, and change nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A shield gives the wish itself where the limits admit it, and the nearest safe command else."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -40,9 +38,7 @@ def limits_broken(path: np.ndarray, robot: d.Robot) -> list[Any]:
 
 @pytest.mark.parametrize("robot", [PLAIN, ROBOT, SMOOTH])
 @pytest.mark.parametrize("obstacles", [None, [BALL]])
-def test_an_admissible_wish_goes_through_to_the_last_bit(
-    robot: d.Robot, obstacles: list[d.Sphere] | None
-) -> None:
+def test_an_admissible_wish_goes_through_to_the_last_bit(robot, obstacles) -> None:
     """A slow sum of sines from rest breaks no limit, and stays away from all of them."""
     shield = d.Shield(robot, DT, obstacles)
     random = np.random.default_rng(0)
@@ -183,9 +179,7 @@ def test_an_arm_that_is_pressed_into_a_corner_leaves_it() -> None:
         ({}, "wish too old"),
     ],
 )
-def test_without_a_wish_the_arm_brakes_and_goes_on_without_a_jump(
-    wish: dict[str, Any], reason: str
-) -> None:
+def test_without_a_wish_the_arm_brakes_and_goes_on_without_a_jump(wish, reason) -> None:
     shield = d.Shield(SMOOTH, DT, timeout=0.05)
     speed = np.full(7, 0.2)
     begun, _ = drive(shield, 300, dq=speed)

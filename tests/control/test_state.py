@@ -1,7 +1,5 @@
 """The controller's state: nothing that is set, interrupted, copied or pickled makes it forget."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 import signal

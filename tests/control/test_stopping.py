@@ -1,7 +1,5 @@
 """A command is given only if the arm can still stop from it, clear of all that is near."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -148,9 +146,7 @@ BOTH = pytest.mark.parametrize("limits", [ACCELERATION, JERK], ids=["acceleratio
 
 @BOTH
 @pytest.mark.parametrize("obstacle", [WALL, BALL], ids=["wall", "ball"])
-def test_an_arm_pressed_against_an_obstacle_stays_clear_and_comes_back(
-    limits: tuple[d.Limit, ...], obstacle: Any
-) -> None:
+def test_an_arm_pressed_against_an_obstacle_stays_clear_and_comes_back(limits, obstacle) -> None:
     # The wall was entered by 30 mm, and the arm stayed there for good.
     avoidance = beside(0.02, obstacle)
     steps = 1800
@@ -190,9 +186,7 @@ def test_an_arm_that_obstacles_came_upon_goes_away_from_them(limits: tuple[d.Lim
 
 
 @BOTH
-def test_an_arm_beside_which_an_obstacle_lies_goes_away_from_it(
-    limits: tuple[d.Limit, ...],
-) -> None:
+def test_an_arm_beside_which_an_obstacle_lies_goes_away_from_it(limits) -> None:
     # A hand along a capsule stayed there: its nearest point went away, others came nearer.
     robot = d.load_robot("panda").with_limits(acceleration=10.0)
     q = np.array([0.505, -0.875, 0.621, -2.218, 0.223, 1.534, 1.903])
@@ -242,9 +236,7 @@ def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:
         ([-1.0, -1.0], [-1.0, 0.5], 0.05 * 0.1 + 2.0 * 0.2 * 0.1),
     ],
 )
-def test_joints_that_slide_and_turn_bend_a_way(
-    moves: list[float], radii: list[float], expected: float
-) -> None:
+def test_joints_that_slide_and_turn_bend_a_way(moves, radii, expected) -> None:
     travel = np.array([0.2, 0.1])
     found = second_order(np.array([moves]), np.array([radii]), 0, travel)
     assert found == pytest.approx(expected)

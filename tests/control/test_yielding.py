@@ -1,7 +1,5 @@
 """Every command keeps acceleration and jerk limits, whatever asked for it; the path yields."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -93,9 +91,7 @@ def test_near_a_singular_pose_a_path_that_fits_is_caught_up_with() -> None:
 
 
 @pytest.mark.parametrize("limits", [(), (d.AccelerationLimits(10.0), d.JerkLimits(300.0))])
-def test_a_joint_at_its_velocity_limit_leaves_no_path_slowed_that_fits(
-    limits: tuple[d.Limit, ...],
-) -> None:
+def test_a_joint_at_its_velocity_limit_leaves_no_path_slowed_that_fits(limits) -> None:
     """The other joints do what joint 1 cannot; it was 0.2 % too slow in all 600 steps."""
     home = paper_robot().start_posture()
     fastest = paper_robot().dq_max.copy()
@@ -164,9 +160,7 @@ def test_commands_that_something_alters_keep_the_limits(options: dict[str, objec
 
 
 @pytest.mark.parametrize("limits", [(), LIMITS[:1]], ids=["none", "acceleration"])
-def test_a_stopped_arm_goes_on_where_the_task_has_a_solution_again(
-    limits: tuple[d.Limit, ...],
-) -> None:
+def test_a_stopped_arm_goes_on_where_the_task_has_a_solution_again(limits) -> None:
     start = paper_start()
     scheme = d.DoubleIndicator(extra_limits=limits)
     controller = d.Controller(paper_robot(), scheme, policy="stop")

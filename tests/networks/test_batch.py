@@ -42,11 +42,7 @@ def test_what_lacks_the_leading_axis_is_shared() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("P", np.diag([1.0, 1.0, -1e-3])),
-        *[(name, np.nan) for name in FIELDS],
-    ],
+    ("name", "value"), [("P", np.diag([1.0, 1.0, -1e-3])), *[(name, np.nan) for name in FIELDS]]
 )
 def test_a_bad_program_is_never_found_and_spoils_no_other(name: str, value: object) -> None:
     rng = np.random.default_rng(2)

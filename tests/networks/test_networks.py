@@ -9,24 +9,8 @@ import pytest
 from scipy import sparse
 from scipy.integrate import solve_ivp
 
-import iiwa_dnn
+import iiwa_dnn as d
 from helpers_qp import known_qp, network_rates
-from iiwa_dnn import (
-    QP,
-    ActivatedNetwork,
-    DNNSolver,
-    DualNetwork,
-    ExplicitEuler,
-    GradientNetwork,
-    ImplicitEuler,
-    InvalidInputError,
-    Network,
-    OneLayerNetwork,
-    PrimalDualNetwork,
-    ProjectionNetwork,
-    SimplifiedDualNetwork,
-    ZeroingNetwork,
-)
 from iiwa_dnn.networks import NoiseSuppressingNetwork
 from iiwa_dnn.networks.activations import FixedTime
 from iiwa_dnn.networks.admm import AdmmIteration
@@ -35,7 +19,7 @@ from iiwa_dnn.networks.primal_dual import variational
 Array = np.ndarray
 
 
-def dual_rates(qp: QP, u: Array) -> Array:
+def dual_rates(qp: d.QP, u: Array) -> Array:
     """Zhang, Wang and Xia's equations, row by row."""
     rows = [*qp.A, *qp.G, *np.eye(qp.q.size)]
     lower = [*qp.b, *[-np.inf] * qp.h.size, *qp.lb]
@@ -45,7 +29,7 @@ def dual_rates(qp: QP, u: Array) -> Array:
     return np.minimum(np.maximum(values - u, lower), upper) - values
 
 
-def simplified_dual_rates(qp: QP, u: Array) -> Array:
+def simplified_dual_rates(qp: d.QP, u: Array) -> Array:
     """x of a state minimises the cost less u^T E x on the equalities: one linear system."""
     n, m, p = qp.sizes
     rows = np.vstack([qp.G, np.eye(n)])
@@ -55,20 +39,20 @@ def simplified_dual_rates(qp: QP, u: Array) -> Array:
     return np.clip(rows @ x - u, lower, upper) - rows @ x
 
 
-def products(qp: QP, u: Array) -> tuple[Array, Array, Array]:
+def products(qp: d.QP, u: Array) -> tuple[Array, Array, Array]:
     """H u + c of the variational inequality, part by part."""
     n, _, p = qp.sizes
     x, y, z = u[:n], u[n : n + p], u[n + p :]
     return qp.P @ x + qp.q + qp.A.T @ y + qp.G.T @ z, qp.b - qp.A @ x, qp.h - qp.G @ x
 
 
-def projected(qp: QP, u: Array, alpha: float) -> Array:
+def projected(qp: d.QP, u: Array, alpha: float) -> Array:
     n, _, p = qp.sizes
     aim = u - alpha * np.concatenate(products(qp, u))
     return np.r_[np.clip(aim[:n], qp.lb, qp.ub), aim[n : n + p], np.maximum(aim[n + p :], 0.0)]
 
 
-def primal_dual_rates(qp: QP, u: Array) -> Array:
+def primal_dual_rates(qp: d.QP, u: Array) -> Array:
     """Zhang, Ge and Lee's equations, with (I + H^T) e written out."""
     n, _, p = qp.sizes
     e = projected(qp, u, 1.0) - u
@@ -77,7 +61,7 @@ def primal_dual_rates(qp: QP, u: Array) -> Array:
     return e + np.concatenate(turned)
 
 
-def one_layer_rates(qp: QP, u: Array, corrected: bool = True) -> Array:
+def one_layer_rates(qp: d.QP, u: Array, corrected: bool = True) -> Array:
     """Xia and Wang's equation, and Tseng's correction."""
     alpha = 0.5 / np.linalg.norm(variational(qp)[0], 2)
     v = projected(qp, u, alpha)
@@ -85,30 +69,30 @@ def one_layer_rates(qp: QP, u: Array, corrected: bool = True) -> Array:
     return v - u + (alpha * change if corrected else 0.0)
 
 
-def activated_rates(qp: QP, u: Array) -> Array:
+def activated_rates(qp: d.QP, u: Array) -> Array:
     inner = dual_rates(qp, u)
     size = np.linalg.norm(inner)
     return inner / size * (size**0.5 + size**2)
 
 
-SOURCES: dict[str, tuple[Network, Callable[..., Array]]] = {
-    "projection": (ProjectionNetwork(), network_rates),
+SOURCES: dict[str, tuple[d.Network, Callable[..., Array]]] = {
+    "projection": (d.ProjectionNetwork(), network_rates),
     "free": (
-        ProjectionNetwork(primal_projection=False),
+        d.ProjectionNetwork(primal_projection=False),
         lambda qp, u: network_rates(qp, u, project=False),
     ),
-    "dual": (DualNetwork(), dual_rates),
-    "simplified dual": (SimplifiedDualNetwork(), simplified_dual_rates),
-    "primal-dual": (PrimalDualNetwork(), primal_dual_rates),
-    "one-layer": (OneLayerNetwork(), one_layer_rates),
+    "dual": (d.DualNetwork(), dual_rates),
+    "simplified dual": (d.SimplifiedDualNetwork(), simplified_dual_rates),
+    "primal-dual": (d.PrimalDualNetwork(), primal_dual_rates),
+    "one-layer": (d.OneLayerNetwork(), one_layer_rates),
     "uncorrected": (
-        OneLayerNetwork(corrected=False),
+        d.OneLayerNetwork(corrected=False),
         lambda qp, u: one_layer_rates(qp, u, corrected=False),
     ),
-    "activated": (ActivatedNetwork(activation=FixedTime()), activated_rates),
+    "activated": (d.ActivatedNetwork(activation=FixedTime()), activated_rates),
 }
 OTHERS = ["dual", "primal-dual"]
-LINEAR = QP(np.diag([1.0, 2.0, 4.0]), [1.0, -1.0, 0.5], A=[[1.0, 1.0, 1.0]], b=[0.5])
+LINEAR = d.QP(np.diag([1.0, 2.0, 4.0]), [1.0, -1.0, 0.5], A=[[1.0, 1.0, 1.0]], b=[0.5])
 MATRIX = np.block([[LINEAR.P, LINEAR.A.T], [LINEAR.A, np.zeros((1, 1))]])
 
 
@@ -142,7 +126,7 @@ def test_derivatives_by_finite_differences(name: str) -> None:
 
 def test_at_rest_exactly_at_kkt_points(name: str) -> None:
     rng, (network, reference) = np.random.default_rng(2), SOURCES[name]
-    solver = DNNSolver(getattr(network, "network", network))
+    solver = d.DNNSolver(getattr(network, "network", network))
     for case in range(20):
         qp, x = known_qp(rng, 6, 2, case % 7, inequalities=3)
         solver.reset()
@@ -167,13 +151,13 @@ def end_of_flow(name: str) -> Array:
 
 
 @pytest.mark.parametrize("case", ["projection", "free", *OTHERS])
-@pytest.mark.parametrize("integrator", [ExplicitEuler, ImplicitEuler])
+@pytest.mark.parametrize("integrator", [d.ExplicitEuler, d.ImplicitEuler])
 def test_order_by_regression_against_scipy(case: str, integrator: type) -> None:
     network, exact = SOURCES[case][0], end_of_flow(case)
     counts, errors = np.array([400, 800, 1600]), []
     for count in counts:
-        explicit = integrator is ExplicitEuler
-        tried = ExplicitEuler(int(count)) if explicit else ImplicitEuler(1.0 / count)
+        explicit = integrator is d.ExplicitEuler
+        tried = d.ExplicitEuler(int(count)) if explicit else d.ImplicitEuler(1.0 / count)
         state = np.zeros(exact.size)
         tried.advance(network, MANY_BOUNDS, state, 1.0)
         errors.append(np.abs(state - exact).max())
@@ -189,26 +173,26 @@ def test_the_projection_networks_stable_step_separates_decay_from_growth() -> No
         root = rng.standard_normal((n, n))
         P, A = root @ root.T / n + 0.2 * np.eye(n), rng.standard_normal((p, n))
         linear = np.block([[-P, -A.T], [A, np.zeros((p, p))]])
-        qp = QP(P, np.zeros(n), A=A, b=np.zeros(p))
-        step = ProjectionNetwork().stable_step(qp, np.zeros(3 * n + p))
+        qp = d.QP(P, np.zeros(n), A=A, b=np.zeros(p))
+        step = d.ProjectionNetwork().stable_step(qp, np.zeros(3 * n + p))
         spread = np.abs(np.linalg.eigvals(np.eye(n + p) + 0.999 * step * linear))
         assert spread.max() < 1.0
     # With P = I it is sharp: h sigma^2 < 1 (the paper's own analysis).
     A = np.diag([2.54, 1.0, 0.2, 0.0])[:3]
-    qp = QP(np.eye(4), np.zeros(4), A=A, b=np.zeros(3))
-    step = ProjectionNetwork().stable_step(qp, np.zeros(15))
+    qp = d.QP(np.eye(4), np.zeros(4), A=A, b=np.zeros(3))
+    step = d.ProjectionNetwork().stable_step(qp, np.zeros(15))
     assert step == pytest.approx(1.0 / 2.54**2, rel=1e-12)
     # Rows count that are active; no step is known where the cost is singular.
     bounds = {"lb": [-1.0, -1.0], "ub": [1.0, 1.0]}
-    qp = QP(np.eye(2), np.zeros(2), A=[[1.0, 0.0]], b=[0.0], **bounds)
-    assert ProjectionNetwork().stable_step(qp, np.zeros(7)) == pytest.approx(1.0)
-    assert ProjectionNetwork().stable_step(qp, np.r_[0.0, 0.0, 0.0, 2.0, np.zeros(3)]) == 0.5
-    singular = QP(np.diag([1.0, 0.0]), np.zeros(2), A=[[1.0, 1.0]], b=[0.0])
-    assert ProjectionNetwork().stable_step(singular, np.zeros(7)) == 0.0
+    qp = d.QP(np.eye(2), np.zeros(2), A=[[1.0, 0.0]], b=[0.0], **bounds)
+    assert d.ProjectionNetwork().stable_step(qp, np.zeros(7)) == pytest.approx(1.0)
+    assert d.ProjectionNetwork().stable_step(qp, np.r_[0.0, 0.0, 0.0, 2.0, np.zeros(3)]) == 0.5
+    singular = d.QP(np.diag([1.0, 0.0]), np.zeros(2), A=[[1.0, 1.0]], b=[0.0])
+    assert d.ProjectionNetwork().stable_step(singular, np.zeros(7)) == 0.0
 
 
 def test_the_gradient_network_descends_at_the_smallest_eigenvalue() -> None:
-    network, start = GradientNetwork(), np.array([0.3, -0.2, 0.1, 0.4])
+    network, start = d.GradientNetwork(), np.array([0.3, -0.2, 0.1, 0.4])
     rest = np.linalg.solve(MATRIX, np.concatenate([-LINEAR.q, LINEAR.b]))
     values, vectors = np.linalg.eigh(MATRIX @ MATRIX)
     rates = network.flow(LINEAR).rates
@@ -229,52 +213,52 @@ def test_the_yardsticks_iterations_are_osqps() -> None:
         verbose=False, scaling=0, check_termination=0, adaptive_rho=False, polishing=False,
     )  # fmt: skip
     for _ in range(3):  # it starts warm
-        ExplicitEuler(substeps=50).advance(network, qp, state, 50.0)
+        d.ExplicitEuler(substeps=50).advance(network, qp, state, 50.0)
         result = expected.solve(raise_error=False)
         np.testing.assert_allclose(state[:17], np.r_[result.x, result.y], atol=1e-9)
-    ExplicitEuler(substeps=5000).advance(network, qp, state, 5000.0)
+    d.ExplicitEuler(substeps=5000).advance(network, qp, state, 5000.0)
     np.testing.assert_allclose(state[:6], x, atol=1e-4)
 
 
 def test_singular_cost_settles_but_not_with_the_dual_networks() -> None:
-    qp = QP(np.diag([1.0, 0.0]), [0.0, 1.0], A=[[1.0, 1.0]], b=[1.0], lb=[-5.0, -5.0])
-    solution = iiwa_dnn.solve_problem(qp, solver=DNNSolver(PrimalDualNetwork()))
+    qp = d.QP(np.diag([1.0, 0.0]), [0.0, 1.0], A=[[1.0, 1.0]], b=[1.0], lb=[-5.0, -5.0])
+    solution = d.solve_problem(qp, solver=d.DNNSolver(d.PrimalDualNetwork()))
     assert solution.found
     np.testing.assert_allclose(solution.x, [1.0, 0.0], atol=1e-7)
-    for network in (DualNetwork(), SimplifiedDualNetwork()):
-        with pytest.raises(InvalidInputError, match="singular") as caught:
-            iiwa_dnn.solve_problem(qp, solver=DNNSolver(network))
+    for network in (d.DualNetwork(), d.SimplifiedDualNetwork()):
+        with pytest.raises(d.InvalidInputError, match="singular") as caught:
+            d.solve_problem(qp, solver=d.DNNSolver(network))
         assert caught.value.argument == "P"
 
 
 def test_x_of_the_state_is_disturbed() -> None:
     qp, x = known_qp(np.random.default_rng(8), 4, 1, 1)
-    solver = DNNSolver(PrimalDualNetwork())
+    solver = d.DNNSolver(d.PrimalDualNetwork())
     solver.solve(qp)
     solver.disturb(np.full(4, 0.5))
     np.testing.assert_allclose(solver.state[:4], x + 0.5, atol=1e-6)
-    for network in (DualNetwork(), SOURCES["activated"][0]):
-        with pytest.raises(InvalidInputError, match="network"):
-            DNNSolver(network).disturb(np.zeros(4))
+    for network in (d.DualNetwork(), SOURCES["activated"][0]):
+        with pytest.raises(d.InvalidInputError, match="network"):
+            d.DNNSolver(network).disturb(np.zeros(4))
 
 
 @pytest.mark.parametrize(
     ("make", "argument"),
     [
-        (lambda: ProjectionNetwork(rho=0.0), "rho"),
-        (lambda: ProjectionNetwork(rho=np.nan), "rho"),
-        (lambda: ProjectionNetwork(rho=np.inf), "rho"),
-        (lambda: ZeroingNetwork(form="other"), "form"),
-        (lambda: ZeroingNetwork(integral=-1.0), "integral"),
-        (lambda: ZeroingNetwork(growth=-1), "growth"),
+        (lambda: d.ProjectionNetwork(rho=0.0), "rho"),
+        (lambda: d.ProjectionNetwork(rho=np.nan), "rho"),
+        (lambda: d.ProjectionNetwork(rho=np.inf), "rho"),
+        (lambda: d.ZeroingNetwork(form="other"), "form"),
+        (lambda: d.ZeroingNetwork(integral=-1.0), "integral"),
+        (lambda: d.ZeroingNetwork(growth=-1), "growth"),
         (lambda: NoiseSuppressingNetwork(proportional=0.0), "proportional"),
         (lambda: FixedTime(low=0.0), "low"),
-        (lambda: ExplicitEuler(substeps=0), "substeps"),
-        (lambda: ImplicitEuler(step=0.0), "step"),
-        (lambda: ImplicitEuler(max_steps=0), "max_steps"),
+        (lambda: d.ExplicitEuler(substeps=0), "substeps"),
+        (lambda: d.ImplicitEuler(step=0.0), "step"),
+        (lambda: d.ImplicitEuler(max_steps=0), "max_steps"),
     ],
 )  # fmt: skip
 def test_wrong_parameters_are_named(make: Callable[[], object], argument: str) -> None:
-    with pytest.raises(InvalidInputError) as caught:
+    with pytest.raises(d.InvalidInputError) as caught:
         make()
     assert caught.value.argument == argument

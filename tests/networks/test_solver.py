@@ -1,6 +1,5 @@
 """The network as a solver: against known solutions, two other solvers, and its own promises."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -8,21 +7,11 @@ import pytest
 import qpsolvers
 from qpsolvers import problems
 
-import iiwa_dnn
+import iiwa_dnn as d
 from helpers_qp import known_qp
-from iiwa_dnn import (
-    QP,
-    CrossCheck,
-    DNNSolver,
-    DualNetwork,
-    ExplicitEuler,
-    ImplicitEuler,
-    InvalidInputError,
-    Status,
-)
 from iiwa_dnn.networks.integrators.base import BUDGET, SUBSTEPS, TOLERANCE
 
-REFERENCES = CrossCheck(("proxqp", "osqp"))
+REFERENCES = d.CrossCheck(("proxqp", "osqp"))
 
 
 DENSE = [name for name in dir(problems) if name.startswith("get_") and "sparse" not in name]
@@ -32,7 +21,7 @@ DENSE = [name for name in dir(problems) if name.startswith("get_") and "sparse" 
 def test_every_dense_problem_of_qpsolvers(name: str) -> None:
     made = getattr(problems, name)()
     problem = made if isinstance(made, qpsolvers.Problem) else made[0]
-    solution = iiwa_dnn.solve_problem(problem)
+    solution = d.solve_problem(problem)
     assert solution.found
     assert solution.primal_residual() <= 1e-8
     assert solution.dual_residual() <= 1e-8
@@ -42,7 +31,7 @@ def test_every_dense_problem_of_qpsolvers(name: str) -> None:
 def test_warm_start_needs_fewer_systems_and_reset_forgets() -> None:
     rng = np.random.default_rng(8)
     qp, _ = known_qp(rng, 7, 3, 3)
-    solver = DNNSolver()
+    solver = d.DNNSolver()
     cold = solver.solve(qp).iterations
     warm = solver.solve(qp).iterations
     assert warm == 0
@@ -55,9 +44,9 @@ def test_warm_start_needs_fewer_systems_and_reset_forgets() -> None:
 
 def test_advance_moves_by_the_time_given_and_says_how_far_it_is() -> None:
     qp, x = known_qp(np.random.default_rng(9), 5, 2, 1)
-    solver = DNNSolver()
+    solver = d.DNNSolver()
     first = solver.advance(qp, 1e-4)
-    assert first.status is Status.ADVANCED
+    assert first.status is d.Status.ADVANCED
     assert not first.found
     assert first.network_time == pytest.approx(1e-4 / 9e-5)
     gaps = [np.abs(solver.advance(qp, 1e-4).x - x).max() for _ in range(3000)]
@@ -66,10 +55,10 @@ def test_advance_moves_by_the_time_given_and_says_how_far_it_is() -> None:
 
 def test_a_state_that_is_not_a_number_is_reported_and_forgotten() -> None:
     good, x = known_qp(np.random.default_rng(10), 4, 1, 1)
-    bad = QP(good.P, np.full(4, np.nan), A=good.A, b=good.b, lb=good.lb, ub=good.ub)
-    solver = DNNSolver()
-    assert solver.solve(bad).status is Status.NOT_FINITE
-    assert solver.advance(bad, 1e-4).status is Status.NOT_FINITE
+    bad = d.QP(good.P, np.full(4, np.nan), A=good.A, b=good.b, lb=good.lb, ub=good.ub)
+    solver = d.DNNSolver()
+    assert solver.solve(bad).status is d.Status.NOT_FINITE
+    assert solver.advance(bad, 1e-4).status is d.Status.NOT_FINITE
     after = solver.solve(good)
     assert after.found
     assert np.abs(after.x - x).max() < 1e-6
@@ -78,10 +67,10 @@ def test_a_state_that_is_not_a_number_is_reported_and_forgotten() -> None:
 def test_a_program_without_a_solution_does_not_spoil_the_next() -> None:
     good, x = known_qp(np.random.default_rng(11), 4, 2, 1)
     rows = np.vstack([good.A[:1], good.A[:1]])
-    bad = QP(good.P, good.q, A=rows, b=[0.0, 1.0], lb=good.lb, ub=good.ub)
-    solver = DNNSolver()
+    bad = d.QP(good.P, good.q, A=rows, b=[0.0, 1.0], lb=good.lb, ub=good.ub)
+    solver = d.DNNSolver()
     for _ in range(3):
-        assert solver.solve(bad).status is Status.PRIMAL_INFEASIBLE
+        assert solver.solve(bad).status is d.Status.PRIMAL_INFEASIBLE
         after = solver.solve(good)
         assert after.found
         assert np.abs(after.x - x).max() < 1e-6
@@ -89,39 +78,37 @@ def test_a_program_without_a_solution_does_not_spoil_the_next() -> None:
 
 def test_settings_are_frozen_and_checked_and_reach_the_compiled_answer() -> None:
     for tol in (0.0, -1.0, float("nan"), float("inf")):
-        with pytest.raises(InvalidInputError, match="tol"):
-            DNNSolver(tol=tol)
+        with pytest.raises(d.InvalidInputError, match="tol"):
+            d.DNNSolver(tol=tol)
     for name in ("network", "settler"):
-        with pytest.raises(InvalidInputError, match=name):
-            DNNSolver(**{name: ExplicitEuler()})
-    solver = DNNSolver(
-        tol=1e-12, settler=ImplicitEuler(max_steps=7), follower=ExplicitEuler(substeps=9)
+        with pytest.raises(d.InvalidInputError, match=name):
+            d.DNNSolver(**{name: d.ExplicitEuler()})
+    solver = d.DNNSolver(
+        tol=1e-12, settler=d.ImplicitEuler(max_steps=7), follower=d.ExplicitEuler(substeps=9)
     )
     with pytest.raises(AttributeError):
         solver.tol = 1e-6
     answer = solver.compiled_answer((7, 0, 3), 1e-4)
     assert answer is not None
     assert answer.constants[[TOLERANCE, BUDGET, SUBSTEPS]].tolist() == [1e-12, 7, 9]
-    assert DNNSolver(DualNetwork()).compiled_answer((7, 0, 3)) is None
+    assert d.DNNSolver(d.DualNetwork()).compiled_answer((7, 0, 3)) is None
 
 
-@pytest.mark.parametrize("call", [DNNSolver.solve, lambda *own: DNNSolver.advance(*own, 1e-4)])
-def test_a_problem_of_qpsolvers_is_for_another_function(
-    call: Callable[..., object],
-) -> None:
-    with pytest.raises(InvalidInputError, match=r"qp: must be an iiwa_dnn\.QP"):
-        call(DNNSolver(), qpsolvers.Problem(np.eye(2), np.zeros(2)))
+@pytest.mark.parametrize("call", [d.DNNSolver.solve, lambda *own: d.DNNSolver.advance(*own, 1e-4)])
+def test_a_problem_of_qpsolvers_is_for_another_function(call) -> None:
+    with pytest.raises(d.InvalidInputError, match=r"qp: must be an iiwa_dnn\.QP"):
+        call(d.DNNSolver(), qpsolvers.Problem(np.eye(2), np.zeros(2)))
 
 
 def test_nobody_else_has_the_state_while_a_call_works_on_it() -> None:
     seen = []
 
-    class Watched(ImplicitEuler):
+    class Watched(d.ImplicitEuler):
         def settle(self, *arguments: Any) -> Any:
             seen.append(solver.state.size)
             return super().settle(*arguments)
 
-    solver = DNNSolver(settler=Watched())
+    solver = d.DNNSolver(settler=Watched())
     qp, _ = known_qp(np.random.default_rng(13), 4, 1, 1)
     for _ in range(2):
         assert solver.solve(qp).found
@@ -139,7 +126,7 @@ def test_sharpened_answers_are_daqps_where_the_cost_is_nearly_flat() -> None:
         bound = rng.uniform(0.05, 3.0, 7)
         problem = qpsolvers.Problem(P, q, lb=-bound, ub=bound)
         expected = qpsolvers.solve_problem(problem, "daqp", primal_tol=1e-12, dual_tol=1e-12).x
-        first, second = (iiwa_dnn.solve_problem(problem, sharpen=s) for s in (False, True))
+        first, second = (d.solve_problem(problem, sharpen=s) for s in (False, True))
         assert second.is_optimal(1e-9)
         plain = max(plain, np.abs(first.x - expected).max())
         sharp = max(sharp, np.abs(second.x - expected).max())
@@ -148,36 +135,36 @@ def test_sharpened_answers_are_daqps_where_the_cost_is_nearly_flat() -> None:
 
 def test_a_sharpened_answer_is_never_worse() -> None:
     qp, _ = known_qp(np.random.default_rng(18), 8, 3, 2, inequalities=5)
-    solver = DNNSolver(tol=1e-4)
+    solver = d.DNNSolver(tol=1e-4)
     first = solver.solve(qp)
     second = solver.sharpen(qp, first)
     assert second.residuals.largest <= first.residuals.largest
     assert second.iterations >= first.iterations
     third = solver.sharpen(qp, second)
     assert third.residuals.largest <= second.residuals.largest
-    answer = DNNSolver(DualNetwork()).solve(qp)
-    assert DNNSolver().sharpen(qp, answer) is answer  # it has no state yet
+    answer = d.DNNSolver(d.DualNetwork()).solve(qp)
+    assert d.DNNSolver().sharpen(qp, answer) is answer  # it has no state yet
 
 
 @pytest.mark.parametrize("n", [2, 150])
 def test_programs_without_a_choice_are_judged(n: int) -> None:
     one = np.ones(n)
-    qp = QP(np.eye(n), -2.0 * one, A=one[np.newaxis], b=[float(n)], lb=one, ub=one)
-    solution = DNNSolver().solve(qp)
+    qp = d.QP(np.eye(n), -2.0 * one, A=one[np.newaxis], b=[float(n)], lb=one, ub=one)
+    solution = d.DNNSolver().solve(qp)
     assert solution.found
     np.testing.assert_array_equal(solution.x, one)
     qp.b[0] += 1e-7
-    assert not DNNSolver().solve(qp).found
+    assert not d.DNNSolver().solve(qp).found
 
 
 @pytest.mark.parametrize("size", [1e-300, 1e-12, 1e-7, 1e-3])
 def test_a_slight_cost_counts_as_any_other(size: float) -> None:
     """min size (x^2 / 2 - x) within [0, 0.5] lies at the upper bound, whatever the size."""
     bounds = {"lb": np.zeros(1), "ub": np.array([0.5])}
-    qp = QP(size * np.eye(1), np.array([-size]), **bounds)
-    solution = iiwa_dnn.solve_problem(qp)
+    qp = d.QP(size * np.eye(1), np.array([-size]), **bounds)
+    solution = d.solve_problem(qp)
     assert solution.found
     np.testing.assert_allclose(solution.x, [0.5], rtol=1e-9)
     np.testing.assert_allclose(solution.z_box, [0.5 * size], rtol=1e-6)
-    nothing = iiwa_dnn.solve_problem(QP(np.zeros((1, 1)), np.zeros(1), **bounds))
+    nothing = d.solve_problem(d.QP(np.zeros((1, 1)), np.zeros(1), **bounds))
     assert nothing.found

@@ -20,9 +20,7 @@ def test_answers_are_kkt_points(seed: int) -> None:
 
 @settings(max_examples=60)
 @given(SEEDS, st.sampled_from([1e-1, 1e-4, 1e-9, 1e-13, 1e-16]), st.integers(1, 40))
-def test_found_means_that_the_residuals_are_below_the_tolerance(
-    seed: int, tol: float, budget: int
-) -> None:
+def test_found_means_that_the_residuals_are_below_the_tolerance(seed, tol, budget) -> None:
     qp, _ = programs.strictly_convex(np.random.default_rng(seed))
     solver = DNNSolver(tol=tol, settler=iiwa_dnn.ImplicitEuler(max_steps=budget))
     solution = solver.solve(qp)

@@ -1,7 +1,5 @@
 """The cross-check has to agree with right answers, see wrong ones, and distrust references."""
 
-from __future__ import annotations
-
 import time
 import warnings
 
@@ -85,9 +83,7 @@ def test_an_infeasible_program_has_no_reference(check: CrossCheck) -> None:
 
 
 @pytest.mark.parametrize(("first", "second"), [SOLVERS, SOLVERS[::-1], ("daqp", "proxqp")])
-def test_a_second_solver_judges_where_the_first_has_no_answer(
-    first: str, second: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_second_solver_judges_where_the_first_has_no_answer(first, second, monkeypatch) -> None:
     ask = crosscheck.ask
     known = [known_qp(np.random.default_rng([58, k]), 7, 3, k) for k in range(4)]
 
@@ -146,9 +142,7 @@ def test_a_solver_that_is_not_installed_is_refused_with_those_that_are() -> None
 @pytest.mark.parametrize(
     ("spoilt", "residual"), [(0, np.inf), (1, np.nan), (3, np.nan), (None, 1.0)]
 )
-def test_a_reference_is_judged_by_its_own_residual(
-    spoilt: int | None, residual: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_reference_is_judged_by_its_own_residual(spoilt, residual, monkeypatch) -> None:
     # Zero is stationary and leaves no gap, and lies outside the bound by one.
     qp = QP(np.eye(1), np.zeros(1), A=[[0.0]], b=[0.0], G=[[0.0]], h=[0.0], lb=[1.0])
     point = np.zeros(4)

@@ -99,9 +99,7 @@ REFUSED: list[tuple[str, dict[str, Any]]] = [
 
 
 @pytest.mark.parametrize(("name", "arguments"), REFUSED)
-def test_a_wrong_program_is_refused_by_the_arguments_name(
-    name: str, arguments: dict[str, Any]
-) -> None:
+def test_a_wrong_program_is_refused_by_the_arguments_name(name, arguments) -> None:
     fields = {"P": np.eye(3), "q": np.zeros(3), **arguments}
     makers: list[Callable[..., Any]] = [QP]
     if all(isinstance(value, np.ndarray) for value in fields.values()):

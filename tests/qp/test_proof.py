@@ -1,7 +1,5 @@
 """Proofs of answers, judged by exact solutions in whole numbers, which share no code with them."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Collision avoidance: distances beside coal's, gradients, bounds on curves, rows, runs, files."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

@@ -1,49 +1,35 @@
 """Names of limits: of each bound the kind, found by its own equation; one name for all readers."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import paper_robot, paper_start, run
-from iiwa_dnn import (
-    AccelerationLimits,
-    CollisionAvoidance,
-    Controller,
-    DoubleIndicator,
-    HalfSpace,
-    JerkLimits,
-    Still,
-    Target,
-    Waypoints,
-    compute_metrics,
-    failures,
-)
 from iiwa_dnn.naming import KINDS
 
 A = 4.0
 J = 200.0
 DT = 1e-3
 SIDEWAYS = np.array([0.0, 0.5, 0.0])
-FAR = Target(paper_start().position + SIDEWAYS, paper_start().rotation)
+FAR = d.Target(paper_start().position + SIDEWAYS, paper_start().rotation)
 
 
-def scheme(*limits: Any) -> DoubleIndicator:
-    return DoubleIndicator(orientation="none", extra_limits=limits)
+def scheme(*limits: Any) -> d.DoubleIndicator:
+    return d.DoubleIndicator(orientation="none", extra_limits=limits)
 
 
 @pytest.mark.filterwarnings("ignore:a gain of 10.2")  # nothing is closed in a loop here
 @pytest.mark.parametrize("limits", [(A, None), (None, J), (A, J)], ids=["A", "J", "A and J"])
-def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(
-    limits: tuple[float | None, float | None],
-) -> None:
+def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(limits) -> None:
     """Each bound in the way, beside the rates of the command that lies at it."""
-    kinds = zip((AccelerationLimits, JerkLimits), limits, strict=True)
+    kinds = zip((d.AccelerationLimits, d.JerkLimits), limits, strict=True)
     robot = paper_robot()
-    controlled = Controller(robot, scheme(*(kind(limit) for kind, limit in kinds if limit)), dt=DT)
+    controlled = d.Controller(
+        robot, scheme(*(kind(limit) for kind, limit in kinds if limit)), dt=DT
+    )
     q = np.array(PAPER_Q0)
     commands = [np.zeros(7), np.zeros(7)]
     seen = set()
@@ -74,24 +60,24 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(
 
 def test_at_a_position_limit_it_is_that_ones() -> None:
     robot = paper_robot().with_limits(upper=np.array(PAPER_Q0) + 3e-5)
-    command = Controller(robot, scheme(AccelerationLimits(A)), dt=DT).step(PAPER_Q0, 0.0, FAR)
+    command = d.Controller(robot, scheme(d.AccelerationLimits(A)), dt=DT).step(PAPER_Q0, 0.0, FAR)
     assert "upper position limit" in repr(command)
 
 
 def test_command_and_report_say_the_same_row() -> None:
-    wall = HalfSpace([0.0, -1.0, 0.0], float(-paper_start().position[1] - 0.12))
-    avoiding = scheme(CollisionAvoidance([wall], distance=0.02, self_collision=False))
+    wall = d.HalfSpace([0.0, -1.0, 0.0], float(-paper_start().position[1] - 0.12))
+    avoiding = scheme(d.CollisionAvoidance([wall], distance=0.02, self_collision=False))
     row = "of CollisionAvoidance (iiwa7_link_7 and HalfSpace 1)"
-    command = Controller(paper_robot(), avoiding, dt=DT).step(PAPER_Q0, 0.0, FAR)
+    command = d.Controller(paper_robot(), avoiding, dt=DT).step(PAPER_Q0, 0.0, FAR)
     with pytest.warns(UserWarning, match="0.5 m"):
-        record = run(avoiding, Still().anchored(FAR), duration=DT)
+        record = run(avoiding, d.Still().anchored(FAR), duration=DT)
     assert row in repr(command)
-    assert row in " ".join(failures(record))
+    assert row in " ".join(d.failures(record))
 
 
 def test_a_record_tells_the_kinds_of_active_bounds_too() -> None:
-    path = Waypoints([0.0, 0.4], [[0.0, 0.0, 0.0], 0.3 * SIDEWAYS]).anchored(paper_start())
-    record = run(scheme(AccelerationLimits(A)), path, duration=0.2)
-    incidents = compute_metrics(record)["incidents"]
+    path = d.Waypoints([0.0, 0.4], [[0.0, 0.0, 0.0], 0.3 * SIDEWAYS]).anchored(paper_start())
+    record = run(scheme(d.AccelerationLimits(A)), path, duration=0.2)
+    incidents = d.compute_metrics(record)["incidents"]
     said = {limit["limit"] for limit in incidents["blocking"] + incidents["active"]}
     assert said == {"acceleration"}

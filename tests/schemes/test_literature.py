@@ -1,33 +1,21 @@
 """Schemes of the literature against their objectives, other solvers, and the next target."""
 
-from __future__ import annotations
-
 import numpy as np
 import pinocchio as pin
 import pytest
 import scipy.optimize
 from numpy.testing import assert_allclose, assert_array_equal
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array
 from helpers_simulation import heart, near_target, paper_robot, paper_start, run
-from iiwa_dnn import (
-    Configuration,
-    Controller,
-    DNNSolver,
-    DoubleIndicator,
-    Heart,
-    MovingTarget,
-    Target,
-    Tilting,
-    failures,
-)
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.schemes.literature import bi_criteria
 
 HOME = tuple(np.add(PAPER_Q0, (0.3, -0.1, 0.2, -0.4, 0.05, 0.6, -0.2)))
-MOVING = Target(paper_start().position, paper_start().rotation, np.array([0.02, -0.03, 0.01]))
+MOVING = d.Target(paper_start().position, paper_start().rotation, np.array([0.02, -0.03, 0.01]))
 DT = 1e-3
-PATH = Tilting(Heart(), 0.3, (0.3, 1.0, -0.2)).anchored(paper_start())
+PATH = d.Tilting(d.Heart(), 0.3, (0.3, 1.0, -0.2)).anchored(paper_start())
 
 
 def inertia(q: Array) -> Array:
@@ -42,10 +30,10 @@ def inertia(q: Array) -> Array:
 @pytest.mark.parametrize("kinetic", ["identity", "inertia"])
 @pytest.mark.parametrize("weight", [0.0, 0.2, 0.7, 1.0])
 def test_objective_is_the_papers_up_to_a_constant(weight: float, kinetic: str) -> None:
-    scheme = DoubleIndicator(weight=weight, kinetic=kinetic, drift_gain=3.7, home=HOME)
+    scheme = d.DoubleIndicator(weight=weight, kinetic=kinetic, drift_gain=3.7, home=HOME)
     rng = np.random.default_rng(1)
     for q in rng.uniform(-2.5, 2.5, (5, 7)):
-        qp = scheme.build_qp(Configuration(paper_robot(), q), near_target(q, seed=2))
+        qp = scheme.build_qp(d.Configuration(paper_robot(), q), near_target(q, seed=2))
         metric = inertia(q) if kinetic == "inertia" else np.eye(7)
         excess = []
         for dq in rng.normal(size=(10, 7)):
@@ -57,27 +45,27 @@ def test_objective_is_the_papers_up_to_a_constant(weight: float, kinetic: str) -
 
 
 def test_without_a_home_nothing_pulls_and_anchoring_gives_one() -> None:
-    elsewhere = Configuration(paper_robot(), np.array(PAPER_Q0) + 0.2)
+    elsewhere = d.Configuration(paper_robot(), np.array(PAPER_Q0) + 0.2)
     target = near_target(elsewhere.q, seed=4)
-    scheme = DoubleIndicator()
+    scheme = d.DoubleIndicator()
     assert_array_equal(scheme.build_qp(elsewhere, target).q, np.zeros(7))
     anchored = scheme.anchored(paper_start())
     assert anchored.home == PAPER_Q0
     assert_allclose(anchored.build_qp(elsewhere, target).q, 0.8 * 10.2 * 0.2, rtol=1e-12)
     assert scheme.home is None
     assert anchored.anchored(elsewhere) == anchored
-    assert DoubleIndicator(home=HOME).anchored(paper_start()).home == HOME
+    assert d.DoubleIndicator(home=HOME).anchored(paper_start()).home == HOME
 
 
 def test_the_papers_rows_are_dependent_and_still_solved() -> None:
     # Seven rows of rank six: J' has four rows of rank three.
     target = near_target(PAPER_Q0, seed=10, size=0.0)
-    qp = DoubleIndicator(orientation="block", home=HOME).build_qp(paper_start(), target)
+    qp = d.DoubleIndicator(orientation="block", home=HOME).build_qp(paper_start(), target)
     values = np.linalg.svd(qp.A, compute_uv=False)
     assert values[6] < 1e-14
     assert values[5] == pytest.approx(0.075, abs=5e-4)  # PAPER: at theta(0)
     assert values[0] == pytest.approx(2.54, abs=5e-3)
-    answer = DNNSolver().solve(qp)
+    answer = d.DNNSolver().solve(qp)
     assert answer.found
     # Least squares on the null space of the rows, through numpy alone.
     null = np.linalg.svd(qp.A)[2][6:].T
@@ -90,20 +78,20 @@ def test_kinetic_index(kinetic: str) -> None:
     model = paper_robot().model
     energy = pin.computeKineticEnergy(model, model.createData(), np.array(PAPER_Q0), dq)
     expected = 2.0 * energy if kinetic == "inertia" else dq @ dq
-    index = DoubleIndicator(kinetic=kinetic).kinetic_index(paper_start(), dq)
+    index = d.DoubleIndicator(kinetic=kinetic).kinetic_index(paper_start(), dq)
     assert index == pytest.approx(expected, rel=1e-12)
 
 
 def test_settings_are_plain_values_and_make_the_scheme_again() -> None:
-    scheme = DoubleIndicator(weight=0.4, kinetic="inertia", home=HOME)
+    scheme = d.DoubleIndicator(weight=0.4, kinetic="inertia", home=HOME)
     settings = scheme.settings()
     assert settings.pop("name") == "double-indicator"
-    assert DoubleIndicator(**settings) == scheme
+    assert d.DoubleIndicator(**settings) == scheme
 
 
 def test_the_largest_speed_is_that_of_a_linear_program() -> None:
     qp = bi_criteria(paper_robot(), 0.0).build_qp(paper_start(), MOVING)
-    speed = np.abs(DNNSolver().solve(qp).x[:7]).max()
+    speed = np.abs(d.DNNSolver().solve(qp).x[:7]).max()
     rows = np.hstack([np.vstack([np.eye(7), -np.eye(7)]), -np.ones((14, 1))])
     bounds = [*zip(qp.lb[:7], qp.ub[:7], strict=True), (0.0, None)]
     best = scipy.optimize.linprog(np.eye(8)[-1], rows, np.zeros(14), qp.A, qp.b, bounds)
@@ -116,16 +104,16 @@ def test_the_largest_speed_is_that_of_a_linear_program() -> None:
 
 
 def test_the_least_largest_speed_draws_the_heart() -> None:
-    assert failures(run(bi_criteria(paper_robot(), 0.0), heart(), dt=1e-2, duration=2.0)) == []
+    assert d.failures(run(bi_criteria(paper_robot(), 0.0), heart(), dt=1e-2, duration=2.0)) == []
 
 
 @pytest.mark.parametrize("gain", [np.inf, 300.0, 5e3])
 def test_the_rows_ask_for_the_next_target(gain: float) -> None:
     q = np.array(PAPER_Q0) + 0.1 * np.random.default_rng(3).normal(size=7)
-    conf, t = Configuration(paper_robot(), q), 1.7
-    scheme = DoubleIndicator(home=PAPER_Q0, tracking="next")
+    conf, t = d.Configuration(paper_robot(), q), 1.7
+    scheme = d.DoubleIndicator(home=PAPER_Q0, tracking="next")
     if gain < np.inf:
-        scheme = DoubleIndicator(home=PAPER_Q0, position_gain=gain, orientation_gain=gain)
+        scheme = d.DoubleIndicator(home=PAPER_Q0, position_gain=gain, orientation_gain=gain)
     qp = scheme.build_qp(conf, PATH.ahead(DT).at(t), DT)
     now, then = PATH.at(t), PATH.at(t + DT)
     left = 1.0 - min(gain * DT, 1.0)
@@ -139,7 +127,7 @@ def test_the_rows_ask_for_the_next_target(gain: float) -> None:
 def test_the_error_towards_the_next_target_is_of_second_order_and_does_not_add_up() -> None:
     largest = []
     for dt in (2e-3, 1e-3):
-        record = run(DoubleIndicator(tracking="next"), PATH, dt=dt, duration=1.6)
+        record = run(d.DoubleIndicator(tracking="next"), PATH, dt=dt, duration=1.6)
         settled = record.t > 0.1
         distance = np.linalg.norm(position_error(record), axis=1)
         largest.append((distance[settled].max(), orientation_error(record)[settled].max()))
@@ -149,13 +137,13 @@ def test_the_error_towards_the_next_target_is_of_second_order_and_does_not_add_u
 
 def test_a_controller_tracks_as_a_run_does_and_a_target_set_from_outside_too() -> None:
     robot, q = paper_robot(), np.array(PAPER_Q0)
-    controller = Controller(robot, DoubleIndicator(tracking="next"), PATH, dt=DT)
+    controller = d.Controller(robot, d.DoubleIndicator(tracking="next"), PATH, dt=DT)
     for k in range(200):
         q = q + DT * controller.step(q, k * DT).dq
-    assert np.abs(Configuration(robot, q).position - PATH.at(0.2).position).max() < 1e-8
-    target = MovingTarget(Configuration(robot, q), speed=0.1)
+    assert np.abs(d.Configuration(robot, q).position - PATH.at(0.2).position).max() < 1e-8
+    target = d.MovingTarget(d.Configuration(robot, q), speed=0.1)
     controller.reference = target
     target.set(target.at(0.2).position + [0.01, 0.0, 0.0])
     for k in range(200, 400):
         q = q + DT * controller.step(q, k * DT).dq
-    assert np.abs(Configuration(robot, q).position - target.at(0.4).position).max() < 1e-8
+    assert np.abs(d.Configuration(robot, q).position - target.at(0.4).position).max() < 1e-8

@@ -1,7 +1,5 @@
 """Acceleration and jerk limits: exact, never empty, viable, and kept by every command."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -9,24 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings, strategies as st
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array
 from helpers_simulation import paper_robot, paper_start
-from iiwa_dnn import (
-    AccelerationLimits,
-    Controller,
-    DoubleIndicator,
-    InvalidInputError,
-    JerkLimits,
-    Target,
-    load_robot,
-)
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.schemes.limits import (
-    braking,
-    check_ranges,
-    joint_bounds,
-    largest_gain,
-)
+from iiwa_dnn.schemes.limits import braking, check_ranges, joint_bounds, largest_gain
 from judge_limits import Breach, breaches
 
 INF = math.inf
@@ -83,9 +68,7 @@ def driven(start: float, upper: float, limits: Limits, dt: float, seed: int) -> 
     seed=st.integers(0, 1000),
 )
 @example(speed=1.0, acceleration=1.5, jerk=INF, dt=1e-3, seed=0)
-def test_hostile_choices_break_no_limit(
-    speed: float, acceleration: float, jerk: float, dt: float, seed: int
-) -> None:
+def test_hostile_choices_break_no_limit(speed, acceleration, jerk, dt, seed) -> None:
     upper = 0.2 + 2.0 * acceleration**3 / min(jerk, 1e9) ** 2
     limits = (speed, acceleration, jerk)
     assert broken(driven(0.0, upper, limits, dt, seed), dt, upper, limits) == []
@@ -101,9 +84,7 @@ def test_hostile_choices_break_no_limit(
     ],
 )
 @pytest.mark.parametrize("start", [-1.6, 1.6])
-def test_outside_a_position_limit_the_velocity_limit_holds(
-    limits: Limits, dt: float, start: float
-) -> None:
+def test_outside_a_position_limit_the_velocity_limit_holds(limits, dt, start) -> None:
     # Crossed bounds were averaged: 4.4 times the velocity limit at 300 rad/s^2 and 20 ms.
     for seed in range(5):
         q = driven(start, 1.0, limits, dt, seed)
@@ -144,7 +125,7 @@ def test_a_range_that_is_not_refused_is_long_enough(
         try:
             check_ranges(np.array([-upper, upper, *limits, acceleration]), 1.0 / dt)
             break
-        except InvalidInputError:
+        except d.InvalidInputError:
             upper *= 1.02
     assert broken(driven(0.0, upper, limits, dt, seed), dt, upper, limits) == []
 
@@ -173,9 +154,7 @@ def test_acceleration_bounds_are_the_exact_kernel(above: float, last: float) -> 
 
 @pytest.mark.parametrize("speed", [1e-5, 1e-2, 1.0])
 @pytest.mark.parametrize(("jerk", "dt"), [(INF, 1e-3), (500.0, 1e-3), (20.0, 1e-2)])
-def test_a_joint_pressed_against_its_limit_comes_to_rest(
-    speed: float, jerk: float, dt: float
-) -> None:
+def test_a_joint_pressed_against_its_limit_comes_to_rest(speed, jerk, dt) -> None:
     last = before = 0.0
     q = -5.0 * speed
     commands = []
@@ -241,18 +220,21 @@ def test_a_loop_is_stable_up_to_the_largest_gain(limits: Any, dt: float) -> None
 
 def test_a_gain_that_is_too_high_is_warned_of_once() -> None:
     # In physics, at 60 1/s with 500 rad/s^3 and noise, the tip left a circle by 6 mm.
-    limits = (AccelerationLimits(), JerkLimits(500.0))
-    here = Target(paper_start().position, paper_start().rotation)
-    controller = Controller(paper_robot(), DoubleIndicator(position_gain=60.0, extra_limits=limits))
+    limits = (d.AccelerationLimits(), d.JerkLimits(500.0))
+    here = d.Target(paper_start().position, paper_start().rotation)
+    controller = d.Controller(
+        paper_robot(), d.DoubleIndicator(position_gain=60.0, extra_limits=limits)
+    )
     with pytest.warns(UserWarning, match=r"gain of 60 1/s is above 35\.1 1/s"):
         controller.step(PAPER_Q0, 0.0, here)
     controller.step(PAPER_Q0, 1e-3, here)  # a second warning would be an error
-    Controller(paper_robot(), DoubleIndicator(extra_limits=limits)).step(PAPER_Q0, 0.0, here)
+    d.Controller(paper_robot(), d.DoubleIndicator(extra_limits=limits)).step(PAPER_Q0, 0.0, here)
 
 
 def test_limits_are_the_robots_or_ones_own() -> None:
-    iiwa, panda = load_robot("iiwa7"), load_robot("panda")
-    assert AccelerationLimits().of(iiwa).tolist() == [8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17]
+    iiwa, panda = d.load_robot("iiwa7"), d.load_robot("panda")
+    own = [8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17]
+    assert d.AccelerationLimits().of(iiwa).tolist() == own
     assert np.isinf(iiwa.dddq_max).all()
-    assert JerkLimits().of(panda)[1] == 3750.0
-    assert JerkLimits(50.0).of(panda).tolist() == [50.0] * 7
+    assert d.JerkLimits().of(panda)[1] == 3750.0
+    assert d.JerkLimits(50.0).of(panda).tolist() == [50.0] * 7

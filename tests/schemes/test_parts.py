@@ -1,9 +1,5 @@
 """Programs composed of parts: built-in ones, parts of one's own, slack variables, costs."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -120,13 +116,11 @@ def test_an_inequality_row_is_kept_over_a_whole_run_and_every_step_checked() -> 
         (CROSSED, "iiwa7_joint_1 lower position limit or bound"),
         (
             own(d.Task, 1, equations=(0.0 * ROW, [1.0])),
-            "no bound, a singular pose or tasks against each other",
+            "no bound: a singular pose, a path out of reach or tasks against each other",
         ),
     ],
 )
-def test_a_part_that_nothing_fulfils_is_named(
-    part: Any, blamed: str, policy: str, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_a_part_that_nothing_fulfils_is_named(part, blamed, policy, capfd) -> None:
     record = run(beside(part), duration=0.01, check=d.CrossCheck(("osqp",)), policy=policy)
     assert any(f"in the way: {blamed}" in reason for reason in d.failures(record))
     assert capfd.readouterr().out == ""  # OSQP has its own words for such programs

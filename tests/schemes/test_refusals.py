@@ -1,7 +1,5 @@
 """What is wrong with costs, tasks, limits, schemes and answers is said in one line, by its name."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory

@@ -1,7 +1,5 @@
 """Rows of all tasks: derivatives by finite differences, moving targets, closed loops."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -11,27 +9,12 @@ import scipy.linalg
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+import iiwa_dnn as d
 from helpers_kinematics import Array, finite_difference
 from helpers_simulation import block_vector, near_target, orientation_rows, paper_robot, rows_of
-from iiwa_dnn import (
-    AxisTask,
-    Configuration,
-    DNNSolver,
-    JointCouplingTask,
-    JointLimits,
-    KineticEnergy,
-    OrientationTask,
-    PoseTask,
-    PositionTask,
-    PostureTask,
-    RelativePoseTask,
-    RemoteCenterTask,
-    Scheme,
-    Target,
-)
 
 ROBOT = paper_robot()
-START = Configuration(ROBOT, [-1.2, -0.6, 0.3, 1.4, 0.2, -0.9, 0.4])
+START = d.Configuration(ROBOT, [-1.2, -0.6, 0.3, 1.4, 0.2, -0.9, 0.4])
 POSTURES = np.random.default_rng(21).uniform(-2.5, 2.5, (30, 7))
 AXIS = np.array([0.2, -0.5, 1.0])
 RAY = START.rotation.T @ (START.frame("iiwa7_link_2").position - START.position)
@@ -39,19 +22,19 @@ SHAFT = START.position + 0.1 * START.rotation[:, 2]
 LINK = "iiwa7_link_6"
 
 TASKS: dict[str, Any] = {
-    "position": PositionTask(gain=1.0),
-    "position of a link": PositionTask(gain=1.0, frame=LINK),
-    "orientation": OrientationTask(gain=1.0),
-    "block": OrientationTask(gain=1.0, form="block"),
-    "block of a link": OrientationTask(gain=1.0, form="block", frame=LINK),
-    "pose": PoseTask(gain=1.0),
-    "axis": AxisTask(axis=AXIS, gain=1.0),
-    "axis in the world": AxisTask(axis=AXIS, direction=START.rotation @ AXIS, gain=1.0),
-    "relative pose": RelativePoseTask("iiwa7_link_7", "iiwa7_link_1", gain=1.0).anchored(START),
-    "remote center": RemoteCenterTask(SHAFT, gain=1.0),
-    "looking at a frame": RemoteCenterTask("iiwa7_link_2", RAY, gain=1.0),
-    "posture": PostureTask({"iiwa7_joint_3": 0.3, "iiwa7_joint_1": -1.2}, gain=1.0),
-    "coupling": JointCouplingTask({"iiwa7_joint_2": 2.0, "iiwa7_joint_4": -1.0}, -2.6, gain=1.0),
+    "position": d.PositionTask(gain=1.0),
+    "position of a link": d.PositionTask(gain=1.0, frame=LINK),
+    "orientation": d.OrientationTask(gain=1.0),
+    "block": d.OrientationTask(gain=1.0, form="block"),
+    "block of a link": d.OrientationTask(gain=1.0, form="block", frame=LINK),
+    "pose": d.PoseTask(gain=1.0),
+    "axis": d.AxisTask(axis=AXIS, gain=1.0),
+    "axis in the world": d.AxisTask(axis=AXIS, direction=START.rotation @ AXIS, gain=1.0),
+    "relative pose": d.RelativePoseTask("iiwa7_link_7", "iiwa7_link_1", gain=1.0).anchored(START),
+    "remote center": d.RemoteCenterTask(SHAFT, gain=1.0),
+    "looking at a frame": d.RemoteCenterTask("iiwa7_link_2", RAY, gain=1.0),
+    "posture": d.PostureTask({"iiwa7_joint_3": 0.3, "iiwa7_joint_1": -1.2}, gain=1.0),
+    "coupling": d.JointCouplingTask({"iiwa7_joint_2": 2.0, "iiwa7_joint_4": -1.0}, -2.6, gain=1.0),
 }
 
 
@@ -60,11 +43,11 @@ def target_of(task: Any, dq: Any = 0.0) -> Any:
     name = task.frame_name(ROBOT) if task.tracks else ROBOT.tip
     frame = START.frame(name)
     twist = frame.jacobian @ np.broadcast_to(dq, 7)
-    return {name: Target(frame.position, frame.rotation, twist[:3], twist[3:])}
+    return {name: d.Target(frame.position, frame.rotation, twist[:3], twist[3:])}
 
 
 def rows(task: Any, q: Any, target: Any, **options: Any) -> tuple[Array, Array]:
-    qp = rows_of(task, Configuration(ROBOT, q), target, **options)
+    qp = rows_of(task, d.Configuration(ROBOT, q), target, **options)
     return qp.A, qp.b
 
 
@@ -94,22 +77,22 @@ def test_rows_are_the_derivative_of_the_error(name: str) -> None:
 def test_hard_and_soft_tasks_bring_the_error_to_rest(name: str, weight: float | None) -> None:
     target = target_of(TASKS[name])
     task = replace(TASKS[name], gain=10.0, weight=weight)
-    scheme = Scheme([KineticEnergy(weight=1e-6)], [task], [JointLimits()])
+    scheme = d.Scheme([d.KineticEnergy(weight=1e-6)], [task], [d.JointLimits()])
     q = START.q + np.array([0.03, -0.02, 0.03, 0.02, -0.03, 0.02, 0.01])
     first = np.abs(rows(TASKS[name], q, target)[1]).max()
-    solver = DNNSolver()
+    solver = d.DNNSolver()
     for _ in range(100):
-        q = q + 0.01 * solver.solve(scheme.build_qp(Configuration(ROBOT, q), target)).x
+        q = q + 0.01 * solver.solve(scheme.build_qp(d.Configuration(ROBOT, q), target)).x
     assert np.abs(rows(TASKS[name], q, target)[1]).max() < 1e-4 * first
 
 
 def test_block_right_hand_side_is_projected_so_that_all_rows_can_be_fulfilled() -> None:
     # Its feed-forward is the rate of r_d along a turning target, here by finite differences.
     for seed, q in enumerate(POSTURES):
-        conf = Configuration(ROBOT, q)
+        conf = d.Configuration(ROBOT, q)
         target = near_target(q, seed, size=0.5)
 
-        def turned(t: Array, target: Target = target) -> Array:
+        def turned(t: Array, target: d.Target = target) -> Array:
             turn = Rotation.from_rotvec(target.angular_velocity * t[0]).as_matrix()
             return block_vector(turn @ target.rotation)
 
@@ -125,5 +108,5 @@ def test_the_axis_is_to_turn_by_the_angle_that_it_is_off(angle: float) -> None:
     here = START.rotation @ AXIS / np.linalg.norm(AXIS)
     normal = np.cross(here, [1.0, 0.0, 0.0])
     turn = Rotation.from_rotvec(angle * normal / np.linalg.norm(normal)).as_matrix()
-    _, b = rows(AxisTask(axis=AXIS, direction=turn @ here, gain=1.0), START.q, None)
+    _, b = rows(d.AxisTask(axis=AXIS, direction=turn @ here, gain=1.0), START.q, None)
     assert np.linalg.norm(b) == pytest.approx(angle, rel=1e-7)

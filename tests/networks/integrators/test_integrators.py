@@ -6,19 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+import iiwa_dnn as d
 from helpers_qp import known_qp, network_rates
-from iiwa_dnn import (
-    QP,
-    Configuration,
-    DNNSolver,
-    DoubleIndicator,
-    ExplicitEuler,
-    Heart,
-    ImplicitEuler,
-    InvalidInputError,
-    ProjectionNetwork,
-    load_robot,
-)
 from iiwa_dnn.networks import Flow
 from iiwa_dnn.networks.integrators import Integrator
 from iiwa_dnn.studies.paper import START as PAPER_START
@@ -35,79 +24,79 @@ def end_of_flow(project: bool) -> np.ndarray:
 
 
 def test_eight_substeps_are_stable_for_the_papers_start_and_seven_are_not() -> None:
-    robot = load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
-    conf = Configuration(robot, PAPER_START)
-    qp = DoubleIndicator(orientation="block").build_qp(conf, Heart().anchored(conf).at(1.0))
-    network, state = ProjectionNetwork(), np.zeros(sum(qp.sizes) + 2 * qp.sizes[0])
+    robot = d.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
+    conf = d.Configuration(robot, PAPER_START)
+    qp = d.DoubleIndicator(orientation="block").build_qp(conf, d.Heart().anchored(conf).at(1.0))
+    network, state = d.ProjectionNetwork(), np.zeros(sum(qp.sizes) + 2 * qp.sizes[0])
     step = 1e-4 / network.rho
-    assert ExplicitEuler().advance(network, qp, state.copy(), step) == 8
+    assert d.ExplicitEuler().advance(network, qp, state.copy(), step) == 8
     ends = {}
     for count in (7, 8):
         state = np.zeros(network.state_size(qp))
         for _ in range(400):
-            ExplicitEuler(substeps=count).advance(network, qp, state, step)
+            d.ExplicitEuler(substeps=count).advance(network, qp, state, step)
         ends[count] = np.abs(network.rates(qp, state)).max()
     assert ends[8] < 0.05
     assert ends[7] > 1.0  # it chatters at the velocity bounds, which keep it finite
 
 
-class Doubled(ProjectionNetwork):
+class Doubled(d.ProjectionNetwork):
     """A network with a flow of its own: the paper's, twice as fast."""
 
-    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
+    def flow(self, qp: d.QP, rate: d.QP | None = None) -> Flow:
         slow = super().flow(qp)
         return slow._replace(rates=lambda s: 2.0 * slow.rates(s))
 
 
 @pytest.mark.parametrize("project", [True, False])
-@pytest.mark.parametrize("integrator", [ExplicitEuler(1000), ImplicitEuler(1e-3)], ids=repr)
+@pytest.mark.parametrize("integrator", [d.ExplicitEuler(1000), d.ImplicitEuler(1e-3)], ids=repr)
 def test_a_flow_of_a_subclass_is_integrated(integrator: Integrator, project: bool) -> None:
     network, state = Doubled(primal_projection=project), np.zeros(19)
     integrator.advance(network, BOUNDS, state, 0.5)
     exact = end_of_flow(project)
     assert np.abs(state - exact).max() < 0.01 * np.abs(exact).max()
-    assert DNNSolver(network).solve(BOUNDS).found
-    assert DNNSolver(network).compiled_answer(BOUNDS.sizes) is None
+    assert d.DNNSolver(network).solve(BOUNDS).found
+    assert d.DNNSolver(network).compiled_answer(BOUNDS.sizes) is None
 
 
 def test_a_subclass_that_changes_nothing_stays_compiled() -> None:
-    solver = DNNSolver(type("Subclass", (ProjectionNetwork,), {})())
+    solver = d.DNNSolver(type("Subclass", (d.ProjectionNetwork,), {})())
     for duration in (0.0, 1e-4):
         assert solver.compiled_answer(BOUNDS.sizes, duration) is not None
 
 
 @pytest.mark.parametrize(
-    "network", [ProjectionNetwork(), ProjectionNetwork(rho=1e-4, primal_projection=False)], ids=repr
+    "network",
+    [d.ProjectionNetwork(), d.ProjectionNetwork(rho=1e-4, primal_projection=False)],
+    ids=repr,
 )
-@pytest.mark.parametrize("integrator", [ExplicitEuler(), ImplicitEuler()], ids=repr)
-def test_a_state_or_a_point_of_another_size_is_refused(
-    network: ProjectionNetwork, integrator: Integrator
-) -> None:
+@pytest.mark.parametrize("integrator", [d.ExplicitEuler(), d.ImplicitEuler()], ids=repr)
+def test_a_state_or_a_point_of_another_size_is_refused(network, integrator) -> None:
     qp = BOUNDS
     state, point = np.zeros(19), np.zeros(14)
     for calls in (
         lambda s, p: integrator.advance(network, qp, s, 1.0),
-        lambda s, p: ImplicitEuler().settle(network, qp, s, p, 1e-6),
+        lambda s, p: d.ImplicitEuler().settle(network, qp, s, p, 1e-6),
         lambda s, p: network.rates(qp, s),
         lambda s, p: network.stable_step(qp, s),
     ):
         calls(state.copy(), point.copy())
         for size in (0, 18, 20, 19000):
-            with pytest.raises(InvalidInputError, match="state"):
+            with pytest.raises(d.InvalidInputError, match="state"):
                 calls(np.zeros(size), point.copy())
-    with pytest.raises(InvalidInputError, match="state"):
+    with pytest.raises(d.InvalidInputError, match="state"):
         network.flow(qp).read(qp, np.zeros(8), point)
     for size in (0, 13, 15):
-        with pytest.raises(InvalidInputError, match="point"):
+        with pytest.raises(d.InvalidInputError, match="point"):
             network.flow(qp).read(qp, state, np.zeros(size))
-        with pytest.raises(InvalidInputError, match="point"):
-            ImplicitEuler().settle(network, qp, state.copy(), np.zeros(size), 1e-6)
+        with pytest.raises(d.InvalidInputError, match="point"):
+            d.ImplicitEuler().settle(network, qp, state.copy(), np.zeros(size), 1e-6)
 
 
 def test_integrators_and_networks_name_themselves() -> None:
-    counted = json.loads(json.dumps(ExplicitEuler(np.int64(8)).settings()))
+    counted = json.loads(json.dumps(d.ExplicitEuler(np.int64(8)).settings()))
     assert counted == {"name": "ExplicitEuler", "substeps": 8}
-    network = ProjectionNetwork(rho=np.float64(1e-4), primal_projection=False)
+    network = d.ProjectionNetwork(rho=np.float64(1e-4), primal_projection=False)
     assert json.loads(json.dumps(network.settings())) == {
         "name": "ProjectionNetwork", "rho": 1e-4, "primal_projection": False,
     }  # fmt: skip
