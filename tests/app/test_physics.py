@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from helpers_physics import needs_opengl
 from helpers_records import draw_only
 from iiwa_dnn import Record
 from iiwa_dnn.results import pictures
+from iiwa_dnn.simulation.disturbances import Disturbances
 
 DRY = ("physics", "--duration", "0.05", "--quiet", "--no-plots")
 
@@ -58,14 +60,7 @@ def test_disturbances_one_by_one_and_a_run_again(tmp_path: Path) -> None:
     chosen = ("--set", "plant.disturbances.friction=0.02", "--disturb")
     assert call(*words, *chosen) == 0
     settings = Record.load(tmp_path / "run" / "record.npz").settings["physics"]["disturbances"]
-    assert settings == {
-        "mass_error": 0.1,
-        "friction": 0.02,
-        "encoder_noise": 1e-5,
-        "encoder_bits": 18,
-        "delay": 1,
-        "push": None,
-    }
+    assert settings == asdict(replace(Disturbances.typical(), friction=0.02))
     file = tmp_path / "run" / "settings.toml"
     assert call("track", "--config", file, "-q", "--no-plots", "--out", tmp_path / "again") == 0
     first, again = (results(tmp_path / name)[0]["q"] for name in ("run", "again"))
@@ -74,43 +69,6 @@ def test_disturbances_one_by_one_and_a_run_again(tmp_path: Path) -> None:
     assert call(*words, "--overwrite") == 0
     settings = Record.load(tmp_path / "run" / "record.npz").settings["physics"]["disturbances"]
     assert not any(settings.values())
-
-
-@needs_mujoco
-def test_the_words_of_track_hold_in_physics_too(tmp_path: Path) -> None:
-    words = ("circle", "--lock", "iiwa7_joint_3", "--noise", "1e-3", "--filter-window", "2")
-    words += ("--policy", "relax", "--set", "scheme.position_gain=5", "--check", "none")
-    words += ("--set", "reference.radius=0.01")
-    assert call(*DRY, *words, "--out", tmp_path / "circle") == 0
-    record = Record.load(tmp_path / "circle" / "record.npz")
-    assert record.dof == 6
-    expected = {"noise": 1e-3, "filter_window": 2, "policy": "relax", "motion": "physics"}
-    assert (expected | {"dt": 1e-3}).items() <= record.settings.items()
-    assert record.settings["scheme"]["position_gain"] == 5.0
-
-
-@needs_mujoco
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        ("--set plant.timestep=3e-4", "must divide"),
-        ("--set plant.disturbances.encoder_bits=99", "encoder_bits"),
-        ("--set plant.disturbances.fricton=1", "did you mean: friction"),
-        ("--set plant.gain=1", "[plant] 'gain'"),
-        ("--push nan 0 0", "push"),
-        ("--push 1 0", "push: must have shape (3,)"),
-        ("--motion rk4", "motion: must be euler"),
-    ],
-)
-def test_bad_input_is_one_line_and_2(
-    words: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert call(*DRY, *words.split(), "--out", tmp_path / "run") == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert said in captured.err
-    assert captured.err.count("\n") == 1
-    assert not (tmp_path / "run").exists()
 
 
 @needs_mujoco

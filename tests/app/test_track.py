@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import errno
-import json
 import os
 import subprocess
 import sys
@@ -43,89 +41,29 @@ def test_a_run_writes_record_metrics_report_settings_and_figures(
     assert "(convergence.png)" in (folder / "report.md").read_text()
 
 
-def test_no_plots_and_quiet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert call("track", *QUICK, "-q", "--out", tmp_path) == 0
-    assert capsys.readouterr() == ("", "")
-    assert not list(tmp_path.glob("*.p[nd]*"))
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        (),
-        ("--noise", "0.01", "--filter-window", "10", "--seed", "4"),
-        ("--motion", "rk4", "--check", "both"),
-        ("--mode", "continuous", "--orientation", "block", "--dt", "1e-4", "--duration", "0.02"),
-        ("--joint-limit", "2.3571", "--weight", "1"),
-    ],
-    ids=["default", "noise", "rk4", "continuous", "limit"],
-)
-def test_metrics_can_be_recomputed_from_the_record_alone(
-    words: tuple[str, ...], tmp_path: Path
-) -> None:
-    record, metrics = track(tmp_path, *words)
-    position, rotation = dh_pose(record["q"])
-    error = position - record["position_desired"]
-    # tr(R_d' R) = 1 + 2 cos(angle) is useless near zero; ||R - R_d||_F = 2 sqrt(2) sin(angle / 2).
-    desired = np.broadcast_to(dh_pose(record["q"][0])[1], rotation.shape)
-    chord = np.sqrt(((rotation - desired) ** 2).sum(axis=(1, 2)))
-    settings = json.loads(str(record["settings"]))
-    lower = np.array(settings["q_lower"])
-    upper = np.array(settings["q_upper"])
-    excess = np.maximum(lower - record["q"], record["q"] - upper)
-    dq = np.diff(record["q"], axis=0) / settings["dt"]
-    expected = {
-        "max_position_error_m": np.sqrt((error**2).sum(axis=1)).max(),
-        "mse_position_error_m2": (error**2).mean(),
-        "max_orientation_error_rad": (2.0 * np.arcsin(chord / np.sqrt(8.0))).max(),
-        "joint_drift_rad": np.abs(record["q"][-1] - record["q"][0]).max(),
-        "max_kinetic_index": (dq**2).sum(axis=1).max(),
-        "position_limit_violation_rad": max(excess.max(), 0.0),
-        "velocity_limit_violation_rad_s": max((np.abs(dq) - settings["dq_max"]).max(), 0.0),
-        "max_kkt_residual": record["kkt_residual"].max(),
-        "steps": len(record["dq"]),
-        "dt_s": settings["dt"],
-        "duration_s": record["t"][-1],
-    }
-    for name, value in expected.items():
-        assert metrics[name] == pytest.approx(value, rel=1e-9, abs=1e-9), name
-    assert metrics["steps"] == round(settings["duration"] / settings["dt"])
-    assert metrics["realtime_factor"] == pytest.approx(
-        metrics["duration_s"] / metrics["wall_time_s"]
-    )
-    check = metrics["crosscheck"]
-    gap = record["solution_gap"].max(axis=1)
-    believed = record["reference_residual"] <= 1e-8
-    assert believed.any()
-    assert check["max_solution_gap"] == record["solution_gap"][believed].max()
-    assert check["max_objective_gap"] == record["objective_gap"][believed].max()
-    assert check["reference_failures"] == (record["reference_residual"] > 1e-8).sum()
-    if settings["mode"] == "converged":
-        assert check["disagreements"] == (gap > 1e-6).sum()
-
-
 # Words and tables
 
 
 def test_words_and_tables_reach_the_run(tmp_path: Path) -> None:
-    q0 = [0.1, 0.5, -0.2, 1.2, 0.3, -0.8, 0.0]
+    q0 = np.delete(PAPER_Q0, 2)
     file = tmp_path / "mine.toml"
     file.write_text(
         "[scheme]\nweight = 0.1\nkinetic = 'inertia'\n[run]\nseed = 1\nnoise_at = 'measurement'\n"
-        "[limits]\nposition = 2\nspeed = 0.5\ntip_speed = 1.5\n"
+        "[limits]\nposition = 2.4\nspeed = 0.5\ntip_speed = 1.5\n"
     )
     words = ("--weight", "0.7", "--orientation", "none", "--scale", "1e-3", "--seed", "8")
     words += ("--noise", "1e-8", "--filter-window", "3", "--check", "osqp", "--tolerance", "1e-5")
     words += ("--acceleration-limit", "800", "--jerk-limit", "3e6", "--motion", "midpoint")
-    words += ("--set", "scheme.drift_gain=5", "--set", "robot.tip=iiwa7_link_7")
-    _, metrics = track(tmp_path / "run", "--config", file, "--q0", *q0, *words)
+    words += ("--set", "scheme.drift_gain=5", "--tip", "iiwa7_link_7")
+    words += ("--robot", IIWA7, "--lock", "iiwa7_joint_3")
+    record, metrics = track(tmp_path / "run", "--config", file, "--q0", *q0, *words)
     settings = metrics["settings"]
     expected = {
         "robot": "iiwa7",
         "tip": "iiwa7_link_7",
-        "q0": q0,
-        "q_lower": [-2.0] * 7,
-        "q_upper": [2.0] * 7,
+        "q0": q0.tolist(),
+        "q_lower": [-2.4] * 6,
+        "q_upper": [2.4] * 6,
         "dt": 1e-3,
         "duration": 0.05,
         "motion": "midpoint",
@@ -142,6 +80,7 @@ def test_words_and_tables_reach_the_run(tmp_path: Path) -> None:
     assert limits == [800.0, 3e6, 1.5]
     assert settings["reference"]["scale"] == 1e-3
     assert settings["check"]["tolerance"] == 1e-5
+    assert record["q"].shape == (51, 6)
 
 
 @pytest.mark.parametrize(
@@ -193,16 +132,6 @@ def test_a_robots_own_limits(tmp_path: Path) -> None:
     assert metrics["settings"]["dq_max"] == [0.6] * 7
 
 
-def test_another_robot_by_its_file_and_a_locked_joint(tmp_path: Path) -> None:
-    q0 = np.delete(PAPER_Q0, 2)
-    words = ("--robot", IIWA7, "--lock", "iiwa7_joint_3", "--q0", *q0, "--scale", "1e-3")
-    record, metrics = track(tmp_path, *words)
-    assert record["q"].shape == (51, 6)
-    position, _ = dh_pose(np.insert(record["q"], 2, 0.0, axis=1))
-    np.testing.assert_allclose(record["position"], position, rtol=0, atol=1e-12)
-    assert metrics["max_position_error_m"] < 1e-5
-
-
 @pytest.mark.parametrize("name", command.PATHS)
 def test_a_path_goes_by_its_name(name: str, tmp_path: Path) -> None:
     record, metrics = track(tmp_path, name, "--tracking", "next", "--check", "none")
@@ -230,12 +159,17 @@ def test_a_path_from_a_csv_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 # Folders and repetition
 
 
-def test_a_run_is_repeated_bit_for_bit_by_its_settings(tmp_path: Path) -> None:
+def test_a_run_is_repeated_bit_for_bit_by_its_settings_and_quietly(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     # OSQP repeats itself to the last digit, ProxQP does not.
     words = ("circle", "--noise", "0.01", "--seed", "5", "--filter-window", "4", "--check", "osqp")
     track(tmp_path / "a", *words, "--weight", "0.3", "--lock", "iiwa7_joint_3")
+    capsys.readouterr()
     file = tmp_path / "a" / "settings.toml"
     assert call("track", "--config", file, "-q", "--no-plots", "--out", tmp_path / "b") == 0
+    assert capsys.readouterr() == ("", "")
+    assert not list(tmp_path.rglob("*.p[nd]*"))
     for name in ("record.npz", "settings.toml"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
     before = (tmp_path / "a" / "record.npz").read_bytes()
@@ -292,63 +226,49 @@ def test_a_broken_limit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert captured.err.startswith("iiwa-dnn track: the start posture ")
 
 
-def test_obstacles_are_kept_away_from_and_links_without_geometry_are_told(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    ball = "distance = 0.03\n[[obstacle]]\nshape = 'sphere'\ncenter = [0.36, 0.16, 0.64]\n"
+BALL = """distance = 0.03
+[[obstacle]]
+shape = "sphere"
+center = [0.36, 0.16, 0.64]
+radius = 0.05
+"""
+
+
+def test_obstacles_are_kept_away_from(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "ball.toml"
-    file.write_text(f"{ball}radius = 0.05\n")
+    file.write_text(BALL)
     words = ("--obstacles", file, "--dt", "5e-3", "--duration", "3")
     record, metrics = track(tmp_path / "run", *words)
     assert record["distance"].min() >= 0.03
     assert "Sphere 1" in (metrics["collisions"]["first"], metrics["collisions"]["second"])
     assert "iiwa7_link_4 and Sphere 1" in capsys.readouterr().out
-    file.write_text(f"{ball}radius = -1\n")
-    assert call("track", "--obstacles", file, "--out", tmp_path / "bad") == 2
-    said = capsys.readouterr().err
-    assert "ball.toml: obstacle 1: radius: must be a finite number above 0" in said
-    assert said.count("\n") == 1
 
 
 # Exit code 2
 
 
 BAD: dict[str, tuple[str, ...]] = {
-    "'iiwa14'; did you mean: iiwa7": ("--robot", "iiwa14"),
-    "none/robot.urdf": ("--robot", "none/robot.urdf"),
     "not XML": ("--robot", "robot.urdf"),
-    "several ends: ": ("--robot", "two_ends.urdf"),
-    "'iiwa7_link_77'; did you mean: iiwa7_link_7": ("--tip", "iiwa7_link_77"),
-    "q0: must be finite": ("--q0", "nan", *"000000"),
     "q0: must have shape (7,)": ("--q0", "0", "0"),
-    "dt: must be": ("--dt", "nan"),
     "duration: 1e+15 steps": ("--duration", "1e12"),
-    "weight: must be in [0, 1]": ("--weight", "1.5"),
-    "noise: must be": ("--noise", "-1e-2"),
     "joint-limit: must be": ("--joint-limit", "0"),
     "speed: must be": ("--speed", "0"),
-    "policy: must be one of": ("--policy", "hope"),
-    "mode: must be one of": ("--mode", "slow"),
-    "proof, not 'nobody'": ("--check", "nobody"),
-    "jerk: is needed": ("--jerk-limit", "robot"),
-    "motion: ": ("--mode", "continuous", "--motion", "rk4"),
+    "limits.acceleration: must be": ("--acceleration-limit", "-1"),
+    "seed: must be": ("--seed", "-1"),
     "reference: must be one of heart, circle, ": ("hart",),
-    "none.csv: No such file": ("none.csv",),
     "bad.csv: the header must be t,x,y,z": ("bad.csv",),
     "no setting in [reference] 'radius'": ("--set", "reference.radius=1"),
     "no setting in [scheme] 'wieght'; did you mean: weight": ("--set", "scheme.wieght=1"),
     "no setting in [run] 'dtt'": ("--set", "run.dtt=1"),
     "no setting in [limits] 'tipspeed'": ("--set", "limits.tipspeed=1"),
+    "no setting in [plant] 'gain'": ("--set", "plant.gain=1"),
+    "did you mean: friction": ("--set", "plant.disturbances.fricton=1"),
     "plant: must be one of ideal, mujoco, not 'franka'": ("--plant", "franka"),
     "schema: must be one of the tables": ("--set", "schema.weight=1"),
     "run: must be one of the tables": ("--set", "run=1"),
     "weight: must be one of the tables": ("--set", "weight"),
-    "limits.acceleration: must be": ("--acceleration-limit", "-1"),
-    "seed: must be": ("--seed", "-1"),
     "none.toml: cannot be read as TOML": ("--config", "none.toml"),
-    "bad.csv: cannot be read as TOML": ("--config", "bad.csv"),
     "file/run: cannot be written": ("--out", "bad.csv/file/run"),
-    "bad.csv: cannot be written": ("--out", "bad.csv"),
 }
 
 
@@ -359,7 +279,6 @@ def test_bad_input_exits_2_with_one_clear_line_and_leaves_no_file(
     monkeypatch.chdir(tmp_path)
     (tmp_path / "bad.csv").write_text("x,y,z\n0,0,0\n")
     (tmp_path / "robot.urdf").write_text("solid robot\n")
-    two_ends(tmp_path / "two_ends.urdf")
     before = {path for path in tmp_path.rglob("*") if path.is_file()}
     assert call("track", *QUICK, *BAD[said]) == 2
     captured = capsys.readouterr()
@@ -368,33 +287,6 @@ def test_bad_input_exits_2_with_one_clear_line_and_leaves_no_file(
     assert captured.err.startswith("iiwa-dnn track: error: ")
     assert said in captured.err
     assert {path for path in tmp_path.rglob("*") if path.is_file()} == before
-
-
-def two_ends(file: Path) -> None:
-    """Write the iiwa 7 with a probe beside its flange."""
-    probe = (
-        '<link name="probe"/><joint name="probe_mount" type="fixed">'
-        '<parent link="iiwa7_link_6"/><child link="probe"/></joint></robot>'
-    )
-    file.write_text(IIWA7.read_text(encoding="utf-8").replace("</robot>", probe))
-
-
-def test_a_full_disk_is_one_line_and_keeps_the_old_run(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    track(tmp_path)
-    capsys.readouterr()
-    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-
-    def fail(descriptor: int) -> None:
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr(os, "fsync", fail)  # where the system tells of it at the latest
-    assert call("track", *QUICK, "--seed", "1", "--overwrite", "--out", tmp_path) == 2
-    captured = capsys.readouterr()
-    assert captured.err.count("\n") == 1
-    assert os.strerror(errno.ENOSPC) in captured.err
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 def test_the_script_from_anywhere_and_as_in_this_process(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from iiwa_dnn.references import Circle, Heart, Waypoints
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot import Configuration, load_robot
+from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse
 from iiwa_dnn.simulation import NOISE_ENTRIES, gaussian_noise, simulate
 
@@ -99,23 +99,21 @@ def test_a_run_of_several_blocks_has_no_seams(motion: str) -> None:
 
 
 def test_settings_say_what_was_asked_and_with_what() -> None:
-    home = tuple(np.add(PAPER_Q0, 0.1))
+    options = {"noise": 0.001, "filter_window": 4, "seed": 11}
     settings = run(
-        DoubleIndicator(weight=0.3, kinetic="inertia", home=home),
+        DoubleIndicator(weight=0.3, kinetic="inertia"),
         robot=paper_robot().with_limits(velocity=1.0),
-        noise=0.001,
-        filter_window=4,
-        seed=11,
         solver=DNNSolver(tol=1e-8),
         check=CrossCheck(("osqp",), tolerance=1e-5),
+        **options,
     ).settings
     expected = {
         "robot": "iiwa7", "tip": paper_robot().tip, "q_lower": [-2.5] * 7, "dq_max": [1.0] * 7,
         "q0": list(PAPER_Q0), "dt": 1e-3, "duration": 0.05, "mode": "converged", "motion": "euler",
-        "noise": 0.001, "filter_window": 4, "seed": 11, "tol": 1e-8, "status": "completed",
+        "tol": 1e-8, "status": "completed",
     }  # fmt: skip
-    assert expected.items() <= settings.items()
-    scheme = {"weight": 0.3, "kinetic": "inertia", "home": list(home)}
+    assert (expected | options).items() <= settings.items()
+    scheme = {"weight": 0.3, "kinetic": "inertia", "home": list(PAPER_Q0)}
     assert scheme.items() <= settings["scheme"].items()
     assert settings["reference"] == {"name": "heart", "scale": 3.45e-3, "period": 10.0}
     check = {"solvers": ["osqp"], "second": ["proxqp"], "tolerance": 1e-5}
@@ -123,18 +121,6 @@ def test_settings_say_what_was_asked_and_with_what() -> None:
     assert settings["network"]["name"] == "ProjectionNetwork"
     assert {"iiwa-dnn", "numpy", "pin", "qpsolvers"} <= set(settings["versions"])
     json.dumps(settings, allow_nan=False)
-
-
-def test_another_reference_scheme_and_robot() -> None:
-    robot = load_robot("iiwa7", locked=("iiwa7_joint_3",))
-    q0 = np.delete(PAPER_Q0, 2)
-    circle = Circle(radius=0.02, period=1.0).anchored(Configuration(robot, q0))
-    record = simulate(robot, PseudoInverse(), circle, q0, dt=1e-3, duration=0.1)
-    assert record.q.shape == (101, 6)
-    assert failures(record) == []
-    full = np.insert(record.q, 2, 0.0, axis=1)
-    np.testing.assert_allclose(record.position, dh_pose(full)[0], rtol=0, atol=1e-12)
-    assert np.abs(record.position - record.position_desired).max() < 1e-4
 
 
 def test_progress_adds_up_to_the_steps() -> None:
@@ -180,11 +166,7 @@ def test_cyclic_motion_comes_back_and_minimum_energy_drifts() -> None:
 def test_a_network_that_diverges_is_called_that() -> None:
     solver = DNNSolver(PrimalDualNetwork(rho=1e-5), follower=ExplicitEuler(substeps=1))
     circle = Circle(0.05, period=1.0).anchored(paper_start())
-    options: Any = {"mode": "continuous", "dt": 1e-3, "duration": 0.2}
-    record = simulate(
-        paper_robot(), DoubleIndicator(), circle, PAPER_Q0, solver=solver, check=UNCHECKED,
-        **options,
-    )  # fmt: skip
+    record = run(reference=circle, solver=solver, mode="continuous", duration=0.2)
     reasons = failures(record)
     assert len(reasons) == 2  # the path, and why it ended
     assert "the network diverged: take a smaller dt" in reasons[1]
@@ -233,43 +215,35 @@ def test_the_continuous_network_lags_as_much_as_the_papers() -> None:
 # How a run stops
 
 
-def test_a_network_that_cannot_settle_stops_the_run_at_rest() -> None:
+@pytest.mark.parametrize("motion", ["euler", "rk4"])
+@pytest.mark.parametrize("entry", [None, *NOISE_ENTRIES])
+def test_a_run_that_is_stopped_ends_at_rest_and_is_recorded_as_it_was(
+    entry: str | None, motion: str
+) -> None:
     # Too slow for the heart: from some step on, no velocity within the limits fulfils the task.
-    robot = paper_robot().with_limits(velocity=0.15)
+    noise = {} if entry is None else {"noise": 1e-4, "noise_at": entry}
     record = run(
-        robot=robot, reference=heart(period=2.0), duration=1.0, check=CrossCheck(), policy="stop"
+        robot=paper_robot().with_limits(velocity=0.15),
+        reference=heart(period=2.0),
+        duration=1.0,
+        motion=motion,
+        policy="stop",
+        check=CrossCheck(),
+        **noise,
     )
     last = record.steps - 1
     assert 0 < last < 999
     assert record.settings["status"].startswith(f"stopped at step {last} ")
-    np.testing.assert_array_equal(record.dq[last], np.zeros(7))
-    np.testing.assert_array_equal(record.q[last + 1], record.q[last])
-    assert record.dq[last - 1].any()
-    assert record.kkt_residual[last] > 1e-9
-    assert (record.kkt_residual[:last] <= 1e-9).all()
-    np.testing.assert_array_equal(record.reference_residual[last], [np.inf])
-    np.testing.assert_allclose(record.position, dh_pose(record.q)[0], rtol=0, atol=1e-12)
     assert any(f"step {last} " in reason for reason in failures(record))
-    assert np.isfinite(record.q).all()
-
-
-@pytest.mark.parametrize("motion", ["euler", "rk4"])
-@pytest.mark.parametrize("entry", NOISE_ENTRIES)
-def test_a_stopped_run_is_recorded_as_it_was(entry: str, motion: str) -> None:
-    robot = paper_robot().with_limits(velocity=0.15)
-    record = run(
-        robot=robot,
-        reference=heart(period=2.0),
-        duration=1.0,
-        motion=motion,
-        noise=1e-4,
-        noise_at=entry,
-        policy="stop",
-    )
-    assert record.settings["status"].startswith(f"stopped at step {record.steps - 1} ")
     np.testing.assert_array_equal(record.q[1:], record.q[:-1] + 1e-3 * record.dq)
     np.testing.assert_allclose(record.position, dh_pose(record.q)[0], rtol=0, atol=1e-12)
     np.testing.assert_allclose(record.kinetic_index, (record.dq**2).sum(axis=1), rtol=1e-12)
+    if entry is None:
+        assert not record.dq[last].any()
+        assert record.dq[last - 1].any()
+        assert record.kkt_residual[last] > 1e-9
+        assert (record.kkt_residual[:last] <= 1e-9).all()
+        np.testing.assert_array_equal(record.reference_residual[last], [np.inf])
 
 
 def test_a_stage_without_a_solution_is_recorded() -> None:
@@ -305,21 +279,16 @@ def test_a_kinetic_index_of_ones_own_is_recorded() -> None:
     np.testing.assert_allclose(record.kinetic_index, 2.0 * (record.dq**2).sum(axis=1), rtol=1e-12)
 
 
-def test_a_reference_that_was_not_anchored_is_told_at_once() -> None:
+def test_a_path_that_begins_elsewhere_is_warned_of() -> None:
     with pytest.warns(UserWarning, match=r"begins 0\.\d+ m and .* rad from.*anchored"):
         run(reference=Heart(), duration=0.002)
-
-
-def test_a_path_of_poses_that_begins_elsewhere_is_warned_of() -> None:
     start = paper_start()
-    robot = start.robot
     points = start.position + [[0.1, 0.0, -0.1], [0.1, 0.05, -0.1]]
     turns = np.tile(pin.Quaternion(start.rotation).coeffs()[[3, 0, 1, 2]], (2, 1))
     path = Waypoints([0.0, 0.2], points, quaternions=turns)
-    arguments = {"dt": 1e-3, "duration": 0.05, "check": CrossCheck(())}
     with pytest.warns(UserWarning, match=r"begins 0\.141 m.*solve_pose"):
-        record = simulate(robot, DoubleIndicator(), path, start.q, **arguments)
-    assert record.steps == 50
-    posture = solve_pose(robot, path.at(0.0), start.q).q
-    record = simulate(robot, DoubleIndicator(), path, posture, **arguments)
+        run(reference=path)
+    posture = solve_pose(paper_robot(), path.at(0.0), start.q).q
+    options: Any = {"dt": 1e-3, "duration": 0.05, "check": UNCHECKED}
+    record = simulate(paper_robot(), DoubleIndicator(), path, posture, **options)
     assert np.linalg.norm(record.position - record.position_desired, axis=1).max() < 1e-3

@@ -44,6 +44,8 @@ REFUSED: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
     ("duration", simulate, {"duration": 1e-6}),  # not one step of 1e-3
     *[("mode", simulate, {"mode": bad}) for bad in ("discrete", None)],
     *[("motion", simulate, {"motion": bad}) for bad in ("heun", None, ["euler"])],
+    ("motion", simulate, {"mode": "continuous", "motion": "rk4"}),
+    ("motion", physics, {"timestep": 1e-3, "motion": "rk4"}),
     *[("noise", simulate, {"noise": bad}) for bad in NUMBERS],
     *[("filter_window", simulate, {"filter_window": bad}) for bad in (0, -3, 2.5, *NUMBERS[1:])],
     *[("seed", simulate, {"seed": bad}) for bad in (-1, 1.5, None, "lucky")],
@@ -70,6 +72,7 @@ REFUSED: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
     ("encoder_noise", Disturbances, {"encoder_noise": np.inf}),
     ("encoder_bits", Disturbances, {"encoder_bits": 60}),
     ("delay", Disturbances, {"delay": -1}),
+    ("push", Push, {"force": (1.0, 0.0)}),
     ("push", Push, {"force": (1.0, np.nan, 0.0)}),
     ("push_at", Push, {"start": -1.0}),
     ("push_for", Push, {"duration": np.inf}),

@@ -74,13 +74,11 @@ def test_a_command_arrives_late_by_the_delay(robot, delay):
 
 
 def test_its_settings_say_everything(robot):
-    plant = MujocoPlant(
-        disturbances=Disturbances(friction=0.01, delay=2), timestep=5e-4,
-        gains=TorqueGains(bandwidth=50.0), dynamics=JointDynamics(0.3, 0.07),
-    )  # fmt: skip
-    limit = [176.0, 176.0, 110.0, 110.0, 110.0, 40.0, 40.0]
+    disturbances, gains = Disturbances(friction=0.01, delay=2), TorqueGains(bandwidth=50.0)
+    plant = MujocoPlant(disturbances, gains, JointDynamics(0.3, 0.07), timestep=5e-4)
     settings = dict(plant.start(robot, START, DT, 0))
-    np.testing.assert_array_equal(settings.pop("torque_max"), limit)
+    limit = settings.pop("torque_max")
+    np.testing.assert_array_equal(limit, [176.0, 176.0, 110.0, 110.0, 110.0, 40.0, 40.0])
     assert settings == {
         "physics": {
             "engine": f"MuJoCo {mujoco.__version__}",
@@ -88,8 +86,8 @@ def test_its_settings_say_everything(robot):
             "damping": [0.3] * 7,
             "armature": [0.07] * 7,
             "friction": [0.01 * value for value in limit],
-            "disturbances": asdict(Disturbances(friction=0.01, delay=2)),
-            "torque_loop": {"bandwidth": 50.0, "observer_bandwidth": 300.0, "leash": 0.1},
+            "disturbances": asdict(disturbances),
+            "torque_loop": asdict(gains),
         }
     }
 
