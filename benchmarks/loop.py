@@ -1,4 +1,4 @@
-"""A step of the control loop beside PlaCo, Pink and mink: the heart, alone and among three balls.
+"""A step of the control loop beside PlaCo, Pink and mink, and beside PlaCo among three balls.
 
 Each library's loop is a process in the Python that has it (`loops`), and they take turns, so that
 noise of the machine falls on all alike. The same kinematics judge all postures.
@@ -31,7 +31,6 @@ CHUNK = 250
 DT = 1e-3
 """Control period [s]."""
 
-
 Taken = dict[str, list[Any]]
 """Times ``us`` [us] and joint positions ``q`` [rad] of a loop's steps."""
 
@@ -50,10 +49,9 @@ LOOPS = (
     Loop("iiwa_dnn, `Controller.step`", "iiwa_dnn", "own_loop", "command"),
     Loop("iiwa_dnn, with q + dt dq", "iiwa_dnn", "own_loop", "euler", True),
     Loop("PlaCo", "placo", "placo_loop", "", True),
-    Loop("Pink, daqp", "pink", "pink_loop", "daqp", True),
-    Loop("Pink, daqp, target one step ahead", "pink", "pink_loop", "daqp, ahead"),
-    Loop("Pink, proxqp", "pink", "pink_loop", "proxqp"),
-    Loop("mink, daqp", "mink", "mink_loop", "daqp", True),
+    Loop("Pink, daqp", "pink", "pink_loop"),
+    Loop("Pink, daqp, target one step ahead", "pink", "pink_loop", "ahead"),
+    Loop("mink, daqp", "mink", "mink_loop"),
 )
 
 _COLUMNS = {

@@ -19,7 +19,6 @@ try:
     import daqp
     import osqp
     import piqp
-    import quadprog
     from proxsuite import proxqp
 except ImportError as error:  # pragma: no cover
     missing = error.name or "a solver"
@@ -106,33 +105,6 @@ class Daqp(Peer):
         x, _, _, info = answer
         n, m, _ = qp.sizes
         return x, info["lam"][n + m :], info["lam"][n : n + m], info["lam"][:n]
-
-
-class Quadprog(Peer):
-    """Goldfarb and Idnani's method; it has no warm start."""
-
-    name = "quadprog"
-
-    def convert(self, qp: QP) -> Any:
-        upper = np.isfinite(qp.ub)
-        lower = np.isfinite(qp.lb)
-        eye = np.eye(qp.q.size)
-        rows = np.vstack([qp.A, -qp.G, -eye[upper], eye[lower]])
-        limits = np.concatenate([qp.b, -qp.h, -qp.ub[upper], qp.lb[lower]])
-        return qp.P.copy(), -qp.q, np.ascontiguousarray(rows.T), limits, qp.b.size
-
-    def solve(self, given: Any) -> Any:
-        return quadprog.solve_qp(*given)
-
-    def point(self, qp: QP, answer: Any) -> Point:
-        n, m, p = qp.sizes
-        upper = np.isfinite(qp.ub)
-        lower = np.isfinite(qp.lb)
-        multipliers = answer[4]
-        box = np.zeros(n)
-        box[upper] += multipliers[p + m : p + m + upper.sum()]
-        box[lower] -= multipliers[p + m + upper.sum() :]
-        return answer[0], -multipliers[:p], multipliers[p : p + m], box
 
 
 class Piqp(Peer):
@@ -233,4 +205,4 @@ class Osqp(Peer):
         return answer.x, answer.y[:p], answer.y[p : p + m], answer.y[p + m :]
 
 
-PEERS: tuple[type[Peer], ...] = (Network, Daqp, Quadprog, Piqp, Proxqp, Osqp)
+PEERS: tuple[type[Peer], ...] = (Network, Daqp, Piqp, Proxqp, Osqp)

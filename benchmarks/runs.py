@@ -1,6 +1,5 @@
-"""Whole runs, unchecked and checked; time of a new process until its first step; memory."""
+"""Whole runs, unchecked and checked; time of a new process until its first step."""
 
-import json
 import subprocess
 import sys
 import time
@@ -34,26 +33,10 @@ for k in range(2):
 print(command.dq[0])
 """
 
-_MEMORY = """
-import json, sys
-from pathlib import Path
-import iiwa_dnn
-from iiwa_dnn.studies.runs import HeartRun
-def run(duration):
-    return HeartRun(mode="converged", orientation="so3", duration=duration).run()
-run(0.01)  # loading takes more memory for a moment than it keeps
-Path("/proc/self/clear_refs").write_text("5")  # forget the largest memory so far
-record = run(float(sys.argv[1]))
-status = Path("/proc/self/status").read_text().split()
-peak = 1024 * int(status[status.index("VmHWM:") + 1])
-size = sum(v.nbytes for v in vars(record).values() if hasattr(v, "nbytes"))
-print(json.dumps([peak / 1e6, size / 1e6]))
-"""
 
-
-def run_python(code: str, *arguments: str) -> str:
+def run_python(code: str) -> str:
     """Return the standard output of a script."""
-    words = [sys.executable, "-c", code, *arguments]
+    words = [sys.executable, "-c", code]
     return subprocess.run(words, capture_output=True, text=True, check=True).stdout
 
 
@@ -85,10 +68,6 @@ def measured() -> Iterator[dict[str, Any]]:
     for name, measure in timed.items():
         seconds = np.median([measure() for _ in range(ROUNDS)])
         yield {"name": name, "value": f"{seconds:.2f} s"}
-    for length in (2.0, 20.0):
-        peak, size = json.loads(run_python(_MEMORY, str(length)))
-        name = f"largest memory of a run of {length:g} s at 1e-4 s"
-        yield {"name": name, "value": f"{peak:.0f} MB, of which the record {size:.0f} MB"}
 
 
 def report() -> None:
