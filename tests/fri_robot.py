@@ -1,247 +1,135 @@
 """A robot's side of KUKA's Fast Robot Interface (FRI), with an arm that follows every command.
 
 The robot sends a monitoring message in every period, and the client answers it by a command; both
-are in protobuf's wire format. Field numbers are those of KUKA's client SDK 1.11 to 2.5; a reader
-skips fields that it does not know, so only those used here are declared. KUKA publishes states and
-messages, but no numbers: the lengths of the waiting states are this module's. A robot brakes where
-this one ends the session. It is for programs, not for safety.
+are in protobuf's wire format. Field numbers are those of KUKA's client SDK 1.11 to 2.5. KUKA
+publishes states and messages, but no numbers: the length of the waiting states is this module's.
+It is for programs, not for safety.
 """
 
 import socket
-import time
-from collections.abc import Callable
-from enum import IntEnum
+import struct
+from collections.abc import Iterator
+from itertools import islice
 from typing import Any
 
 import numpy as np
-from google.protobuf import descriptor_pb2, message_factory
 
-from iiwa_dnn.qp.program import Vector
+from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.robot import Robot
+
+CLIENT = ("127.0.0.1", 30200)
+"""Address of the client; KUKA's port is fixed."""
 
 MONITORING_ID = 0x245142
 COMMAND_ID = 0x34001
 
-READY_PERIODS = 20
-"""Periods in MONITORING_READY before the robot asks for commands."""
+IDLE, MONITORING_WAIT, MONITORING_READY, COMMANDING_WAIT, COMMANDING_ACTIVE = range(5)
 
-MIRRORED_PERIODS = 20
-"""Answers in COMMANDING_WAIT that repeat the robot's position before commands are followed."""
+WAITING = 20
+"""Periods in MONITORING_READY, and in COMMANDING_WAIT, where positions have to be repeated."""
 
-CLOSING_MESSAGES = 3
-"""Messages that tell the client of the end of the session; some may be lost."""
+ROUNDING = 1e-6
+"""Rounding of a repeated position [rad], and of a velocity limit, relative to it."""
 
-_PATIENCE = 1.0  # longest time for an answer [s]
-_ROUNDING = 1e-6  # of a repeated position [rad], and of a velocity limit, relative to it
-_ONE = 1  # in the SDK's enumerations: an overlay of joint positions, commands of positions
+JOINTS = np.dtype([("tag", "u1"), ("value", "<f8")])
+"""One joint's number in the wire format."""
 
 
-class SessionState(IntEnum):
-    """State of the session between robot and client."""
-
-    IDLE = 0
-    MONITORING_WAIT = 1
-    MONITORING_READY = 2
-    COMMANDING_WAIT = 3
-    COMMANDING_ACTIVE = 4
+def varint(value: int) -> bytes:
+    """Encode a whole number."""
+    low = value & 0x7F
+    return bytes([low]) if value == low else bytes([low | 0x80]) + varint(value >> 7)
 
 
-_EXCELLENT = 3  # connection quality
-
-# Fields of each message by their numbers. An enumeration is an int32 on the wire.
-_FIELDS = {
-    "JointValues": {1: "value repeated double"},
-    "TimeStamp": {1: "sec required uint32", 2: "nanosec required uint32"},
-    "MessageHeader": {
-        1: "messageIdentifier required uint32",
-        2: "sequenceCounter required uint32",
-        3: "reflectedSequenceCounter required uint32",
-    },
-    "ConnectionInfo": {
-        1: "sessionState required int32",
-        2: "quality required int32",
-        3: "sendPeriod optional uint32",
-        4: "receiveMultiplier optional uint32",
-    },
-    "RobotInfo": {1: "numberOfJoints optional int32", 5: "driveState repeated int32"},
-    "MessageMonitorData": {
-        1: "measuredJointPosition optional JointValues",
-        2: "measuredTorque optional JointValues",
-        3: "commandedJointPosition optional JointValues",
-        4: "commandedTorque optional JointValues",
-        5: "externalTorque optional JointValues",
-        15: "timestamp optional TimeStamp",
-    },
-    "MessageIpoData": {
-        1: "jointPosition optional JointValues",
-        10: "clientCommandMode optional int32",
-        11: "overlayType optional int32",
-    },
-    "FRIMonitoringMessage": {
-        1: "header required MessageHeader",
-        2: "robotInfo optional RobotInfo",
-        3: "monitorData optional MessageMonitorData",
-        4: "connectionInfo optional ConnectionInfo",
-        5: "ipoData optional MessageIpoData",
-    },
-    "MessageCommandData": {1: "jointPosition optional JointValues"},
-    "FRICommandMessage": {
-        1: "header required MessageHeader",
-        2: "commandData optional MessageCommandData",
-    },
-}
-
-
-def message_types() -> tuple[Any, Any]:
-    """Build the classes of monitoring and of command messages."""
-    kind = descriptor_pb2.FieldDescriptorProto
-    file = descriptor_pb2.FileDescriptorProto(name="fri.proto", package="fri", syntax="proto2")
-    for message, fields in _FIELDS.items():
-        declared = file.message_type.add(name=message)
-        for number, field in fields.items():
-            name, label, own = field.split()
-            added = declared.field.add(name=name, number=number)
-            added.label = kind.Label.Value(f"LABEL_{label.upper()}")
-            if own in _FIELDS:
-                added.type = kind.TYPE_MESSAGE
-                added.type_name = f".fri.{own}"
+def encode(fields: dict[int, Any]) -> bytes:
+    """Encode a message by its fields' numbers: whole numbers, joint values (7,), or messages."""
+    data = b""
+    for number, value in fields.items():
+        if isinstance(value, int):
+            data += varint(8 * number) + varint(value)
+        else:
+            if isinstance(value, dict):
+                inner = encode(value)
             else:
-                added.type = kind.Type.Value(f"TYPE_{own.upper()}")
-    classes = message_factory.GetMessages([file])
-    return classes["fri.FRIMonitoringMessage"], classes["fri.FRICommandMessage"]
+                inner = b"".join(struct.pack("<Bd", 9, joint) for joint in value)
+            data += varint(8 * number + 2) + varint(len(inner)) + inner
+    return data
 
 
-MONITORING, COMMAND = message_types()
+def number_at(data: Iterator[int]) -> int:
+    """Decode the whole number that comes next."""
+    byte = next(data)
+    return byte if byte < 0x80 else byte - 0x80 + (number_at(data) << 7)
 
 
-class FriController:
-    """One session of a robot of 7 joints with one client, in joint position control.
+def decode(message: bytes) -> dict[int, Any]:
+    """Decode a message into whole numbers and bytes by their fields' numbers."""
+    found: dict[int, Any] = {}
+    data = iter(message)
+    for tag in data:
+        value = number_at(data)
+        found[tag >> 3] = bytes(islice(data, value)) if tag & 7 == 2 else value
+    return found
 
-    In each period: send `message`, hand the answer to `advance`. A command is followed if it is
-    inside the position limits, and reached from the last commanded position within the velocity
-    limits in one period. The session ends at any other, and where none comes.
 
-    Attributes:
-        state: State of the session.
-        fault: Reason for the end of the session; None: it goes on, or was ended.
-        commanded: Commanded joint positions [rad], (7,).
-        period: Time between two messages [s], whole milliseconds.
+def monitoring(state: int, sequence: int, reflected: int, q: Vector, period: float) -> bytes:
+    """Encode a monitoring message for joint position control, of an arm that is at q (7,) [rad]."""
+    zeros = np.zeros(7)
+    message = {
+        1: {1: MONITORING_ID, 2: sequence, 3: reflected},
+        2: {1: 7},  # joints
+        3: {1: q, 2: zeros, 3: q, 4: zeros, 5: zeros, 15: {1: 0, 2: 0}},  # measured and commanded
+        4: {1: state, 2: 3, 3: round(1e3 * period), 4: 1},  # an excellent connection
+    }
+    if state >= COMMANDING_WAIT:
+        message[5] = {1: q, 10: 1, 11: 1}  # an overlay of joint positions, by positions
+    return encode(message)
+
+
+def check(robot: Robot, q: Vector, last: Vector, period: float) -> None:
+    """Check that a command is inside the position limits, and reached within velocity limits."""
+    assert q.shape == (7,), "the command does not hold 7 joint positions"
+    ratio = np.abs(q - last) / (period * robot.dq_max)
+    assert (ratio <= 1.0 + ROUNDING).all(), f"a joint jumps, {ratio} times its velocity limit"
+    assert not robot.outside(q), robot.outside(q)
+
+
+def serve(robot: Robot, q0: Vector, period: float, periods: int) -> Matrix:
+    """Let a client command a robot, not in real time; a fault is an AssertionError.
+
+    Returns:
+        The start and the commanded joint positions [rad], (periods, 7).
     """
-
-    def __init__(self, robot: Robot, q0: Vector, period: float) -> None:
-        self.state = SessionState.MONITORING_WAIT
-        self.fault: str | None = None
-        self.commanded = q0
-        self.period = period
-        self._robot = robot
-        self._held = q0
-        self._in_state = 0
-        self._sequence = 0
-        self._reflected = 0
-
-    def message(self) -> bytes:
-        """Encode the monitoring message of this period."""
-        seconds, nanoseconds = divmod(time.time_ns(), 10**9)
-        zeros = {"value": [0.0] * 7}
-        commanded = {"value": self.commanded.tolist()}
-        held = {"value": self._held.tolist()}
-        asks = self.state >= SessionState.COMMANDING_WAIT
-        message = MONITORING(
-            header={
-                "messageIdentifier": MONITORING_ID,
-                "sequenceCounter": self._sequence,
-                "reflectedSequenceCounter": self._reflected,
-            },
-            robotInfo={"numberOfJoints": 7, "driveState": [2] * 7},
-            monitorData={
-                "measuredJointPosition": commanded,
-                "measuredTorque": zeros,
-                "commandedJointPosition": commanded,
-                "commandedTorque": zeros,
-                "externalTorque": zeros,
-                "timestamp": {"sec": seconds, "nanosec": nanoseconds},
-            },
-            connectionInfo={
-                "sessionState": self.state,
-                "quality": _EXCELLENT,
-                "sendPeriod": round(1e3 * self.period),
-                "receiveMultiplier": 1,
-            },
-            ipoData={"jointPosition": held, "clientCommandMode": _ONE, "overlayType": _ONE}
-            if asks
-            else None,
-        )
-        return bytes(message.SerializeToString())
-
-    def advance(self, answer: bytes) -> None:
-        """End the period: take the client's answer, change the state, and move the arm."""
-        self._in_state += 1
-        command = COMMAND.FromString(answer)
-        header = command.header
-        fits = (header.messageIdentifier, header.reflectedSequenceCounter)
-        assert fits == (COMMAND_ID, self._sequence)
-        self._reflected = header.sequenceCounter
-        self._sequence += 1
-        if self.state is SessionState.MONITORING_WAIT:
-            self._enter(SessionState.MONITORING_READY)
-        elif self.state is SessionState.MONITORING_READY:
-            if self._in_state >= READY_PERIODS:
-                self._enter(SessionState.COMMANDING_WAIT)
-        elif self.state >= SessionState.COMMANDING_WAIT:
-            self._take(np.array(command.commandData.jointPosition.value))
-
-    def end(self, fault: str | None = None) -> None:
-        """End the session; the arm keeps its commanded position."""
-        self.fault = fault
-        self._enter(SessionState.IDLE)
-
-    def _enter(self, state: SessionState) -> None:
-        self.state = state
-        self._in_state = 0
-
-    def _take(self, q: Vector) -> None:
-        """Follow commanded joint positions, of any size, or wait for those that are held."""
-        refusal = self._refusal(q)
-        if refusal:
-            self.end(f"command refused: {refusal}")
-        elif self.state is SessionState.COMMANDING_ACTIVE:
-            self.commanded = q
-        elif np.abs(q - self.commanded).max() > _ROUNDING:
-            self._in_state = 0
-        elif self._in_state >= MIRRORED_PERIODS:
-            self._enter(SessionState.COMMANDING_ACTIVE)
-
-    def _refusal(self, q: Vector) -> str | None:
-        """Return the reason for refusing commanded joint positions; None if there is none."""
-        if q.shape != (7,) or not np.isfinite(q).all():
-            return "it does not hold 7 finite joint positions"
-        ratio = np.abs(q - self.commanded) / (self.period * self._robot.dq_max)
-        joint = int(ratio.argmax())
-        if ratio[joint] > 1.0 + _ROUNDING:
-            return f"joint {joint + 1} jumps, {ratio[joint]:.3g} times its velocity limit"
-        return self._robot.outside(q)
-
-
-def serve(controller: FriController, port: int, observe: Callable[[FriController], object]) -> None:
-    """Let a controller talk to a client over UDP, not in real time, until the session ends.
-
-    `observe` is called after each period.
-    """
+    path = [q0]
+    state = MONITORING_WAIT
+    sequence = reflected = since = 0
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
-        client = ("127.0.0.1", port)
-        link.bind(("", 0))
+        link.settimeout(1.0)
         try:
-            while controller.state is not SessionState.IDLE:
-                waits = controller.state is SessionState.MONITORING_WAIT
-                link.settimeout(0.1 if waits else _PATIENCE)
-                link.sendto(controller.message(), client)
+            while len(path) < periods:
+                link.sendto(monitoring(state, sequence, reflected, path[-1], period), CLIENT)
                 try:
-                    controller.advance(link.recv(1500))
-                except (TimeoutError, ConnectionError):
-                    if not waits:  # the client may not have begun
-                        controller.end("no answer")
-                observe(controller)
+                    answer = decode(link.recv(1500))
+                except TimeoutError:  # the client may not have begun
+                    since += 1 if state == MONITORING_WAIT else 10
+                    assert since < 10, "no answer"
+                    continue
+                header = decode(answer[1])
+                assert (header[1], header[3]) == (COMMAND_ID, sequence)
+                reflected = header[2]
+                sequence += 1
+                since += 1
+                if state >= COMMANDING_WAIT:
+                    q = np.frombuffer(decode(answer[2])[1], JOINTS)["value"]
+                    check(robot, q, path[-1], period)
+                    if state == COMMANDING_ACTIVE:
+                        path.append(q)
+                    elif np.abs(q - q0).max() > ROUNDING:
+                        since = 0
+                if state < COMMANDING_ACTIVE and (since > WAITING or state == MONITORING_WAIT):
+                    state += 1
+                    since = 0
         finally:
-            controller.end(controller.fault)
-            for _ in range(CLOSING_MESSAGES):
-                link.sendto(controller.message(), client)
+            for _ in range(3):  # some may be lost
+                link.sendto(monitoring(IDLE, sequence, reflected, path[-1], period), CLIENT)
+    return np.array(path)

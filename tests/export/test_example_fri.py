@@ -7,38 +7,14 @@ from __future__ import annotations
 
 import os
 import subprocess
-import threading
 from pathlib import Path
 
 import numpy as np
 
-from fri_robot import FriController, SessionState, serve
+import fri_robot
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start
 from iiwa_dnn import DoubleIndicator, export, simulate
 from iiwa_dnn.control.controller import Controller
-
-PERIODS = 2001
-"""Periods in which commands are followed."""
-
-
-def follow(program: Path) -> np.ndarray:
-    """Let a robot at the paper's start follow a client; return where it was told to be, (k, 7)."""
-    controller = FriController(paper_robot(), paper_start().q, 5e-3)
-    commanded = []
-
-    def note(controller: FriController) -> None:
-        if controller.state is SessionState.COMMANDING_ACTIVE:
-            commanded.append(controller.commanded)
-        if len(commanded) == PERIODS:
-            controller.end()
-
-    # KUKA's port is fixed.
-    robot = threading.Thread(target=serve, args=(controller, 30200, note), daemon=True)
-    robot.start()
-    subprocess.run([program], check=True, timeout=60)
-    robot.join(5.0)
-    assert controller.fault is None
-    return np.array(commanded)
 
 
 def compile_client(sdk: Path, folder: Path) -> Path:
@@ -66,7 +42,11 @@ if "FRI_SDK" in os.environ:
         scheme = DoubleIndicator(tracking="next")
         q0 = paper_start().q
         export.c99(Controller(paper_robot(), scheme, heart(), dt=5e-3), tmp_path, q0)
-        q = follow(compile_client(Path(os.environ["FRI_SDK"]), tmp_path))
-        given = {"dt": 5e-3, "duration": 10.0, "check": UNCHECKED}
-        ideal = simulate(paper_robot(), scheme, heart(), q0, **given)
+        program = compile_client(Path(os.environ["FRI_SDK"]), tmp_path)
+        with subprocess.Popen([program]) as client:
+            q = fri_robot.serve(paper_robot(), q0, 5e-3, 2001)
+            assert client.wait(10.0) == 0
+        ideal = simulate(
+            paper_robot(), scheme, heart(), q0, dt=5e-3, duration=10.0, check=UNCHECKED
+        )
         np.testing.assert_allclose(q, ideal.q, atol=1e-9)
