@@ -1,5 +1,6 @@
 """``view``: the replay of a run in the browser, with its path, errors and verdict."""
 
+import signal
 import socket
 import time
 from contextlib import suppress
@@ -52,6 +53,9 @@ def view(
     """
     file = run / "record.npz" if run.is_dir() else run
     record = Record.load(file)
+    # Not by exceptions: modules that viser imports swallow those.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     replay = Replay(robot_of(record, file.with_name(SETTINGS_FILE), robot), record, host, port)
     print(f"open http://{host}:{replay.server.get_port()} in a browser; Ctrl-C ends it", flush=True)
     while True:
