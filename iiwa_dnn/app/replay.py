@@ -133,7 +133,9 @@ def draw_path(server: Any, name: str, points: Matrix, color: tuple[int, int, int
     """Draw a path through points (M, 3) [m], or draw it anew."""
     chosen = points[np.linspace(0, len(points) - 1, min(len(points), PIECES + 1)).astype(int)]
     pieces = np.stack([chosen[:-1], chosen[1:]], axis=1)
-    server.scene.add_line_segments(f"/{name}", pieces, color, line_width=3.0)
+    server.scene.add_line_segments(
+        f"/{name}", pieces, color, thickness=3.0, thickness_units="screen"
+    )
 
 
 class Replay:
