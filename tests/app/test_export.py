@@ -1,20 +1,12 @@
 """The command ``export``: from a run's settings to a folder of C."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
-import pytest
-
 from helpers_commands import call, track
 from helpers_export import compile_quickly, needs
 from iiwa_dnn.export import load
 
 
 @needs("gcc")
-def test_the_settings_of_a_run_become_c(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_settings_of_a_run_become_c(tmp_path, capsys, monkeypatch) -> None:
     compile_quickly(monkeypatch)
     track(tmp_path / "run", "circle", "--check", "none", "--motion", "rk4")
     capsys.readouterr()

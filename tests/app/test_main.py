@@ -1,7 +1,5 @@
 """``iiwa-dnn``: help, wrong words, signals, closed pipes; what a set-up compiles."""
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -60,13 +58,7 @@ def test_help_names_the_quantity_of_every_word_and_the_unit_of_every_number(
         (("view",), ("PATH",)),
     ],
 )
-def test_a_wrong_word_is_named_with_the_nearest_option(
-    words: tuple[str, ...],
-    said: tuple[str, ...],
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_wrong_word_is_named_with_the_nearest_option(words, said, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert call(*words) == 2
     captured = capsys.readouterr()
@@ -84,9 +76,7 @@ def start(folder: Path, *words: str, **options: object) -> subprocess.Popen[str]
 
 
 @pytest.mark.parametrize("words", [("track", *QUICK), ("track", "--help")])
-def test_a_reader_that_has_read_enough_ends_the_command_quietly(
-    words: tuple[str, ...], tmp_path: Path
-) -> None:
+def test_a_reader_that_has_read_enough_ends_the_command_quietly(words, tmp_path) -> None:
     reader, writer = os.pipe()
     os.close(reader)  # as `head` does after its lines
     process = start(tmp_path, *words, stdout=writer)

@@ -1,7 +1,5 @@
 """The whole reproduction in small: files, resumption, workers, and what bad input says."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections.abc import Iterator
@@ -50,9 +48,7 @@ def test_it_writes_tables_figures_and_a_report(folder: Path) -> None:
     assert "0.002 s each (the paper's: 10 s)" in report
 
 
-def test_again_nothing_is_computed_and_the_tables_keep_their_bytes(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_again_nothing_is_computed_and_the_tables_keep_their_bytes(folder, tmp_path, monkeypatch):
     before = {name: (folder / name).read_bytes() for name in TABLES}
     monkeypatch.setattr(runs, "simulate", lambda *a, **k: pytest.fail("computed again"))
     cut_short_copy(folder, tmp_path)
@@ -72,9 +68,7 @@ def test_two_workers_write_the_same_tables(folder: Path, tmp_path: Path) -> None
         assert (tmp_path / name).read_bytes() == (folder / name).read_bytes(), name
 
 
-def test_one_column_of_table_1_is_run_alone(
-    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_one_column_of_table_1_is_run_alone(folder, tmp_path, capsys) -> None:
     cut_short_copy(folder, tmp_path)
     cells = len(list((tmp_path / "cells").rglob("output.pkl")))
     command = [*TINY, "--workers", "1", "--out", str(tmp_path), "--table", "1"]
@@ -91,9 +85,7 @@ def test_one_column_of_table_1_is_run_alone(
     assert "weights: must be one of 0.1, 0.2, 0.4, " in capsys.readouterr().err
 
 
-def test_a_run_that_ends_early_is_said_and_exits_1(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_that_ends_early_is_said_and_exits_1(folder, tmp_path, monkeypatch) -> None:
     whole = app.start_sweep
 
     def ended_early(*words):

@@ -1,7 +1,5 @@
 """The command ``physics``: what it writes, what it refuses, how it exits."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -28,9 +26,7 @@ def mujoco() -> object:
 
 @needs_mujoco
 @needs_opengl
-def test_everything_is_written(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_everything_is_written(tmp_path, capsys, monkeypatch) -> None:
     # What the pictures show is a matter of tests/results/test_pictures.py.
     draw_only(monkeypatch, "overview")
     monkeypatch.setattr(pictures, "MOMENTS", 2)
@@ -72,9 +68,7 @@ def test_disturbances_one_by_one_and_a_run_again(tmp_path: Path) -> None:
 
 
 @needs_mujoco
-def test_what_is_not_installed_is_named_before_the_run(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_not_installed_is_named_before_the_run(tmp_path, capsys, monkeypatch) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("MUJOCO_GL", "of_nobody")
     assert call("physics", "--out", tmp_path / "run") == 2

@@ -1,7 +1,5 @@
 """The replay in a real browser: what it shows, and what hands can do to it."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal
@@ -130,9 +128,7 @@ def test_it_loads_from_this_machine_alone_and_tells_the_run(browser: Any, replay
 
 
 @needs_browser
-def test_the_path_so_far_is_drawn_and_the_values_are_the_samples(
-    browser: Any, replay: Replay
-) -> None:
+def test_the_path_so_far_is_drawn_and_the_values_are_the_samples(browser, replay) -> None:
     replay.clock.value = 6.0
     assert wait_for(lambda: red(picture(browser)).sum() > 50, "a drawn path")
     record = replay.record
@@ -255,9 +251,7 @@ def test_the_robot_is_the_one_of_the_settings_or_the_record(tmp_path: Path) -> N
     assert robot_of(moved, file, "iiwa7").name == "iiwa7"
 
 
-def test_bad_input_is_one_line_and_2(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_bad_input_is_one_line_and_2(tmp_path, capsys, monkeypatch) -> None:
     heart_without_physics(papers_robot(), 100).save(tmp_path / "record.npz")
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]

@@ -1,7 +1,5 @@
 """The command ``track``: what it writes, what it says, and its exit codes."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -22,9 +20,7 @@ ROOT = Path(__file__).parents[2]
 IIWA7 = next((ROOT / "robots" / "iiwa7").glob("*.urdf"))
 
 
-def test_a_run_writes_record_metrics_report_settings_and_figures(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_writes_record_metrics_report_settings_and_figures(tmp_path, capsys, monkeypatch):
     draw_only(monkeypatch, "convergence")
     folder = tmp_path / "new" / "runs"
     assert call("track", *SHORT, "--out", folder) == 0
@@ -87,9 +83,7 @@ def test_words_and_tables_reach_the_run(tmp_path: Path) -> None:
     ("words", "dt"),
     [((), 1e-4), (("circle",), 1e-3), (("--reference", "circle"), 1e-3), (("--robot", "p"), 0)],
 )
-def test_defaults_are_the_papers_experiment(
-    words: tuple[str, ...], dt: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_defaults_are_the_papers_experiment(words, dt, tmp_path, monkeypatch) -> None:
     asked: dict[str, Any] = {}
 
     def take(**arguments: Any) -> None:
@@ -159,9 +153,7 @@ def test_a_path_from_a_csv_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 # Folders and repetition
 
 
-def test_a_run_is_repeated_bit_for_bit_by_its_settings_and_quietly(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_is_repeated_bit_for_bit_by_its_settings_and_quietly(tmp_path, capsys) -> None:
     # OSQP repeats itself to the last digit, ProxQP does not.
     words = ("circle", "--noise", "0.01", "--seed", "5", "--filter-window", "4", "--check", "osqp")
     track(tmp_path / "a", *words, "--weight", "0.3", "--lock", "iiwa7_joint_3")
@@ -177,9 +169,7 @@ def test_a_run_is_repeated_bit_for_bit_by_its_settings_and_quietly(
     assert (tmp_path / "a" / "record.npz").read_bytes() == before
 
 
-def test_another_run_or_other_files_are_overwritten_only_if_it_is_said(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_another_run_or_other_files_are_overwritten_only_if_it_is_said(tmp_path, capsys) -> None:
     folder = tmp_path / "run"
     track(folder, "--check", "none")
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
@@ -203,9 +193,7 @@ def test_another_run_or_other_files_are_overwritten_only_if_it_is_said(
 
 
 @pytest.mark.parametrize("quiet", [False, True])
-def test_a_tolerance_that_nothing_meets_names_step_gap_and_solver(
-    quiet: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_tolerance_that_nothing_meets_names_step_gap_and_solver(quiet, tmp_path, capsys) -> None:
     words = ["--tolerance", "1e-18", "--out", tmp_path, *["-q"] * quiet]
     assert call("track", *QUICK, *words) == 1
     record, metrics = results(tmp_path)

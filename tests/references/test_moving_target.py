@@ -1,7 +1,5 @@
 """A target that is set from outside, as a function of the clock between two poses that are set."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

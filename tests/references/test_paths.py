@@ -1,7 +1,5 @@
 """Every path: derivatives, period, start, anchoring and settings, and its own formula."""
 
-from __future__ import annotations
-
 import json
 import math
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Waypoints: the splines' properties, and CSV files good and bad."""
 
-from __future__ import annotations
-
 import warnings
 from pathlib import Path
 
@@ -144,9 +142,7 @@ def test_csv_dialects(tmp_path: Path, text: str) -> None:
     ],
 )
 @pytest.mark.filterwarnings("error")
-def test_a_bad_file_is_told_in_one_line(
-    tmp_path: Path, content: str | bytes | None, reason: str
-) -> None:
+def test_a_bad_file_is_told_in_one_line(tmp_path, content, reason) -> None:
     file = tmp_path / "bad.csv"
     if content is not None:
         file.write_bytes(content.encode() if isinstance(content, str) else content)

@@ -1,7 +1,5 @@
 """The figures: all there, not blank, the same bytes each time, and fit for print."""
 
-from __future__ import annotations
-
 import dataclasses
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Arms by name: the chain, its gripper, a second reader's poses, and the heart drawn with it."""
 
-from __future__ import annotations
-
 import dataclasses
 import io
 import xml.etree.ElementTree as ET
@@ -12,36 +10,12 @@ import pinocchio as pin
 import pytest
 import yourdfpy
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array, example_urdf
-from iiwa_dnn import (
-    Configuration,
-    DoubleIndicator,
-    Heart,
-    MissingDependencyError,
-    Robot,
-    available_robots,
-    compute_metrics,
-    failures,
-    load_robot,
-    robot_from_dh,
-    simulate,
-)
 from iiwa_dnn.robot import arms
 from iiwa_dnn.robot.arms import ARMS, TIPS
 from iiwa_dnn.robot.loading import robots_folder
 from iiwa_dnn.robot.shapes import visual_meshes
-
-
-def still(name: str) -> set[str]:
-    """Joints that are not between base and tip, by the XML."""
-    root = ET.parse(example_urdf(ARMS[name].file)).getroot()
-    above = {joint.find("child").get("link"): joint for joint in root.findall("joint")}
-    names = {joint.get("name") for joint in above.values() if joint.get("type") != "fixed"}
-    link = ARMS[name].tip
-    while link in above:
-        names.discard(above[link].get("name"))
-        link = above[link].find("parent").get("link")
-    return names
 
 
 @pytest.fixture(autouse=True)
@@ -49,41 +23,26 @@ def installed() -> None:
     example_urdf("panda_description/urdf/panda.urdf")
 
 
-@pytest.mark.parametrize("name", ARMS)
-def test_an_arm_by_its_name_is_the_file_without_the_gripper(name: str) -> None:
-    robot, arm = load_robot(name), ARMS[name]
-    assert (robot.name, robot.tip) == (name, arm.tip)
-    assert set(robot.locked) == still(name)
-    assert name in available_robots()
-    # By its file, everything said by hand.
-    by_hand = load_robot(example_urdf(arm.file), tip=arm.tip, locked=robot.locked)
-    q = robot.start_posture()
-    for one, other in (
-        (robot.limits[:3], by_hand.limits[:3]),
-        (Configuration(robot, q).pose, Configuration(by_hand, q).pose),
-    ):
-        np.testing.assert_array_equal(one, other)
-    np.testing.assert_array_equal(q, arm.start)
-
-
-def is_inside(robot: Robot, q: Array) -> bool:
+def is_inside(robot: d.Robot, q: Array) -> bool:
     return bool((q > robot.q_lower).all() and (q < robot.q_upper).all())
 
 
 @pytest.mark.parametrize("name", [*TIPS, *ARMS])
 def test_every_arm_starts_inside_its_limits_and_not_singular(name: str) -> None:
-    robot = load_robot(name)
+    robot = d.load_robot(name)
+    if name in ARMS:
+        np.testing.assert_array_equal(robot.start_posture(), ARMS[name].start)
     # Of another name, or with a joint locked, its joints begin bent, where no arm is singular.
     other = dataclasses.replace(robot, name="some")
-    locked = load_robot(name, locked=robot.joint_names[0])
+    locked = d.load_robot(name, locked=robot.joint_names[0])
     for start, least in ((robot, 0.1), (other, 0.03), (locked, 0.0)):
         q = start.start_posture()
         assert is_inside(start, q)
-        assert np.linalg.svd(Configuration(start, q).jacobian, compute_uv=False)[-1] >= least
+        assert np.linalg.svd(d.Configuration(start, q).jacobian, compute_uv=False)[-1] >= least
 
 
 def test_the_iiwa_starts_where_the_paper_does_or_as_near_as_its_limits_let_it() -> None:
-    robot = load_robot("iiwa7")
+    robot = d.load_robot("iiwa7")
     np.testing.assert_array_equal(robot.start_posture(), PAPER_Q0)
     tight = robot.with_limits(lower=-2.0, upper=2.0)
     expected = [-1.8, *PAPER_Q0[1:]]  # the first joint's -2.357 is outside
@@ -95,7 +54,7 @@ def test_the_iiwa_starts_where_the_paper_does_or_as_near_as_its_limits_let_it() 
     [(-np.inf, np.inf), (1.0, np.inf), (-np.inf, -1.0), ([-1, -np.inf, 4], [np.inf, 2, 5])],
 )
 def test_a_start_where_limits_are_on_one_side_or_on_none(lower: object, upper: object) -> None:
-    robot = robot_from_dh(np.full((3, 4), 0.3), lower=lower, upper=upper)
+    robot = d.robot_from_dh(np.full((3, 4), 0.3), lower=lower, upper=upper)
     assert is_inside(robot, robot.start_posture())
     assert np.abs(robot.start_posture()).max() < 3.0 * np.pi
 
@@ -105,13 +64,13 @@ def test_a_start_where_limits_are_on_one_side_or_on_none(lower: object, upper: o
     [*product(ARMS, ["so3"]), *product(["ur5", "panda"], ["none"])],
 )
 def test_the_heart_with_any_redundancy(name: str, orientation: str) -> None:
-    robot = load_robot(name)
+    robot = d.load_robot(name)
     q0 = robot.start_posture()
-    reference = Heart().anchored(Configuration(robot, q0))
-    scheme = DoubleIndicator(orientation=orientation)
-    record = simulate(robot, scheme, reference, q0, dt=2e-2)
-    assert failures(record) == []
-    metrics = compute_metrics(record)
+    reference = d.Heart().anchored(d.Configuration(robot, q0))
+    scheme = d.DoubleIndicator(orientation=orientation)
+    record = d.simulate(robot, scheme, reference, q0, dt=2e-2)
+    assert d.failures(record) == []
+    metrics = d.compute_metrics(record)
     assert metrics["crosscheck"]["steps_checked"] == 500
     # Euler's error is of first order: two hundred times that of 1e-4 s, which is 3.4e-7 m.
     assert metrics["max_position_error_m"] < 1e-4
@@ -119,21 +78,23 @@ def test_the_heart_with_any_redundancy(name: str, orientation: str) -> None:
 
 
 def test_without_the_package_one_line_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert d.available_robots() == (*TIPS, *ARMS)
+
     def missing(name: str) -> None:
         raise arms.PackageNotFoundError(name)
 
     monkeypatch.setattr(arms, "distribution", missing)
-    with pytest.raises(MissingDependencyError, match=r"pip install 'iiwa-dnn\[robots\]'"):
-        load_robot("panda")
-    assert "panda" not in available_robots()
+    with pytest.raises(d.MissingDependencyError, match=r"pip install 'iiwa-dnn\[robots\]'"):
+        d.load_robot("panda")
+    assert "panda" not in d.available_robots()
 
 
 # The package's own files
 
 
 def test_the_iiwa_7_has_the_pose_and_the_limits_of_its_documents() -> None:
-    robot = load_robot("iiwa7")
-    conf = Configuration(robot, PAPER_Q0)
+    robot = d.load_robot("iiwa7")
+    conf = d.Configuration(robot, PAPER_Q0)
     rotation = [
         [0.685264, 0.717982, 0.122129],
         [0.702680, -0.695883, 0.148283],
@@ -151,18 +112,18 @@ def test_the_iiwa_7_has_the_pose_and_the_limits_of_its_documents() -> None:
 def test_robots_of_the_package_need_no_file_of_another_package() -> None:
     assert {path.stem for path in robots_folder().glob("*/*.urdf")} == set(TIPS)
     for name in TIPS:
-        root = ET.fromstring(load_robot(name).urdf)
+        root = ET.fromstring(d.load_robot(name).urdf)
         assert root.get("name") == name
         assert root.findall(".//visual")
         assert root.findall(".//collision")
         assert not root.findall(".//mesh")
-        assert visual_meshes(load_robot(name)) == ()
+        assert visual_meshes(d.load_robot(name)) == ()
 
 
 # Poses and meshes as yourdfpy has them, which reads the same text
 
 
-def reader_of(robot: Robot) -> yourdfpy.URDF:
+def reader_of(robot: d.Robot) -> yourdfpy.URDF:
     """Read a robot's text a second time; joints that follow others are given their positions."""
     text = io.BytesIO(robot.urdf.encode())
     file = yourdfpy.URDF.load(text, build_scene_graph=False, load_meshes=False).robot
@@ -183,12 +144,13 @@ CASES = [
 @pytest.mark.parametrize(("name", "words"), CASES)
 def test_joints_limits_and_poses_of_all_links(name: str, words: tuple[str, ...]) -> None:
     tip, *locked = words or (None,)
-    robot = load_robot(name, tip=tip, locked=locked)
+    robot = d.load_robot(name, tip=tip, locked=locked)
     reader = reader_of(robot)
     movable = {joint.name for joint in reader.robot.joints if joint.type != "fixed"}
     assert movable == {*robot.joint_names, *robot.locked}
     assert set(locked) <= set(robot.locked)
-    assert robot.tip == (tip or load_robot(name).tip)
+    named = ARMS[name].tip if name in ARMS else TIPS[name][0]
+    assert (robot.name, robot.tip) == (name, tip or named)
     for i, joint in enumerate(robot.joint_names):
         limit = reader.joint_map[joint].limit or yourdfpy.Limit()
         assert robot.q_lower[i] == (-np.inf if limit.lower == -1e308 else limit.lower)
@@ -204,11 +166,17 @@ def test_joints_limits_and_poses_of_all_links(name: str, words: tuple[str, ...])
             ours = data.oMf[robot.frame_id(link)].homogeneous
             theirs = reader.get_transform(link, reader.base_link)
             np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9, err_msg=link)
+    # What is held still unasked does not move the tip.
+    reader.update_cfg(dict.fromkeys(set(robot.locked) - set(locked), 0.5))
+    tip_pose = data.oMf[robot.tip_id].homogeneous
+    np.testing.assert_allclose(
+        reader.get_transform(robot.tip, reader.base_link), tip_pose, atol=1e-9
+    )
 
 
 @pytest.mark.parametrize("name", ["ur5", "xarm7"])
 def test_meshes_are_where_yourdfpy_has_them(name: str) -> None:
-    robot = load_robot(name)
+    robot = d.load_robot(name)
     q = np.linspace(-1.0, 1.0, robot.dof)
     folder = str(robot.path.parents[3])
     other = yourdfpy.URDF.load(

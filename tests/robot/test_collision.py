@@ -1,7 +1,5 @@
 """Collision geometry: capsules around the shapes of the URDF, the pairs that may meet."""
 
-from __future__ import annotations
-
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -108,9 +106,7 @@ BALL_OF_P2 = "<collision><geometry><sphere radius='0.02'/></geometry></collision
         (-1.0, 1.0, "start"),
     ],
 )
-def test_a_pair_is_watched_if_it_may_come_near(
-    gap: float, joint_1: float | str, reason: str | None, tmp_path: Path
-) -> None:
+def test_a_pair_is_watched_if_it_may_come_near(gap, joint_1, reason, tmp_path) -> None:
     """A ball of the base, ahead of one that turns about the first joint 0.3 m away from it."""
     start = arm_of(tmp_path).start_posture()[0]
     angle = start if joint_1 == "start" else float(joint_1)

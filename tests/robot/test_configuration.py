@@ -1,7 +1,5 @@
 """Configurations: Jacobians and inertia against independent computations, and immutability."""
 
-from __future__ import annotations
-
 import pickle
 
 import numpy as np

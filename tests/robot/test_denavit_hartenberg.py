@@ -1,7 +1,5 @@
 """Robots from Denavit-Hartenberg tables, beside the product of the matrices and other sources."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

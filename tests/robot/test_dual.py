@@ -1,7 +1,5 @@
 """Two arms in one URDF."""
 
-from __future__ import annotations
-
 import itertools
 
 import pinocchio as pin

@@ -1,7 +1,5 @@
 """The kernel of the kinematics, against Pinocchio's."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,17 +1,13 @@
 """The arm in MuJoCo against the arm in Pinocchio: two readers of one URDF, two dynamics."""
 
-from __future__ import annotations
-
 import dataclasses
-import sys
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from helpers_kinematics import example_urdf
-from iiwa_dnn import Configuration, InvalidInputError, MissingDependencyError, load_robot
-from iiwa_dnn.robot import mujoco_model
+from iiwa_dnn import Configuration, InvalidInputError, load_robot
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.mujoco_model import (
     TIP_SITE,
@@ -138,13 +134,3 @@ def test_robots_that_cannot_be_had_in_physics(robot, tmp_path):
     )
     with pytest.raises(InvalidInputError, match=r"MuJoCo refuses its URDF: .*mjMINVAL"):
         compile_model(load_robot(tmp_path / "light.urdf"), 1e-3)
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="a matter of Linux")
-def test_what_is_not_there_is_named_with_a_remedy(monkeypatch):
-    monkeypatch.setenv("MUJOCO_GL", "glfw_of_nobody")
-    with pytest.raises(MissingDependencyError, match=r"glfw_of_nobody.*apt-get install libegl1"):
-        mujoco_model.prepare_renderer()
-    monkeypatch.setitem(sys.modules, "mujoco", None)
-    with pytest.raises(MissingDependencyError, match=r"pip install 'iiwa-dnn\[sim\]'"):
-        mujoco_model.import_mujoco()

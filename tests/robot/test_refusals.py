@@ -1,7 +1,5 @@
 """Arguments of robots that are refused by name, one line each."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

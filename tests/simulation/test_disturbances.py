@@ -1,7 +1,5 @@
 """Disturbances: what they do, seen from outside, and what is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

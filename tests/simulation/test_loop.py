@@ -1,31 +1,18 @@
 """The closed loop: its bookkeeping, determinism, limits, drift, lag, and how it stops."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, dh_pose, rotation_angle
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, run
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.posing import solve_pose
-from iiwa_dnn.networks import PrimalDualNetwork
-from iiwa_dnn.networks.integrators import ExplicitEuler
-from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.crosscheck import CrossCheck
-from iiwa_dnn.references import Circle, Heart, Waypoints
-from iiwa_dnn.results.failures import failures
-from iiwa_dnn.results.metrics import compute_metrics
-from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot import Configuration
-from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse
-from iiwa_dnn.simulation import NOISE_ENTRIES, gaussian_noise, simulate
+from iiwa_dnn.simulation import NOISE_ENTRIES, gaussian_noise
 
 OPTIONS = {
     "plain": {},
@@ -37,15 +24,15 @@ OPTIONS = {
 
 
 @pytest.fixture(scope="module", params=list(OPTIONS))
-def record(request: pytest.FixtureRequest) -> Record:
-    return run(**{"check": CrossCheck(("proxqp", "osqp"))} | OPTIONS[request.param])
+def record(request: pytest.FixtureRequest) -> d.Record:
+    return run(**{"check": d.CrossCheck(("proxqp", "osqp"))} | OPTIONS[request.param])
 
 
-def drift(record: Record) -> float:
+def drift(record: d.Record) -> float:
     return float(np.abs(record.q[-1] - record.q[0]).max())
 
 
-def position_error(record: Record) -> np.ndarray:
+def position_error(record: d.Record) -> np.ndarray:
     """Distance to the desired position [m], (N+1,), the position by the DH formula."""
     return np.linalg.norm(dh_pose(record.q)[0] - record.position_desired, axis=1)
 
@@ -53,7 +40,7 @@ def position_error(record: Record) -> np.ndarray:
 # What is in the record
 
 
-def test_a_record_is_the_motion_that_its_velocities_make(record: Record) -> None:
+def test_a_record_is_the_motion_that_its_velocities_make(record: d.Record) -> None:
     dt = record.settings["dt"]
     np.testing.assert_array_equal(record.q[0], PAPER_Q0)
     np.testing.assert_array_equal(record.q[1:], record.q[:-1] + dt * record.dq)
@@ -67,7 +54,7 @@ def test_a_record_is_the_motion_that_its_velocities_make(record: Record) -> None
     assert rotation_angle(record.rotation_desired, rotation[0]).max() < 1e-12
 
 
-def test_every_step_was_checked_by_every_reference(record: Record) -> None:
+def test_every_step_was_checked_by_every_reference(record: d.Record) -> None:
     assert record.settings["check"]["solvers"] == ["proxqp", "osqp"]
     assert (record.reference_residual <= 1e-8).all()
     assert np.isfinite(record.solution_gap).all()
@@ -78,7 +65,7 @@ def test_every_step_was_checked_by_every_reference(record: Record) -> None:
         assert record.kkt_residual.max() <= 1e-9
     else:
         assert record.crosscheck_gap.max() > 1e-6  # the lag
-    assert failures(record) == []
+    assert d.failures(record) == []
 
 
 @pytest.mark.parametrize("motion", ["euler", "midpoint"])
@@ -101,10 +88,10 @@ def test_a_run_of_several_blocks_has_no_seams(motion: str) -> None:
 def test_settings_say_what_was_asked_and_with_what() -> None:
     options = {"noise": 0.001, "filter_window": 4, "seed": 11}
     settings = run(
-        DoubleIndicator(weight=0.3, kinetic="inertia"),
+        d.DoubleIndicator(weight=0.3, kinetic="inertia"),
         robot=paper_robot().with_limits(velocity=1.0),
-        solver=DNNSolver(tol=1e-8),
-        check=CrossCheck(("osqp",), tolerance=1e-5),
+        solver=d.DNNSolver(tol=1e-8),
+        check=d.CrossCheck(("osqp",), tolerance=1e-5),
         **options,
     ).settings
     expected = {
@@ -136,11 +123,9 @@ def test_progress_adds_up_to_the_steps() -> None:
 
 @pytest.mark.parametrize("solvers", [(), ("osqp",)], ids=["none", "osqp"])
 @pytest.mark.parametrize("case", list(OPTIONS))
-def test_the_same_call_saves_the_same_bytes(
-    case: str, solvers: tuple[str, ...], tmp_path: Path
-) -> None:
+def test_the_same_call_saves_the_same_bytes(case, solvers, tmp_path) -> None:
     for name in ("one", "two"):
-        run(**{"check": CrossCheck(solvers), "duration": 0.02} | OPTIONS[case]).save(
+        run(**{"check": d.CrossCheck(solvers), "duration": 0.02} | OPTIONS[case]).save(
             tmp_path / name
         )
     assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
@@ -152,22 +137,22 @@ def test_the_same_call_saves_the_same_bytes(
 def test_cyclic_motion_comes_back_and_minimum_energy_drifts() -> None:
     # One whole heart, drawn in 2 s.
     whole = {"reference": heart(period=2.0), "duration": None}
-    cyclic = run(DoubleIndicator(weight=0.2), **whole)
-    energy = run(DoubleIndicator(weight=1.0), **whole)
+    cyclic = run(d.DoubleIndicator(weight=0.2), **whole)
+    energy = run(d.DoubleIndicator(weight=1.0), **whole)
     assert drift(cyclic) < 5e-4
     assert drift(energy) > 5e-3
     for record in (cyclic, energy):
         assert position_error(record).max() < 1e-4
     # With G = I and no limit near, minimum energy is the pseudo-inverse.
-    baseline = run(PseudoInverse(), **whole)
+    baseline = run(d.PseudoInverse(), **whole)
     np.testing.assert_allclose(energy.q, baseline.q, rtol=0, atol=1e-6)
 
 
 def test_a_network_that_diverges_is_called_that() -> None:
-    solver = DNNSolver(PrimalDualNetwork(rho=1e-5), follower=ExplicitEuler(substeps=1))
-    circle = Circle(0.05, period=1.0).anchored(paper_start())
+    solver = d.DNNSolver(d.PrimalDualNetwork(rho=1e-5), follower=d.ExplicitEuler(substeps=1))
+    circle = d.Circle(0.05, period=1.0).anchored(paper_start())
     record = run(reference=circle, solver=solver, mode="continuous", duration=0.2)
-    reasons = failures(record)
+    reasons = d.failures(record)
     assert len(reasons) == 2  # the path, and why it ended
     assert "the network diverged: take a smaller dt" in reasons[1]
 
@@ -177,15 +162,15 @@ def test_a_joint_that_meets_its_limit_stays_inside_and_the_tip_on_its_path() -> 
     lower = np.full(7, -2.5)
     lower[0] = -2.42
     robot = paper_robot().with_limits(lower=lower)
-    options = {"reference": heart(period=2.0), "duration": 1.0, "check": CrossCheck()}
+    options = {"reference": heart(period=2.0), "duration": 1.0, "check": d.CrossCheck()}
     assert run(**options).q[:, 0].min() < -2.47
     record = run(robot=robot, **options)
     assert record.q[:, 0].min() >= -2.42
     assert np.count_nonzero(record.q[:, 0] < -2.42 + 1e-4) > 100
-    metrics = compute_metrics(record)
+    metrics = d.compute_metrics(record)
     assert metrics["position_limit_violation_rad"] == 0.0
     assert metrics["velocity_limit_violation_rad_s"] == 0.0
-    assert failures(record) == []
+    assert d.failures(record) == []
     assert position_error(record).max() < 1e-4
 
 
@@ -194,22 +179,22 @@ def test_a_start_outside_the_limits_is_brought_back() -> None:
     upper[0] = PAPER_Q0[0] - 0.02
     robot = paper_robot().with_limits(upper=upper)
     with pytest.warns(UserWarning, match=r"^the start posture .* joint 1 is at -2.357"):
-        record = run(robot=robot, duration=0.5, check=CrossCheck())
+        record = run(robot=robot, duration=0.5, check=d.CrossCheck())
     excess = record.q[:, 0] - upper[0]
     assert (np.diff(excess) < 1e-12).all()
     # Like exp(-kappa t), kappa = 20 / s.
     np.testing.assert_allclose(excess, 0.02 * np.exp(-20.0 * record.t), rtol=0, atol=2e-4)
     assert record.settings["status"] == "completed"
-    assert any("position limit" in reason for reason in failures(record))
+    assert any("position limit" in reason for reason in d.failures(record))
 
 
 def test_the_continuous_network_lags_as_much_as_the_papers() -> None:
     paper = 5.59e-5  # m, Table I at weight 0.2, over 10 s
-    record = run(DoubleIndicator(orientation="block"), mode="continuous", dt=1e-4, duration=0.5)
+    record = run(d.DoubleIndicator(orientation="block"), mode="continuous", dt=1e-4, duration=0.5)
     assert paper / 3.0 < position_error(record).max() < 3.0 * paper
-    settled = run(DoubleIndicator(orientation="block"), dt=1e-4, duration=0.1)
+    settled = run(d.DoubleIndicator(orientation="block"), dt=1e-4, duration=0.1)
     assert position_error(settled).max() < 0.05 * position_error(record)[:1001].max()
-    assert failures(record) == []
+    assert d.failures(record) == []
 
 
 # How a run stops
@@ -217,9 +202,7 @@ def test_the_continuous_network_lags_as_much_as_the_papers() -> None:
 
 @pytest.mark.parametrize("motion", ["euler", "rk4"])
 @pytest.mark.parametrize("entry", [None, *NOISE_ENTRIES])
-def test_a_run_that_is_stopped_ends_at_rest_and_is_recorded_as_it_was(
-    entry: str | None, motion: str
-) -> None:
+def test_a_run_that_is_stopped_ends_at_rest_and_is_recorded_as_it_was(entry, motion) -> None:
     # Too slow for the heart: from some step on, no velocity within the limits fulfils the task.
     noise = {} if entry is None else {"noise": 1e-4, "noise_at": entry}
     record = run(
@@ -228,13 +211,13 @@ def test_a_run_that_is_stopped_ends_at_rest_and_is_recorded_as_it_was(
         duration=1.0,
         motion=motion,
         policy="stop",
-        check=CrossCheck(),
+        check=d.CrossCheck(),
         **noise,
     )
     last = record.steps - 1
     assert 0 < last < 999
     assert record.settings["status"].startswith(f"stopped at step {last} ")
-    assert any(f"step {last} " in reason for reason in failures(record))
+    assert any(f"step {last} " in reason for reason in d.failures(record))
     np.testing.assert_array_equal(record.q[1:], record.q[:-1] + 1e-3 * record.dq)
     np.testing.assert_allclose(record.position, dh_pose(record.q)[0], rtol=0, atol=1e-12)
     np.testing.assert_allclose(record.kinetic_index, (record.dq**2).sum(axis=1), rtol=1e-12)
@@ -252,10 +235,10 @@ def test_a_stage_without_a_solution_is_recorded() -> None:
     record = run(robot=robot, reference=heart(period=2.0), duration=0.05, motion="rk4")
     first = int(np.flatnonzero(record.action)[0])
     assert record.action[first] == Action.EULER
-    assert compute_metrics(record)["incidents"]["euler_steps"] == 1
-    assert failures(record)
-    qp = DoubleIndicator(home=PAPER_Q0).build_qp(
-        Configuration(robot, record.q[first]), heart(period=2.0).at(record.t[first])
+    assert d.compute_metrics(record)["incidents"]["euler_steps"] == 1
+    assert d.failures(record)
+    qp = d.DoubleIndicator(home=PAPER_Q0).build_qp(
+        d.Configuration(robot, record.q[first]), heart(period=2.0).at(record.t[first])
     )
     np.testing.assert_allclose(qp.A @ record.dq[first], qp.b, rtol=0, atol=1e-8)
 
@@ -271,8 +254,8 @@ def test_an_estimator_is_told_of_the_velocity_that_the_joints_get() -> None:
 
 
 def test_a_kinetic_index_of_ones_own_is_recorded() -> None:
-    class Doubled(DoubleIndicator):
-        def kinetic_index(self, conf: Configuration, dq: np.ndarray) -> float:
+    class Doubled(d.DoubleIndicator):
+        def kinetic_index(self, conf: d.Configuration, dq: np.ndarray) -> float:
             return 2.0 * super().kinetic_index(conf, dq)
 
     record = run(Doubled(), reference=heart(period=2.0))
@@ -281,14 +264,14 @@ def test_a_kinetic_index_of_ones_own_is_recorded() -> None:
 
 def test_a_path_that_begins_elsewhere_is_warned_of() -> None:
     with pytest.warns(UserWarning, match=r"begins 0\.\d+ m and .* rad from.*anchored"):
-        run(reference=Heart(), duration=0.002)
+        run(reference=d.Heart(), duration=0.002)
     start = paper_start()
     points = start.position + [[0.1, 0.0, -0.1], [0.1, 0.05, -0.1]]
     turns = np.tile(pin.Quaternion(start.rotation).coeffs()[[3, 0, 1, 2]], (2, 1))
-    path = Waypoints([0.0, 0.2], points, quaternions=turns)
+    path = d.Waypoints([0.0, 0.2], points, quaternions=turns)
     with pytest.warns(UserWarning, match=r"begins 0\.141 m.*solve_pose"):
         run(reference=path)
-    posture = solve_pose(paper_robot(), path.at(0.0), start.q).q
+    posture = d.solve_pose(paper_robot(), path.at(0.0), start.q).q
     options: Any = {"dt": 1e-3, "duration": 0.05, "check": UNCHECKED}
-    record = simulate(paper_robot(), DoubleIndicator(), path, posture, **options)
+    record = d.simulate(paper_robot(), d.DoubleIndicator(), path, posture, **options)
     assert np.linalg.norm(record.position - record.position_desired, axis=1).max() < 1e-3

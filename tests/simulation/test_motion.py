@@ -1,7 +1,5 @@
 """The robot's motion: its order by regression on the heart."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

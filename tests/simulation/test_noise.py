@@ -1,7 +1,5 @@
 """Noise: its statistics, its seed, and where it enters the loop."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.stats

@@ -1,7 +1,5 @@
 """The whole loop in MuJoCo: the paper's heart, nominal and disturbed, held to its figures."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,19 +1,14 @@
 """Columns of a record that a run has only where something happened."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.testing import assert_array_equal
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, run
 from iiwa_dnn.control.command import RowLayout
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.qp import QP
-from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import OPTIONAL
-from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.simulation import simulate
 
 
 def test_a_run_as_planned_has_no_optional_columns() -> None:
@@ -46,7 +41,7 @@ def test_poses_are_those_of_the_first_stage_and_work_is_of_all() -> None:
 def test_an_active_limit_has_a_multiplier_and_no_slack() -> None:
     """Multipliers of rounding, and such as decay after the joint has left its bound, do not act."""
     rows = [[1.0, 0.0], [-1.0, 0.0], [1.0, 1.0]]
-    qp = QP(np.eye(2), np.zeros(2), rows, [1.0, 0.0, 2.0], lb=[-1.0, -2.0], ub=[1.0, 1.5])
+    qp = d.QP(np.eye(2), np.zeros(2), rows, [1.0, 0.0, 2.0], lb=[-1.0, -2.0], ub=[1.0, 1.5])
     layout = RowLayout(qp.sizes, 2, 1)
     for x, z, z_box, active_rows, active_bounds in (
         ([1.0, 1.0], [2.0, 3.0, 1e-16], [1e-16, 1e-16], [2.0, 0.0, 0.0], [0.0, 0.0]),
@@ -64,10 +59,10 @@ def test_an_active_limit_has_a_multiplier_and_no_slack() -> None:
 
 def test_too_quick_a_path_in_continuous_mode_names_the_limits_that_the_arm_is_at() -> None:
     path = heart(period=0.4)
-    scheme = DoubleIndicator(home=PAPER_Q0)
+    scheme = d.DoubleIndicator(home=PAPER_Q0)
     options = {"mode": "continuous", "check": None, "dt": 1e-3, "duration": 0.4}
-    record = simulate(paper_robot(), scheme, path, PAPER_Q0, **options)
-    active = compute_metrics(record)["incidents"]["active"]
+    record = d.simulate(paper_robot(), scheme, path, PAPER_Q0, **options)
+    active = d.compute_metrics(record)["incidents"]["active"]
     assert record.q[:, 0].min() < -2.47  # beside its limit of -2.5, and no other joint is
     assert sorted((bound["joint"], bound["side"], bound["limit"]) for bound in active) == [
         (1, "lower", "position"),

@@ -1,7 +1,5 @@
 """Arguments of runs, noise, disturbances and physics that make no sense: each is named."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -87,8 +85,6 @@ REFUSED: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
 
 
 @pytest.mark.parametrize(("name", "call", "arguments"), REFUSED)
-def test_an_argument_that_makes_no_sense_is_named(
-    name: str, call: Callable[..., object], arguments: dict[str, Any]
-) -> None:
+def test_an_argument_that_makes_no_sense_is_named(name, call, arguments) -> None:
     with pytest.raises(d.InvalidInputError, match=rf"^{name}\b"):
         call(**arguments)

@@ -1,47 +1,41 @@
 """Singular poses: the tool vertical, where the block sees no tilt, and the arm stretched."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
 
+import iiwa_dnn as d
 from helpers_kinematics import rotation_angle
 from helpers_simulation import UNCHECKED, paper_robot
 from iiwa_dnn.control.policies import ProgramKind
-from iiwa_dnn.references import Line, Still
-from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.simulation import simulate
 
 TILT = 0.05  # between the tool and its desired orientation at the start [rad]
 
 
-def vertical_start() -> Configuration:
+def vertical_start() -> d.Configuration:
     """A bent arm whose tool points straight down."""
     # In the arm's own plane, joints 2, 4 and 6 turn the tool by q2 - q4 + q6.
-    return Configuration(paper_robot(), [0.3, 0.5, 0.0, -1.6, 0.0, np.pi - 2.1, 0.2])
+    return d.Configuration(paper_robot(), [0.3, 0.5, 0.0, -1.6, 0.0, np.pi - 2.1, 0.2])
 
 
-def tilted_run(orientation: str, mode: Any) -> Record:
+def tilted_run(orientation: str, mode: Any) -> d.Record:
     """Hold the vertical orientation for half a second, from a start tilted by `TILT`."""
     desired = vertical_start()
     q0 = desired.q + TILT * np.eye(7)[5]
-    scheme = DoubleIndicator(orientation=orientation, weight=1.0)
+    scheme = d.DoubleIndicator(orientation=orientation, weight=1.0)
     options: Any = {"dt": 1e-4, "duration": 0.5, "mode": mode, "check": UNCHECKED}
-    return simulate(paper_robot(), scheme, Still().anchored(desired), q0, **options)
+    return d.simulate(paper_robot(), scheme, d.Still().anchored(desired), q0, **options)
 
 
-def stretched_run(policy: Any, dt: float) -> Record:
+def stretched_run(policy: Any, dt: float) -> d.Record:
     """Follow a line of 4 s, 0.3 m beyond the outstretched arm and back, in steps of dt [s]."""
     start = vertical_start()
     outward = start.position * [1.0, 1.0, 0.0]
-    line = Line(offset=(1.1 / np.linalg.norm(outward) - 1.0) * outward, period=4.0)
+    line = d.Line(offset=(1.1 / np.linalg.norm(outward) - 1.0) * outward, period=4.0)
     options: Any = {"dt": dt, "duration": 4.0, "policy": policy, "check": UNCHECKED}
-    scheme = DoubleIndicator(orientation="none")
-    record = simulate(paper_robot(), scheme, line.anchored(start), start.q, **options)
+    scheme = d.DoubleIndicator(orientation="none")
+    record = d.simulate(paper_robot(), scheme, line.anchored(start), start.q, **options)
     # Changes of the velocities in a second: shaking at every step would make 1e3 and more.
     assert np.abs(np.diff(record.dq, axis=0)).sum() / record.t[-1] < 50.0
     return record
@@ -67,7 +61,7 @@ def test_an_arm_pulled_beyond_its_reach_stretches_and_comes_back(dt: float) -> N
     record = stretched_run("relax", dt)
     robot = paper_robot()
     least = min(
-        np.linalg.svd(Configuration(robot, q).jacobian[:3], compute_uv=False)[-1]
+        np.linalg.svd(d.Configuration(robot, q).jacobian[:3], compute_uv=False)[-1]
         for q in record.q[:: max(1, round(0.01 / dt))]
     )
     assert least < 0.05  # it was stretched

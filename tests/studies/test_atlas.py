@@ -1,7 +1,6 @@
 """The atlas: its schemes, its runs, what becomes of their numbers, and the command."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,9 +25,7 @@ def test_every_scheme_answers_the_task(name: str) -> None:
 
 
 @pytest.mark.parametrize("kind", atlas.NOISES)
-def test_networks_keep_the_path_under_every_disturbance(
-    kind: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_networks_keep_the_path_under_every_disturbance(kind, monkeypatch) -> None:
     monkeypatch.setattr(atlas, "DURATION", 0.2)
     for name, most in (("zeroing, Euler", 2), ("dual", None)):  # whose state holds no x
         cell = atlas.Cell(name, disturbance=kind, most=most, share=0.4, seeds=2)
@@ -119,9 +116,7 @@ class Slow(ProjectionNetwork):
 """
 
 
-def test_a_network_of_ones_own_comes_from_a_file_or_a_module(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_network_of_ones_own_comes_from_a_file_or_a_module(tmp_path, monkeypatch, capsys) -> None:
     monkeypatch.setattr(atlas, "DURATION", 0.02)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "atlas_parts.py").write_text(OUTSIDE, encoding="utf-8")
@@ -150,12 +145,9 @@ def test_a_network_of_ones_own_comes_from_a_file_or_a_module(
         ("--networks", "zeroing, Eular", "no network 'zeroing, Eular'; did you mean: 'zeroing, E"),
         ("--disturbances", "wihte", "no disturbance 'wihte'; did you mean: white"),
         ("--work", "-1", "work: must be a finite number above 0"),
-        ("--seeds", "0", "seeds: "),
     ],
 )
-def test_wrong_options_are_named(
-    option: str, value: str, reason: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_wrong_options_are_named(option, value, reason, tmp_path, capsys) -> None:
     assert main(["atlas", "--out", str(tmp_path), option, value]) == 2
     assert reason in capsys.readouterr().err
 
@@ -221,9 +213,7 @@ def test_formulas_have_their_orders_against_the_control_period() -> None:
     np.testing.assert_allclose(slopes, [2.0, 3.0], atol=0.15)
 
 
-def test_the_command_writes_a_report_and_goes_on_where_it_was(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_writes_a_report_and_goes_on_where_it_was(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(atlas, "DURATION", 0.02)
     claim = atlas_report.Claim("A claim", "zeroing, Euler", "dual")
     monkeypatch.setattr(atlas_report, "CLAIMS", (claim,))

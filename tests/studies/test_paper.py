@@ -1,7 +1,5 @@
 """The paper's tables and report from made-up numbers whose verdicts are known beforehand."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """One run from plain settings: what is run is what was asked, and its numbers are the record's."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Intervals, paired differences, trends and verdicts, on numbers whose answer is known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.stats import ttest_rel

@@ -1,7 +1,5 @@
 """Sweeps: nothing computed twice, nothing stale, and the same numbers whoever computes them."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
@@ -63,9 +61,7 @@ def test_answers_come_in_the_order_of_the_cells_and_are_kept(tmp_path: Path, log
     assert finished(folder).items() >= kept.items()
 
 
-def test_versions_and_sources_are_in_the_fingerprint(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_versions_and_sources_are_in_the_fingerprint(tmp_path, monkeypatch) -> None:
     package = tmp_path / "iiwa_dnn"
     (package / "studies").mkdir(parents=True)
     task = tmp_path / "task.py"

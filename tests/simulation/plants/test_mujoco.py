@@ -1,7 +1,5 @@
 """The arm in MuJoCo as the runner sees it: start, read, move; no controller around it."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The torque loop alone, on an arm that is integrated here with Pinocchio's forward dynamics."""
 
-from __future__ import annotations
-
 import numpy as np
 import pinocchio as pin
 import pytest
