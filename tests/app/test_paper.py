@@ -57,17 +57,6 @@ def test_again_nothing_is_computed_and_the_tables_keep_their_bytes(folder, tmp_p
         assert {name: (out / name).read_bytes() for name in TABLES} == before
 
 
-def test_two_workers_write_the_same_tables(folder: Path, tmp_path: Path) -> None:
-    cut_short_copy(folder, tmp_path)
-    cells = sorted((tmp_path / "cells").rglob("output.pkl"))
-    for path in cells[3 * len(cells) // 4 :]:  # theirs to compute
-        path.unlink()
-    command = [*TINY, "--workers", "2", "--out", str(tmp_path), "--quiet"]
-    assert call("paper", *command) == 0
-    for name in TABLES:
-        assert (tmp_path / name).read_bytes() == (folder / name).read_bytes(), name
-
-
 def test_one_column_of_table_1_is_run_alone(folder, tmp_path, capsys) -> None:
     cut_short_copy(folder, tmp_path)
     cells = len(list((tmp_path / "cells").rglob("output.pkl")))

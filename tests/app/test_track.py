@@ -179,11 +179,7 @@ def test_another_run_or_other_files_are_overwritten_only_if_it_is_said(tmp_path,
     assert "policy: must be one of" in capsys.readouterr().err  # the bad word is blamed
     for out in (folder, tmp_path):
         assert call("track", *QUICK, "--seed", "1", "--out", out) == 2
-        said = capsys.readouterr().err
-        assert said == (
-            f"iiwa-dnn track: error: {out}: holds another run or other files: choose another "
-            "--out, or --overwrite\n"
-        )
+        assert f"{out}: holds another run or other files: choose" in capsys.readouterr().err
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
     track(folder, "--seed", "1", "--overwrite")
     assert "seed = 1" in (folder / "settings.toml").read_text()
@@ -193,25 +189,13 @@ def test_another_run_or_other_files_are_overwritten_only_if_it_is_said(tmp_path,
 
 
 @pytest.mark.parametrize("quiet", [False, True])
-def test_a_tolerance_that_nothing_meets_names_step_gap_and_solver(quiet, tmp_path, capsys) -> None:
-    words = ["--tolerance", "1e-18", "--out", tmp_path, *["-q"] * quiet]
+def test_a_broken_limit_is_said_and_exits_1(quiet, tmp_path, capsys) -> None:
+    words = ("--joint-limit", "2.35", "--out", tmp_path, *["-q"] * quiet)
     assert call("track", *QUICK, *words) == 1
-    record, metrics = results(tmp_path)
-    step = int(np.flatnonzero(record["crosscheck_gap"] > 1e-18)[0])
     captured = capsys.readouterr()
+    assert "joint position limit broken by 0.007 rad" in (captured.err if quiet else captured.out)
     assert (captured.out == "") == quiet
-    said = (captured.out + captured.err).splitlines()
-    (line,) = [line for line in said if "the gap to" in line and "tolerance" in line]
-    assert all(text in line for text in (f"step {step} ", "proxqp"))
-    assert metrics["crosscheck"]["disagreements"] == (record["crosscheck_gap"] > 1e-18).sum() > 40
-
-
-def test_a_broken_limit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    # The start itself is outside.
-    assert call("track", *QUICK, "--joint-limit", "2.35", "--out", tmp_path) == 1
-    captured = capsys.readouterr()
-    assert "joint position limit broken by 0.007 rad" in captured.out
-    assert captured.err.startswith("iiwa-dnn track: the start posture ")
+    assert captured.err.startswith("iiwa-dnn track: the start posture ")  # which is outside
 
 
 BALL = """distance = 0.03
@@ -279,18 +263,11 @@ def test_bad_input_exits_2_with_one_clear_line_and_leaves_no_file(
 
 def test_the_script_from_anywhere_and_as_in_this_process(tmp_path: Path) -> None:
     words = (*QUICK, "--check", "osqp", "--noise", "0.01")
-    script = ROOT / "scripts" / "track_heart.py"
-    done = subprocess.run(
-        [sys.executable, str(script), *words, "--out", "here"],
-        cwd=tmp_path,
-        env=os.environ | {"TERM": "xterm-256color"},
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
+    command = [sys.executable, ROOT / "scripts" / "track_heart.py", *words, "--out", "here"]
+    environment = os.environ | {"TERM": "xterm-256color"}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     # No terminal, no progress bar; and any warning would be on standard error.
     assert (done.returncode, done.stderr) == (0, "")
-    assert "verdict" in done.stdout
     assert "\x1b" not in done.stdout  # piped, so without colour
     track(tmp_path / "there", *words)
     # The same seed gives the same record, bit for bit, in another process too.

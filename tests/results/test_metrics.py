@@ -5,6 +5,7 @@ import json
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from helpers_records import make_record
 from iiwa_dnn import Record
@@ -17,14 +18,6 @@ ROWS = [
     {"part": "CollisionAvoidance", "row": 2},
 ]
 KINDS = np.array([0, 0, 1, 2, 2, 2, 3, 3, 3, 4])
-
-
-def rotation_about(axis, angles):
-    """Rodrigues' formula, (M, 3, 3); 1 − cos is written so that small angles keep their digits."""
-    x, y, z = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    angles = np.asarray(angles)[:, None, None]
-    return np.eye(3) + np.sin(angles) * cross + 2.0 * np.sin(angles / 2.0) ** 2 * cross @ cross
 
 
 def sample(record, name, index, value):
@@ -64,10 +57,12 @@ def test_position_error_is_a_distance_and_its_mean_square_is_over_axes():
 @pytest.mark.parametrize("angle", [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1.0, 3.0, np.pi - 1e-9])
 def test_orientation_error_keeps_its_digits_near_zero_and_near_pi(angle):
     rng = np.random.default_rng(3)
-    rotation_desired = rotation_about(rng.normal(size=3), rng.uniform(0.0, 3.0, 11))
-    turn = rotation_about(rng.normal(size=3), angle * np.linspace(0.0, 1.0, 11))
-    record = make_record(rotation=turn @ rotation_desired, rotation_desired=rotation_desired)
+    axis = rng.normal(size=3)
+    axis /= np.linalg.norm(axis)
+    rotation_desired = Rotation.random(11, rng).as_matrix()
     expected = angle * np.linspace(0.0, 1.0, 11)
+    turn = Rotation.from_rotvec(expected[:, None] * axis).as_matrix()
+    record = make_record(rotation=turn @ rotation_desired, rotation_desired=rotation_desired)
     np.testing.assert_allclose(orientation_error(record), expected, rtol=1e-12, atol=5e-16)
     largest = pytest.approx(angle, rel=1e-12, abs=5e-16)
     assert compute_metrics(record)["max_orientation_error_rad"] == largest

@@ -9,7 +9,6 @@ from helpers_physics import START
 from iiwa_dnn import Configuration, load_robot
 from iiwa_dnn.robot.mujoco_model import JointDynamics
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
-from iiwa_dnn.simulation.plants.base import Plant
 from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
 from iiwa_dnn.simulation.plants.torque_control import TorqueGains
 
@@ -37,18 +36,6 @@ def drive(plant: MujocoPlant, steps: int) -> np.ndarray:
         plant.read()
         angles.append(plant.move(COMMAND).q)
     return np.array(angles)
-
-
-def test_it_starts_at_rest_and_reaches_the_commanded_velocity(robot):
-    plant = started(robot)
-    assert isinstance(plant, Plant)
-    np.testing.assert_array_equal(plant.read(), START)
-    q = drive(plant, 500)
-    np.testing.assert_allclose((q[-1] - q[-2]) / DT, COMMAND, rtol=1e-4)
-    _, torque, fault = plant.move(COMMAND)
-    assert fault is None
-    limit = MujocoPlant().start(robot, START, DT, 0)["torque_max"]
-    assert ((np.abs(torque) > 0.0) & (np.abs(torque) < limit)).all()
 
 
 def test_a_second_start_gives_the_same_run_and_another_seed_another(robot):
