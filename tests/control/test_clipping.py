@@ -23,11 +23,12 @@ def limited(G: object = None, h: object = None, n: int = 3) -> QP:
     return QP(3.0 * np.eye(n), np.full(n, 7.0), G=G, h=h, lb=-ub, ub=ub)
 
 
-def test_no_number_becomes_the_bound_nearest_to_rest() -> None:
-    qp = limited()
+@pytest.mark.parametrize(("speed", "budget"), [(np.nan, 60.0), (1.0, 0.0)])
+def test_without_a_number_or_an_answer_it_is_the_bound_nearest_to_rest(speed, budget) -> None:
+    qp = limited(G=[[1.0, 1.0, 1.0]], h=[0.5])
     qp.lb[1] = 0.5
     qp.ub[2] = -0.25
-    clipped, which = clip_command(qp, np.full(3, np.nan), settling())
+    clipped, which = clip_command(qp, np.full(3, speed), settling(budget=budget))
     assert_array_equal(clipped, [0.0, 0.5, -0.25])
     assert_array_equal(which, [1, 1, 1])
 
@@ -75,11 +76,3 @@ def test_rows_on_slack_variables_are_left_to_the_scheme() -> None:
     clipped, which = clip_command(qp, np.array([0.9, 0.05, 0.9]), settling())
     assert_array_equal(clipped, [0.9, 0.05, 0.9])
     assert_array_equal(which, [0, 0, 0])
-
-
-def test_where_the_network_finds_nothing_the_command_is_the_bound_nearest_to_rest() -> None:
-    qp = limited(G=[[1.0, 1.0, 1.0]], h=[0.5])
-    qp.lb[2] = 0.25
-    clipped, which = clip_command(qp, np.ones(3), settling(budget=0.0))
-    assert_array_equal(clipped, [0.0, 0.0, 0.25])
-    assert_array_equal(which, [1, 1, 1])

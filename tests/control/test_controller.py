@@ -11,29 +11,7 @@ import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, dh_pose
 from helpers_simulation import heart, near_target, paper_robot, paper_start
 
-SCHEME = d.DoubleIndicator(home=PAPER_Q0)
-
-
-def controller_of(scheme: d.Scheme, robot: d.Robot | None = None, **options: Any) -> d.Controller:
-    return d.Controller(robot or paper_robot(), scheme, **options)
-
-
-def test_a_continuous_step_advances_by_one_period_and_lags() -> None:
-    conf, target = paper_start(), heart().at(0.5)
-    settled = controller_of(SCHEME).step(conf.q, 0.0, target).dq
-    controller = controller_of(SCHEME, mode="continuous", dt=1e-4)
-    command = controller.step(conf.q, 0.0, target)
-    assert command.solution.status is d.Status.ADVANCED
-    assert not command.solution.found
-    assert command.solution.network_time == pytest.approx(1e-4 / 9e-5)
-    gap = [float(np.abs(command.dq - settled).max())]
-    # The target held still, the network settles in its own time: sigma = 0.241 here, so like
-    # exp(-sigma^2 t / rho), 16 control steps to a factor of e.
-    for _ in range(300):
-        gap.append(float(np.abs(controller.step(conf.q, 0.0, target).dq - settled).max()))
-    assert gap[0] > 1e-2
-    assert gap[20] > 1e-3
-    assert gap[300] < 1e-6
+DT = 1e-3
 
 
 def test_a_command_says_in_words_what_it_is() -> None:
@@ -41,16 +19,11 @@ def test_a_command_says_in_words_what_it_is() -> None:
     far = d.Target(start.position + [0.5, 0.0, 0.0], start.rotation)
     controller = d.Controller(paper_robot(), d.DoubleIndicator(), policy="stop")
     command = controller.step(PAPER_Q0, 0.0, far)
-    stopped = repr(command)
-    reason = "no solution: stopped, against joint 4 lower velocity limit; ok = False>"
-    assert stopped.endswith(reason)
-    controller.policy = "relax"
+    assert "stopped, against joint 4 lower velocity limit; ok = False>" in repr(command)
     assert repr(command.qp) == "<QP of 7 variables: 0 inequalities, 6 equalities, 14 bounds>"
-    assert "as near to the task as the limits allow, against" in repr(
-        controller.step(PAPER_Q0, 0.0, far)
-    )
-    there = d.Target(start.position, start.rotation)
-    assert repr(controller.step(PAPER_Q0, 0.0, there)).endswith("rad/s, solved; ok = True>")
+    controller.policy = "relax"
+    relaxed = repr(controller.step(PAPER_Q0, 0.0, far))
+    assert "as near to the task as the limits allow, against" in relaxed
 
 
 @pytest.mark.parametrize("gain", [10.2, np.inf])
@@ -81,7 +54,7 @@ def test_a_network_that_lags_says_that_it_keeps_bounds_alone() -> None:
     ball = d.Sphere(paper_start().position + [0.2, 0.0, 0.0], 0.05)
     avoidance = d.CollisionAvoidance([ball], self_collision=False)
     scheme = d.DoubleIndicator(home=PAPER_Q0, extra_limits=(avoidance,))
-    controller = controller_of(scheme, mode="continuous")
+    controller = d.Controller(paper_robot(), scheme, mode="continuous")
     with pytest.warns(UserWarning, match="the rows of CollisionAvoidance hold where"):
         controller.step(PAPER_Q0, 0.0, near_target(np.array(PAPER_Q0), 0, size=2e-3))
 
@@ -113,6 +86,9 @@ SCHEMES: dict[str, d.Scheme] = {
 }
 
 
+STATUS = {"converged": d.Status.SOLVED, "continuous": d.Status.ADVANCED}
+
+
 class Asked(d.DNNSolver):
     """A solver that the controller has to ask, since it could solve in any way of its own."""
 
@@ -128,21 +104,20 @@ def test_a_compiled_step_is_its_parts_one_after_the_other(scheme, mode, substeps
         for solver in (d.DNNSolver(follower=follower), Asked(follower=follower))
     )
     rng = np.random.default_rng(7)
-    postures = np.array(PAPER_Q0) + 1e-3 * rng.standard_normal((20, 7))
-    targets = [near_target(q, seed, size=2e-3) for seed, q in enumerate(postures)]
-    for q, target in zip(postures, targets, strict=True):
+    for seed in range(20):
+        q = np.array(PAPER_Q0) + 1e-3 * rng.standard_normal(7)
+        target = near_target(q, seed, size=2e-3)
         one = compiled.step(q, 0.0, target)
         other = asked.step(q, 0.0, target)
         # The compiler may round a product and its sum in one place once, in another twice.
         np.testing.assert_allclose(one.dq, other.dq, rtol=0, atol=1e-11)
         conf = d.Configuration(robot, q)
         np.testing.assert_array_equal(one.qp.data, other.qp.data)
-        anchored = compiled.scheme
-        np.testing.assert_array_equal(one.qp.data, anchored.build_qp(conf, target).data)
+        np.testing.assert_array_equal(one.qp.data, compiled.scheme.build_qp(conf, target).data)
         assert one.solution.status is other.solution.status
-        assert one.solution.status is (
-            d.Status.SOLVED if mode == "converged" else d.Status.ADVANCED
-        )
+        assert one.solution.status is STATUS[mode]
+        if mode == "continuous":
+            assert one.solution.network_time == pytest.approx(1e-4 / 9e-5)
         np.testing.assert_allclose(one.solution.point, other.solution.point, rtol=0, atol=1e-9)
         residuals = one.solution.residuals
         np.testing.assert_allclose(residuals, other.solution.residuals, rtol=1e-9, atol=1e-11)
@@ -181,10 +156,7 @@ def test_what_is_changed_counts_from_the_next_step_on(changed: dict[str, Any]) -
         setattr(controller, name, value)
     command = controller.step(PAPER_Q0, 3e-4)
     expected = anew.step(PAPER_Q0, 3e-4)
-    path = controller.reference.ahead(anew.dt) if anew.scheme.ahead else controller.reference
-    start = d.Configuration(anew.robot, PAPER_Q0)
-    qp = anew.scheme.build_qp(start, path.at(3e-4), anew.dt)
-    np.testing.assert_allclose(command.qp.data, qp.data, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(command.qp.data, expected.qp.data, rtol=0, atol=1e-9)
     assert command.solution.status is expected.solution.status
     if anew.mode == "continuous":
         assert command.solution.network_time == expected.solution.network_time
@@ -192,39 +164,18 @@ def test_what_is_changed_counts_from_the_next_step_on(changed: dict[str, Any]) -
         assert command.solution.residuals.largest <= anew.solver.tol
 
 
-class Diverged(d.DNNSolver):
-    """A solver that says that its state is not finite."""
-
-    def advance(self, qp: d.QP, duration: float) -> d.Solution:
-        return super().advance(qp, duration)._replace(status=d.Status.NOT_FINITE)
-
-
 def test_an_answer_that_diverged_says_so() -> None:
-    controller = d.Controller(
-        paper_robot(), SCHEMES["so3"], heart(), mode="continuous", solver=Diverged()
-    )
+    controller = d.Controller(paper_robot(), SCHEMES["so3"], heart(), mode="continuous")
+    assert controller.step(PAPER_Q0, 0.0).ok
+    controller.solver.disturb(np.full(7, np.inf))
     command = controller.step(PAPER_Q0, 0.0)
-    assert not command.ok
     assert command.solution.status is d.Status.NOT_FINITE
+    assert not command.ok
 
 
-def test_a_stiff_program_takes_shorter_sub_steps() -> None:
-    # P = 400 I: explicit Euler is stable up to 2 / 400 of rho.
-    stiff = d.Scheme([d.KineticEnergy(weight=400.0)], [d.PositionTask()])
-    controller = d.Controller(paper_robot(), stiff, heart(), dt=1e-4, mode="continuous")
-    commands = [controller.step(PAPER_Q0, 1e-4 * k) for k in range(4)]
-    assert all(command.ok for command in commands)
-    ahead = 1e-4 / controller.solver.network.rho
-    assert commands[-1].solution.iterations >= ahead * 400.0 / 2.0
-    assert commands[-1].solution.network_time == pytest.approx(ahead)
-
-
-DT = 1e-3
-
-
-def loop(controller: d.Controller, steps: int, q: np.ndarray | None = None) -> np.ndarray:
+def loop(controller: d.Controller, steps: int) -> np.ndarray:
     """Joint positions of a loop whose joints move as they are told, (steps + 1, n)."""
-    path = [np.array(PAPER_Q0) if q is None else q]
+    path = [np.array(PAPER_Q0)]
     for k in range(steps):
         path.append(path[-1] + controller.dt * controller.step(path[-1], k * controller.dt).dq)
     return np.array(path)
@@ -293,5 +244,3 @@ def test_a_loop_that_jitters_says_the_period_of_each_step(mode) -> None:
         t += period
     assert told.control_step is laid_out
     assert np.linalg.norm(dh_pose(q)[0] - heart().at(t).position) < 5e-5
-    with pytest.raises(d.InvalidInputError, match=r"^dt\b"):
-        told.step(q, t, dt=0.0)

@@ -26,6 +26,7 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("dt", lambda: controller(dt=0.0)),
     ("dt", lambda: controller(dt=np.nan)),
     ("reference", lambda: Controller(paper_robot(), DoubleIndicator()).step(PAPER_Q0, 0.0)),
+    ("dt", lambda: controller().step(PAPER_Q0, 0.0, dt=0.0)),
     ("measurement", lambda: NoiseModel(measurement=0.0)),
     ("velocity", lambda: NoiseModel(velocity=-1.0)),
     ("bias_walk", lambda: NoiseModel(bias_walk=np.nan)),

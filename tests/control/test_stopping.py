@@ -98,14 +98,7 @@ def beside(distance: float, *obstacles: Any) -> d.CollisionAvoidance:
     return d.CollisionAvoidance(obstacles, distance=distance, self_collision=False)
 
 
-def driven(
-    parts: tuple[d.Limit, ...],
-    target: Any,
-    steps: int,
-    dt: float = 4e-3,
-    q: Any = START.q,
-    robot: d.Robot = ROBOT,
-) -> tuple[np.ndarray, float]:
+def driven(parts, target, steps, dt=4e-3, q=START.q, robot=ROBOT) -> tuple[np.ndarray, float]:
     """Joint positions of an arm on its way to a target, or one a step, and what is left [m]."""
     scheme = d.DoubleIndicator(orientation="none", extra_limits=parts)
     controller = d.Controller(robot, scheme, dt=dt)
@@ -117,21 +110,13 @@ def driven(
         assert command.solution.residuals.primal < 1e-8
         path.append(path[-1] + dt * command.dq)
     left = np.linalg.norm(d.Configuration(robot, path[-1]).position - goal.position)
-    assert breaches_of(np.array(path), robot, dt, parts) == []
+    jerk = 500.0 if any(isinstance(part, d.JerkLimits) for part in parts) else np.inf
+    kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, jerk)
+    assert breaches(np.array(path), dt, *kinds) == []
     return np.array(path), float(left)
 
 
-def breaches_of(
-    path: np.ndarray, robot: d.Robot, dt: float, parts: tuple[d.Limit, ...]
-) -> list[Any]:
-    jerk = 500.0 if any(isinstance(part, d.JerkLimits) for part in parts) else np.inf
-    kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, jerk)
-    return breaches(path, dt, *kinds)
-
-
-def distances(
-    avoidance: d.CollisionAvoidance, path: np.ndarray, robot: d.Robot = ROBOT
-) -> np.ndarray:
+def distances(avoidance: d.CollisionAvoidance, path: np.ndarray, robot=ROBOT) -> np.ndarray:
     return avoidance.scene(robot).nearest(path, np.zeros(len(path)))[0]
 
 
