@@ -133,17 +133,3 @@ def test_the_error_towards_the_next_target_is_of_second_order_and_does_not_add_u
         largest.append((distance[settled].max(), orientation_error(record)[settled].max()))
     assert_allclose(np.divide(*largest), 4.0, rtol=0.05)
     assert largest[1][0] < 4e-9
-
-
-def test_a_controller_tracks_as_a_run_does_and_a_target_set_from_outside_too() -> None:
-    robot, q = paper_robot(), np.array(PAPER_Q0)
-    controller = d.Controller(robot, d.DoubleIndicator(tracking="next"), PATH, dt=DT)
-    for k in range(200):
-        q = q + DT * controller.step(q, k * DT).dq
-    assert np.abs(d.Configuration(robot, q).position - PATH.at(0.2).position).max() < 1e-8
-    target = d.MovingTarget(d.Configuration(robot, q), speed=0.1)
-    controller.reference = target
-    target.set(target.at(0.2).position + [0.01, 0.0, 0.0])
-    for k in range(200, 400):
-        q = q + DT * controller.step(q, k * DT).dq
-    assert np.abs(d.Configuration(robot, q).position - target.at(0.4).position).max() < 1e-8

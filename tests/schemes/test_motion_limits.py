@@ -168,23 +168,6 @@ def test_a_joint_pressed_against_its_limit_comes_to_rest(speed, jerk, dt) -> Non
     assert np.abs(commands[-50:]).max() < 1e-12
 
 
-@pytest.mark.parametrize("jerk", [INF, 200.0])
-def test_braking_ends_at_rest_in_few_steps(jerk: float) -> None:
-    dt, A = 1e-3, 8.0
-    for start in (-1.3, 0.004, 1.7):
-        last, before, q, spent = start, start, 0.0, 0.0
-        for _ in range(2000):
-            lb, ub = joint_bounds(last, before, 50.0 - q, 50.0 + q, (2.0, A, jerk, A), dt)
-            last, before = braking(last, lb, ub, jerk, dt), last
-            assert last * start >= -1e-15  # it does not turn round
-            q, spent = q + dt * last, spent + dt
-            if last == 0.0 == before:
-                break
-        quickest = abs(start) / A + (0.0 if jerk == INF else A / jerk)
-        if abs(start) > 1.0:
-            assert spent <= quickest + 3 * dt
-
-
 @compiled
 def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
     """Feed a joint's position back, with noise; returns its largest excursion in the last part."""
