@@ -49,15 +49,6 @@ def test_gaps_are_those_to_the_known_solution() -> None:
         assert np.isnan(BOTH.check(qp, np.nan * best).solution_gap).all()
 
 
-def test_objective_gap_is_evaluated_without_cancellation() -> None:
-    # So near the optimum two objectives of -1e8 differ by less than their last digit, 1e-8.
-    qp = QP(np.eye(2), [-1e4, 1e4], A=[[1.0, 1.0]], b=[0.0])
-    x = np.array([1e4 + 1e-5, -1e4 - 1e-5])
-    exact = 1e-10  # ||x - best||^2 / 2: the gradient is zero at the optimum
-    gap = CrossCheck(reference_tolerance=1e-6).check(qp, x).objective_gap[0, 0]
-    assert gap == pytest.approx(exact, rel=1e-2)
-
-
 def test_a_block_of_programs_is_judged_one_by_one() -> None:
     rng = np.random.default_rng(57)
     known = [known_qp(rng, 7, 3, active) for active in range(5)]
@@ -88,6 +79,7 @@ def test_a_second_solver_judges_where_the_first_has_no_answer(first, second, mon
     known = [known_qp(np.random.default_rng([58, k]), 7, 3, k) for k in range(4)]
 
     def fail(name: str, qp: QP) -> np.ndarray:
+        assert np.isfinite(qp.data).all()  # ProxQP takes minutes over one NaN
         if name == first and not np.array_equal(qp.data, known[1][0].data):
             raise qpsolvers.exceptions.SolverError("out of order")
         return ask(name, qp)
@@ -155,18 +147,6 @@ def test_a_reference_is_judged_by_its_own_residual(spoilt, residual, monkeypatch
     np.testing.assert_array_equal(agreement.judge, [[-1, -1]])
 
 
-def test_a_program_that_is_not_finite_is_not_put_to_anyone(monkeypatch: pytest.MonkeyPatch) -> None:
-    # ProxQP takes minutes over one NaN, OSQP its whole budget of iterations.
-    asked = []
-    monkeypatch.setattr(crosscheck, "ask", lambda *args: asked.append(args))
-    qp = heart_qp()
-    spoilt = QP(qp.P, qp.q * np.nan, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)
-    agreement = BOTH.check(spoilt, np.zeros(7))
-    assert not asked
-    assert np.isnan(agreement.solution_gap).all()
-    np.testing.assert_array_equal(agreement.reference_residual, [[np.inf, np.inf]])
-
-
 def test_the_worst_of_the_stages_of_each_step() -> None:
     # Two steps of two stages, two references; NaN and inf where the second gave no answer.
     gap = np.array([[1.0, 5.0], [3.0, 4.0], [2.0, np.nan], [1.0, 1.0]])
@@ -182,7 +162,6 @@ def test_the_worst_of_the_stages_of_each_step() -> None:
 @pytest.mark.parametrize(
     ("argument", "value"),
     [
-        ("solvers", ("gurobi",)),
         ("solvers", "proxqp"),  # a text is a sequence too
         *[
             (name, bad)

@@ -119,22 +119,12 @@ def test_residuals_are_those_of_qpsolvers() -> None:
         state = rng.standard_normal(n + p + m + 2 * n)  # nothing like a solution
         point = np.empty(n + p + m + n)
         ours = point_of_state(qp.data, *qp.sizes, state, point)
-        judged = qpsolvers.Solution(
-            qp.to_qpsolvers(),
-            found=True,
-            x=point[:n],
-            y=point[n : n + p],
-            z=point[n + p : n + p + m],
-            z_box=point[n + p + m :],
-        )
-        theirs = (judged.primal_residual(), judged.dual_residual(), judged.duality_gap())
-        np.testing.assert_allclose(ours, theirs, rtol=1e-12, atol=1e-13)
-        # A point that nobody put inside its bounds is judged too.
-        outside = rng.standard_normal(point.size)
-        x, y, z, z_box = np.split(outside, [n, n + p, n + p + m])
-        judged = qpsolvers.Solution(qp.to_qpsolvers(), found=True, x=x, y=y, z=z, z_box=z_box)
-        theirs = (judged.primal_residual(), judged.dual_residual(), judged.duality_gap())
-        np.testing.assert_allclose(qp.residuals(outside), theirs, rtol=1e-12, atol=1e-13)
+        outside = rng.standard_normal(point.size)  # nobody put it inside its bounds
+        for residuals, judged in ((ours, point), (qp.residuals(outside), outside)):
+            x, y, z, z_box = np.split(judged, [n, n + p, n + p + m])
+            other = qpsolvers.Solution(qp.to_qpsolvers(), found=True, x=x, y=y, z=z, z_box=z_box)
+            theirs = (other.primal_residual(), other.dual_residual(), other.duality_gap())
+            np.testing.assert_allclose(residuals, theirs, rtol=1e-12, atol=1e-13)
         assert (point[:n] >= qp.lb).all()
         assert (point[:n] <= qp.ub).all()
         assert (point[n + p : n + p + m] >= 0).all()

@@ -8,10 +8,10 @@ import pytest
 
 import exact
 import programs
-from exact import small, whole_numbers
+from exact import whole_numbers
 from helpers_qp import known_qp
 from iiwa_dnn import QP, CrossCheck, DNNSolver, InvalidInputError, Solution, prove, solve_problem
-from iiwa_dnn.qp.proof import DEPENDENT, FAR, NOT_CONVEX, WEAK, Proof, prove_point
+from iiwa_dnn.qp.proof import DEPENDENT, FAR, NOT_CONVEX, WEAK, Proof
 
 
 def answer(x: list[float], z_box: list[float] | None = None, **more: list[float]) -> object:
@@ -55,26 +55,6 @@ def test_no_bound_is_below_the_true_error(kind: str, count: int, share: float) -
             solution = solution._replace(point=solution.point + shift)
         proven += judged(qp, solution)[0].bound < np.inf
     assert proven >= share * count
-
-
-def test_no_bound_is_below_the_error_of_another_programs_answer() -> None:
-    for k in range(600):
-        rng = np.random.default_rng([31, k])
-        qp = (small if k % 2 else whole_numbers)(rng)
-        asked = qp
-        if k % 3 == 1:  # without the rows, in wider bounds
-            asked = QP(qp.P, qp.q, None, None, qp.A, qp.b, qp.lb - 9.0, qp.ub + 9.0)
-        elif k % 3 == 2:  # with the first variable held at its upper bound
-            lower = np.where(np.arange(qp.q.size) == 0, qp.ub, qp.lb)
-            asked = QP(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, lower, qp.ub)
-        solution = DNNSolver().solve(asked)
-        z = solution.z if asked.h.size else np.zeros(qp.h.size)
-        point = np.concatenate([solution.x, solution.y, z, solution.z_box])
-        found = prove_point(qp, point)
-        if found.bound < np.inf:
-            x = exact.exact_solution(qp, exact.face_of(qp, found.active))
-            if x is not None:
-                assert exact.distance(point[: qp.q.size], x) <= Fraction(found.bound)
 
 
 def held(qp: QP, x: list[Fraction]) -> list[int]:
@@ -129,13 +109,9 @@ def test_nothing_about_the_answer_is_trusted() -> None:
         (QP(np.zeros((1, 1)), [-1.0], ub=[2.0]), [2.0], np.inf, DEPENDENT),  # without multipliers
         (QP(np.zeros((1, 1)), [0.0], lb=[2.0], ub=[2.0]), [2.5], 0.5, ""),
         (QP(np.zeros((1, 1)), [0.0], lb=[0.0], ub=[2.0]), [1.0], np.inf, DEPENDENT),  # any x
-        (QP(np.zeros((1, 1)), [-0.0], G=[[1.0]], h=[0.0], ub=[0.0]), [0.0], np.inf, DEPENDENT),
         (QP(np.eye(2), [0.0, 0.0], A=[[0.0, 0.0]], b=[0.0]), [0.0, 0.0], 0.0, ""),  # 0 x = 0
-        (QP(np.eye(2), [0.0, 0.0], A=[[0.0, 0.0]], b=[1e-300]), [0.0, 0.0], np.inf, DEPENDENT),
         (QP(np.eye(2), [0.0, 0.0], A=[[1.0, 1.0], [1.0, 1.0]], b=[1.0, 1.0]), [0.5, 0.5], 0.0, ""),
         (QP(np.eye(2), [0.0, 0.0], A=[[1.0, 1.0], [1.0, 1.0]], b=[1.0, 2.0]), [0.5, 0.5], np.inf,
-         DEPENDENT),
-        (QP(np.eye(2), [0.0, 0.0], A=[[1.0, 1.0], [2.0, 2.0]], b=[1.0, 2.0]), [0.5, 0.5], np.inf,
          DEPENDENT),
         (QP([[-1e-18]], [0.0], lb=[-1.0], ub=[1.0]), [0.0], np.inf, NOT_CONVEX),
         (QP([[1.0, 1.0], [1.0, 1.0 - 1e-15]], [0.0, 0.0]), [0.0, 0.0], np.inf, DEPENDENT),
@@ -143,16 +119,10 @@ def test_nothing_about_the_answer_is_trusted() -> None:
         (QP([[1.0, 2.0], [2.0, 1.0]], [0.0, 0.0], A=[[1.0, 1.0]], b=[0.0]), [0.0, 0.0], np.inf,
          NOT_CONVEX),
         (QP([[1.0, 1e-6], [-1e-6, 1.0]], [-1.0, -1.0]), [1.0, 1.0], 0.0, ""),  # its symmetric part
-        (QP([[1.0, 5e-324], [0.0, 1.0]], [0.0, 0.0]), [0.0, 0.0], np.inf, DEPENDENT),  # no half
         (QP(np.eye(1), [0.0], lb=[1.0], ub=[0.0]), [0.5], np.inf, DEPENDENT),
-        (QP(np.eye(1), [0.0], lb=[np.nan]), [0.0], np.inf, DEPENDENT),
         (QP(np.eye(1), [0.0]), [np.inf], np.inf, FAR),
         (QP(np.eye(1), [np.nan]), [0.0], np.inf, DEPENDENT),
         (QP(np.eye(1), [0.0], G=[[0.0]], h=[-1.0]), [0.0], np.inf, DEPENDENT),
-        (QP(np.eye(1), [0.0], G=[[np.nan]], h=[1.0]), [0.0], np.inf, DEPENDENT),
-        (QP(np.eye(1), [0.0], G=[[np.nan]], h=[np.inf]), [0.0], 0.0, ""),  # limits nothing
-        (QP([[1e308]], [1e308]), [-1.0], np.inf, DEPENDENT),  # twice 1e308 is too much
-        (QP([[5e-324]], [0.0], lb=[1.0], ub=[1.0]), [1.0], np.inf, NOT_CONVEX),
     ],
 )  # fmt: skip
 def test_bounds_and_reasons(qp: QP, x: list[float], bound: float, reason: str) -> None:
@@ -161,26 +131,11 @@ def test_bounds_and_reasons(qp: QP, x: list[float], bound: float, reason: str) -
     assert bound <= proof.bound <= bound + 2e-14
 
 
-def test_a_row_that_holds_by_less_than_rounding_is_not_decided() -> None:
-    # At x = (1/3, 1/3, ...) the row's slack is zero, or a rounding of it, and no multiplier helps.
-    rows = np.ones((1, 3))
-    for slack in (0.0, 1e-17, 1e-10):
-        qp = QP(np.eye(3), -np.ones(3) / 3.0, G=rows, h=[1.0 + slack])
-        proof, _ = judged(qp, DNNSolver().solve(qp))
-        assert proof.reason == (WEAK if slack < 1e-15 else "")
-        assert proof.bound < 1e-13
-
-
 def test_a_vertex_of_a_linear_program_is_proven_by_its_multipliers() -> None:
     qp = QP(np.zeros((2, 2)), [-1.0, -2.0], G=[[1.0, 1.0]], h=[3.0], lb=[0.0, 0.0], ub=[2.0, 2.0])
     proof, _ = judged(qp, DNNSolver().solve(qp))
     np.testing.assert_array_equal(proof.active, [0, 1, 1])
     assert (proof.reason, proof.bound < 1e-9) == ("", True)
-
-
-def test_where_products_underflow_the_bound_says_so() -> None:
-    assert prove(QP([[1e-308]], [-1e-308]), answer([1.0])).bound > 1e10
-    assert prove(QP([[1e-200]], [-1e-200]), answer([1.0])).bound < 1e-14
 
 
 def test_a_repeated_row_keeps_no_negative_multiplier() -> None:
@@ -201,15 +156,6 @@ def test_a_limit_that_the_answer_names_wrongly_is_released() -> None:
         proof = prove(qp, answer([1.0], [z_box], z=np.array([z])))
         assert (proof.reason, proof.bound < 1e-14) == ("", True)
         assert not proof.active.any()
-
-
-@pytest.mark.parametrize("scale", [1e-8, 1e8])
-def test_rows_in_another_unit_than_the_cost_are_no_obstacle(scale: float) -> None:
-    a = np.array([1.0, 2.0, 3.0])
-    A = scale * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0]])
-    x = np.ones(3)
-    proof = prove(QP(np.outer(a, a), -6.0 * a, A=A, b=A @ x), answer([1.0, 1.0, 1.0]))
-    assert (proof.reason, proof.bound < 1e-10) == ("", True)
 
 
 def test_a_cost_that_lacks_less_than_rounding_to_be_convex_is_not_proven() -> None:
@@ -271,19 +217,3 @@ def test_a_check_hands_the_proof_on() -> None:
     assert (agreement.solution_gap[right, 0] < 1e-7).all()
     # x alone will do where no multiplier has to be known.
     assert CrossCheck(("proof",)).check(known[0], points[0, :5]).solution_gap[0, 0] < 1e-7
-
-
-@pytest.mark.parametrize("count", [1000, 4000])
-def test_the_multipliers_of_rows_that_repeat_count_in_the_rounding(count: int) -> None:
-    """One row many times, with huge multipliers that cancel: their sum is as wrong as they are."""
-    share = 2.0**53 / count + 0.67
-    y = np.full(count, share)
-    row = np.array([1.0, 0.75])
-    q = np.array([0.3, -0.2])
-    true = -(1.0 + row @ q) / (row @ row)  # of min |x|^2 / 2 + q x on the row
-    y[0] = -(count - 1) * share + true
-    exact_x = -q - true * row
-    qp = QP(np.eye(2), q, A=np.tile(row, (count, 1)), b=np.ones(count))
-    moved = exact_x + 0.17 * count * np.array([-0.75, 1.0])
-    bound = prove(qp, answer(moved.tolist(), y=y)).bound
-    assert np.abs(moved - exact_x).max() <= bound
