@@ -11,6 +11,8 @@ import scipy.sparse as spa
 from numpy.typing import ArrayLike, NDArray
 
 from helpers_kinematics import PAPER_Q0
+from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.references import Heart, Reference, Target
@@ -72,6 +74,19 @@ def run(
         PAPER_Q0,
         **{"dt": 1e-3, "duration": 0.05, "check": UNCHECKED} | options,
     )
+
+
+def driven(
+    controller: Controller, q: ArrayLike, steps: int, target: Any = None
+) -> tuple[NDArray[np.float64], list[Command]]:
+    """Follow a controller to a target, or to that of each time; the path (steps + 1, n) from q."""
+    path = [np.array(q)]
+    commands = []
+    for k in range(steps):
+        t = k * controller.dt
+        commands.append(controller.step(path[-1], t, target(t) if callable(target) else target))
+        path.append(path[-1] + controller.dt * commands[-1].dq)
+    return np.array(path), commands
 
 
 def solve_by(solver: str, qp: QP) -> NDArray[np.float64]:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import iiwa_dnn
+from helpers_simulation import driven
 from iiwa_dnn import AccelerationLimits, CollisionAvoidance, CrossCheck, JerkLimits, Limit
 from iiwa_dnn.control.command import RowLayout
 from iiwa_dnn.control.policies import Policy, ProgramKind
@@ -32,12 +33,7 @@ def yielding_steps(arm: str, limits: str, policy: Policy) -> tuple[RowLayout, np
     slow = robot.with_limits(velocity=np.minimum(robot.dq_max, SPEED))
     circle = iiwa_dnn.Circle(0.06, 1.5).anchored(start)
     controller = iiwa_dnn.Controller(slow, scheme, circle, policy=policy)
-    rows = []
-    for k in range(STEPS):
-        command = controller.step(q, k * 1e-3)
-        q = q + 1e-3 * command.dq
-        rows.append(command.row)
-    taken = np.array(rows)
+    taken = np.array([command.row for command in driven(controller, q, STEPS)[1]])
     kinds = controller.layout.view(taken, "decision")[:, 3]
     taken = taken[(kinds > ProgramKind.OWN) & (kinds < ProgramKind.STOPPED)]
     assert len(taken) > 20

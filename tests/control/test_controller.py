@@ -9,7 +9,7 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, dh_pose
-from helpers_simulation import heart, near_target, paper_robot, paper_start
+from helpers_simulation import driven, heart, near_target, paper_robot, paper_start
 
 DT = 1e-3
 
@@ -164,25 +164,15 @@ def test_what_is_changed_counts_from_the_next_step_on(changed: dict[str, Any]) -
         assert command.solution.residuals.largest <= anew.solver.tol
 
 
-def loop(controller: d.Controller, steps: int) -> np.ndarray:
-    """Joint positions of a loop whose joints move as they are told, (steps + 1, n)."""
-    path = [np.array(PAPER_Q0)]
-    for k in range(steps):
-        path.append(path[-1] + controller.dt * controller.step(path[-1], k * controller.dt).dq)
-    return np.array(path)
-
-
 def test_commands_stay_what_they_were() -> None:
     controller = d.Controller(paper_robot(), d.DoubleIndicator(), heart(), dt=DT)
-    q, commands, kept = np.array(PAPER_Q0), [], []
-    for k in range(300):
-        commands.append(controller.step(q, k * DT))
-        kept.append((commands[-1].dq.copy(), commands[-1].qp.data.copy()))
-        q = q + DT * commands[-1].dq
-    for command, (dq, data) in zip(commands, kept, strict=True):
-        np.testing.assert_array_equal(command.dq, dq)
-        np.testing.assert_array_equal(command.qp.data, data)
-        np.testing.assert_array_equal(command.solution.x, dq)
+    path, commands = driven(controller, PAPER_Q0, 300)
+    for k, command in enumerate(commands):
+        np.testing.assert_array_equal(path[k] + DT * command.dq, path[k + 1])
+        np.testing.assert_array_equal(command.solution.x, command.dq)
+        conf = d.Configuration(paper_robot(), path[k])
+        qp = controller.scheme.build_qp(conf, heart().at(k * DT))
+        np.testing.assert_allclose(command.qp.data, qp.data, rtol=0, atol=1e-9)
         assert command.ok
 
 
@@ -192,7 +182,7 @@ def test_warm_up_at_a_posture_leaves_nothing_to_be_laid_out() -> None:
     )
     warm.warm_up(PAPER_Q0)
     laid_out = warm.control_step
-    np.testing.assert_array_equal(loop(warm, 30), loop(cold, 30))
+    np.testing.assert_array_equal(driven(warm, PAPER_Q0, 30)[0], driven(cold, PAPER_Q0, 30)[0])
     assert warm.control_step is laid_out
     assert cold.control_step is not laid_out
     with pytest.raises(d.InvalidInputError, match=r"^q\b"):
@@ -202,10 +192,10 @@ def test_warm_up_at_a_posture_leaves_nothing_to_be_laid_out() -> None:
 def test_the_reference_is_judged_at_the_time_of_the_first_step() -> None:
     """A run that is taken up later begins where the path is then, wherever it began."""
     half = round(1.0 / DT)  # 7.6 cm from where the path began
-    q = loop(d.Controller(paper_robot(), d.DoubleIndicator(), heart(2.0), dt=DT), half)[-1]
-    again, late = (
-        d.Controller(paper_robot(), d.DoubleIndicator(), heart(2.0), dt=DT) for _ in "12"
+    first, again, late = (
+        d.Controller(paper_robot(), d.DoubleIndicator(), heart(2.0), dt=DT) for _ in "123"
     )
+    q = driven(first, PAPER_Q0, half)[0][-1]
     again.warm_up(q)
     again.step(q, half * DT)  # a warning would be an error
     with pytest.warns(UserWarning, match=r"begins 0\.07\d* m and 0\.000 rad from"):

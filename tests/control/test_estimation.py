@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from helpers_kinematics import PAPER_Q0
-from helpers_simulation import heart, paper_robot, paper_start
+from helpers_simulation import driven, heart, paper_robot, paper_start
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
 from iiwa_dnn.references import Still
@@ -121,12 +121,7 @@ def test_a_command_against_a_velocity_limit_is_not_limited_but_cannot() -> None:
     robot = paper_robot().with_limits(velocity=0.02, acceleration=10.0, jerk=1000.0)
     limits = (AccelerationLimits(), JerkLimits())
     controller = Controller(robot, DoubleIndicator(extra_limits=limits), heart(), dt=1e-3)
-    q = np.array(PAPER_Q0)
-    found = []
-    for k in range(300):
-        command = controller.step(q, k * 1e-3)
-        q = q + 1e-3 * command.dq
-        found.append((command.ok, command.limited))
-    assert found[0] == (True, False)
-    assert found[-1] == (False, False)
-    assert "velocity limit" in repr(command)
+    first, *_, last = driven(controller, PAPER_Q0, 300)[1]
+    assert (first.ok, first.limited) == (True, False)
+    assert (last.ok, last.limited) == (False, False)
+    assert "velocity limit" in repr(last)

@@ -4,6 +4,7 @@ import copy
 import pickle
 import signal
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
-from helpers_simulation import heart, paper_robot, paper_start
+from helpers_simulation import driven, heart, paper_robot, paper_start
 
 DT = 1e-3
 ACCELERATION = 5.0
@@ -25,23 +26,17 @@ def fast_heart() -> d.Reference:
 def moving() -> tuple[d.Controller, np.ndarray, int]:
     """A controller in motion, the joint positions and the number of the next step."""
     controller = d.Controller(paper_robot(), LIMITED, fast_heart(), dt=DT)
-    q = np.array(PAPER_Q0)
-    for k in range(400):
-        q = q + DT * controller.step(q, k * DT).dq
-    return controller, q, 400
+    path, _ = driven(controller, PAPER_Q0, 400)
+    return controller, path[-1], 400
 
 
 CHANGES: dict[str, Any] = {
-    "policy": lambda controller: setattr(controller, "policy", "relax"),
-    "reference": lambda controller: setattr(controller, "reference", heart()),
-    "scheme": lambda controller: setattr(
-        controller,
-        "scheme",
-        d.DoubleIndicator(weight=0.9, extra_limits=LIMITED.extra_limits, home=PAPER_Q0),
-    ),
-    "robot": lambda controller: setattr(controller, "robot", paper_robot().with_limits(velocity=1)),
-    "solver": lambda controller: setattr(controller, "solver", d.DNNSolver()),
-    "dt": lambda controller: setattr(controller, "dt", 0.9 * DT),
+    "policy": "relax",
+    "reference": heart(),
+    "scheme": replace(LIMITED, weight=0.9),
+    "robot": paper_robot().with_limits(velocity=1.0),
+    "solver": d.DNNSolver(),
+    "dt": 0.9 * DT,
 }
 
 
@@ -50,7 +45,7 @@ def test_an_attribute_that_is_set_in_motion_keeps_the_last_command(name: str) ->
     controller, q, k = moving()
     before = controller.step(q, k * DT).dq.copy()
     q = q + DT * before
-    CHANGES[name](controller)
+    setattr(controller, name, CHANGES[name])
     after = controller.step(q, (k + 1) * DT).dq
     assert np.abs(before).max() > 0.02  # far more than one step of the limit
     assert np.abs(after - before).max() <= ACCELERATION * DT * (1.0 + 1e-9)
@@ -117,13 +112,11 @@ def test_what_was_sent_in_place_of_a_command_is_what_the_jerk_is_counted_from(ti
     jerk = 200.0
     limits = (d.AccelerationLimits(5.0), d.JerkLimits(jerk))
     controller = d.Controller(paper_robot(), d.DoubleIndicator(extra_limits=limits), heart(), dt=DT)
-    q = np.array(PAPER_Q0)
-    for k in range(100):
-        command = controller.step(q, k * DT)
-        q = q + DT * command.dq
-    sent = command.dq + 5e-4
+    path, commands = driven(controller, PAPER_Q0, 100)
+    last = commands[-1].dq
+    sent = last + 5e-4
     for _ in range(times):  # twice the same: the acceleration is over
         controller.send(sent)
-    change = sent - command.dq if times == 1 else 0.0
-    jump = controller.step(q, 0.1).dq - (sent + change)
+    change = sent - last if times == 1 else 0.0
+    jump = controller.step(path[-1], 0.1).dq - (sent + change)
     assert np.abs(jump).max() == pytest.approx(jerk * DT**2, rel=1e-6)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import iiwa_dnn as d
+from helpers_simulation import driven
 from iiwa_dnn.control import stopping
 from iiwa_dnn.control.state import REST
 from iiwa_dnn.schemes.scene import second_order
@@ -98,22 +99,18 @@ def beside(distance: float, *obstacles: Any) -> d.CollisionAvoidance:
     return d.CollisionAvoidance(obstacles, distance=distance, self_collision=False)
 
 
-def driven(parts, target, steps, dt=4e-3, q=START.q, robot=ROBOT) -> tuple[np.ndarray, float]:
-    """Joint positions of an arm on its way to a target, or one a step, and what is left [m]."""
+def approached(parts, target, steps, dt=4e-3, q=START.q, robot=ROBOT) -> tuple[np.ndarray, float]:
+    """Joint positions of an arm on its way to a target, and what is left at the end [m]."""
     scheme = d.DoubleIndicator(orientation="none", extra_limits=parts)
-    controller = d.Controller(robot, scheme, dt=dt)
-    path = [q]
-    for k in range(steps):
-        goal = target(k) if callable(target) else target
-        command = controller.step(path[-1], k * dt, goal)
-        # A braking motion leaves the bounds of a step: the program in the record has them wider.
-        assert command.solution.residuals.primal < 1e-8
-        path.append(path[-1] + dt * command.dq)
-    left = np.linalg.norm(d.Configuration(robot, path[-1]).position - goal.position)
+    path, commands = driven(d.Controller(robot, scheme, dt=dt), q, steps, target)
+    # A braking motion leaves the bounds of a step: the program in the record has them wider.
+    assert max(command.solution.residuals.primal for command in commands) < 1e-8
+    goal = commands[-1].targets[0, :3]
+    left = np.linalg.norm(d.Configuration(robot, path[-1]).position - goal)
     jerk = 500.0 if any(isinstance(part, d.JerkLimits) for part in parts) else np.inf
     kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, jerk)
-    assert breaches(np.array(path), dt, *kinds) == []
-    return np.array(path), float(left)
+    assert breaches(path, dt, *kinds) == []
+    return path, float(left)
 
 
 def distances(avoidance: d.CollisionAvoidance, path: np.ndarray, robot=ROBOT) -> np.ndarray:
@@ -134,9 +131,8 @@ BOTH = pytest.mark.parametrize("limits", [ACCELERATION, JERK], ids=["acceleratio
 def test_an_arm_pressed_against_an_obstacle_stays_clear_and_comes_back(limits, obstacle) -> None:
     # The wall was entered by 30 mm, and the arm stayed there for good.
     avoidance = beside(0.02, obstacle)
-    steps = 1800
-    path, left = driven(
-        (*limits, avoidance), lambda k: tip_at(2.0 * (k < steps // 3), 0.0, 0.0), steps
+    path, left = approached(
+        (*limits, avoidance), lambda t: tip_at(2.0 * (t < 600 * 4e-3), 0.0, 0.0), 1800
     )
     between = 0.5 * (path[1:] + path[:-1])
     least = distances(avoidance, np.vstack([path, between])).min()
@@ -165,7 +161,7 @@ def test_an_arm_that_obstacles_came_upon_goes_away_from_them(limits: tuple[d.Lim
     # A capsule that had come to a resting arm kept it there for good.
     balls = [d.Sphere(START.position + [x, 0.0, z], 0.1) for x, z in ((0.3, 0.0), (0.28, -0.12))]
     near = distances(beside(0.02, *balls), START.q[None])[0]
-    path, left = driven((*limits, beside(near + 5e-3, *balls)), tip_at(-0.2, 0.0, 0.0), 1000)
+    path, left = approached((*limits, beside(near + 5e-3, *balls)), tip_at(-0.2, 0.0, 0.0), 1000)
     assert distances(beside(0.02, *balls), path).min() >= near - 1e-9
     assert left < 1e-3
 
@@ -178,7 +174,7 @@ def test_an_arm_beside_which_an_obstacle_lies_goes_away_from_it(limits) -> None:
     avoidance = beside(0.02, d.Capsule([0.133, 0.415, 0.308], [0.15, 0.235, 0.695], 0.05))
     home = d.Configuration(robot, robot.start_posture())
     target = d.Target(home.position, home.rotation)
-    path, left = driven((*limits, avoidance), target, 1500, q=q, robot=robot)
+    path, left = approached((*limits, avoidance), target, 1500, q=q, robot=robot)
     found = distances(avoidance, path, robot)
     assert found[0] < -5e-3
     assert np.diff(found[found < 0.02]).min() > -1e-9
@@ -189,7 +185,9 @@ def test_an_arm_just_outside_the_distance_is_in_no_trap() -> None:
     # With acceleration limits an arm 10 um above the distance never moved again.
     ball = d.Sphere(START.position + [0.3, 0.0, 0.0], 0.1)
     near = distances(beside(0.02, ball), START.q[None])[0]
-    _, left = driven((*ACCELERATION, beside(near - 1e-5, ball)), tip_at(-0.1, 0.0, 0.0), 1500, 1e-3)
+    _, left = approached(
+        (*ACCELERATION, beside(near - 1e-5, ball)), tip_at(-0.1, 0.0, 0.0), 1500, 1e-3
+    )
     assert left < 1e-3
 
 

@@ -5,7 +5,8 @@ import pytest
 
 import hostile
 import iiwa_dnn as d
-from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, run
+from helpers_kinematics import PAPER_Q0
+from helpers_simulation import UNCHECKED, driven, heart, paper_robot, paper_start, run
 from iiwa_dnn.control.policies import Action, Policy, ProgramKind
 from iiwa_dnn.schemes.tasks import ROTATION_LENGTH
 from judge_limits import Breach, breaches
@@ -27,19 +28,16 @@ def test_hostile_targets_break_no_limit(kind: str) -> None:
     robot, dt = paper_robot(), 4e-3
     stream = hostile.streams(robot, np.random.default_rng(5))[kind]
     controller = d.Controller(robot, LIMITED, dt=dt)
-    path = [paper_start().q]
+    path, commands = driven(controller, PAPER_Q0, 600, stream)
     frozen = 0.0
-    for k in range(600):
-        target = stream(k * dt)
-        command = controller.step(path[-1], k * dt, target)
+    for command in commands:
         assert (command.qp.ub >= command.qp.lb).all()
-        path.append(path[-1] + dt * command.dq)
         left = np.linalg.norm(command.placement[9:] - command.targets[0, :3])
         stands = np.abs(command.dq).max() < 1e-4
-        within = np.linalg.norm(target.position) < 1.5
+        within = np.linalg.norm(command.targets[0, :3]) < 1.5
         frozen = frozen + dt if stands and within and left > 1e-3 else 0.0
         assert frozen <= 0.5
-    assert judged(np.array(path), dt) == []
+    assert judged(path, dt) == []
 
 
 @pytest.mark.parametrize("limits", [LIMITS, LIMITS[:1]])
@@ -47,32 +45,13 @@ def test_a_jump_is_made_good_without_swinging(limits: tuple[d.Limit, ...]) -> No
     start = paper_start()
     controller = d.Controller(paper_robot(), d.DoubleIndicator(extra_limits=limits))
     target = d.Target(start.position + [0.0, -0.05, 0.0], start.rotation)
-    q, path = start.q, [start.q]
-    distance = []
-    for k in range(1500):
-        command = controller.step(q, 1e-3 * k, target)
-        q = q + 1e-3 * command.dq
-        path.append(q)
-        distance.append(np.linalg.norm(command.placement[9:] - target.position))
-    assert judged(np.array(path), jerk=JERK if len(limits) == 2 else np.inf) == []
+    path, commands = driven(controller, start.q, 1501, target)
+    places = np.array([command.placement[9:] for command in commands])
+    distance = np.linalg.norm(places - target.position, axis=1)
+    assert judged(path, jerk=JERK if len(limits) == 2 else np.inf) == []
     assert distance[-1] < 1e-6
     assert np.diff(distance).max() < 1e-6  # it never moves away
-    assert controller.step(q, 1.5, target).kind is ProgramKind.OWN
-
-
-def followed(
-    robot: d.Robot, scheme: d.Scheme, path: d.Reference, q: np.ndarray, steps: int
-) -> tuple[list[Action], np.ndarray, d.Controller]:
-    """Actions and commands of a controller at 2 ms from q."""
-    controller = d.Controller(robot, scheme, path, dt=2e-3)
-    actions = []
-    commands = []
-    for k in range(steps):
-        command = controller.step(q, 2e-3 * k)
-        q = q + 2e-3 * command.dq
-        actions.append(command.action)
-        commands.append(command.dq)
-    return actions, np.array(commands), controller
+    assert commands[-1].kind is ProgramKind.OWN
 
 
 def test_near_a_singular_pose_a_path_that_fits_is_caught_up_with() -> None:
@@ -83,7 +62,9 @@ def test_near_a_singular_pose_a_path_that_fits_is_caught_up_with() -> None:
     tasks = [d.PositionTask(gain=5.0), d.OrientationTask(gain=5.0)]
     limits = [d.JointLimits(gain=10.0), d.AccelerationLimits(10.0), d.JerkLimits(300.0)]
     circle = d.Circle(radius=0.02, period=4.0).anchored(start)
-    actions, *_ = followed(robot, d.Scheme([d.KineticEnergy()], tasks, limits), circle, home, 200)
+    scheme = d.Scheme([d.KineticEnergy()], tasks, limits)
+    _, commands = driven(d.Controller(robot, scheme, circle, dt=2e-3), home, 200)
+    actions = [command.action for command in commands]
     weighted = np.repeat([1.0, ROTATION_LENGTH], 3)[:, np.newaxis] * start.jacobian
     assert np.linalg.svd(weighted, compute_uv=False)[-1] < 0.05
     assert Action.SLOW in actions[:50]
@@ -99,9 +80,9 @@ def test_a_joint_at_its_velocity_limit_leaves_no_path_slowed_that_fits(limits) -
     robot = paper_robot().with_limits(velocity=fastest)
     circle = d.Circle(radius=0.05, period=4.0).anchored(d.Configuration(robot, home))
     scheme = d.DoubleIndicator(orientation="so3", home=home, extra_limits=limits)
-    actions, commands, _ = followed(robot, scheme, circle, home, 300)
-    assert np.mean(np.abs(commands[100:, 0]) > 0.02 - 1e-6) > 0.5
-    assert set(actions[100:]) == {Action.NONE}
+    _, commands = driven(d.Controller(robot, scheme, circle, dt=2e-3), home, 300)
+    assert np.mean([abs(command.dq[0]) > 0.02 - 1e-6 for command in commands[100:]]) > 0.5
+    assert {command.action for command in commands[100:]} == {Action.NONE}
 
 
 def test_a_path_beside_position_limits_is_braked_for_in_time() -> None:
@@ -109,7 +90,8 @@ def test_a_path_beside_position_limits_is_braked_for_in_time() -> None:
     robot = paper_robot().with_limits(lower=-2.5, upper=2.5)
     scheme = d.DoubleIndicator(extra_limits=(d.AccelerationLimits(10.0),))
     path = d.Heart(scale=0.02, period=6.0).anchored(paper_start())
-    *_, controller = followed(robot, scheme, path, paper_start().q, 4000)
+    controller = d.Controller(robot, scheme, path, dt=2e-3)
+    driven(controller, PAPER_Q0, 4000)
     assert controller.delay < 0.55
 
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import iiwa_dnn as d
 from helpers_kinematics import Array
-from helpers_simulation import paper_robot, paper_start, rows_of
+from helpers_simulation import driven, paper_robot, paper_start, rows_of
 
 DT = 2e-3
 LAST = np.array([0.3, -0.2, 0.1, 0.4, -0.3, 0.2, 0.5])
@@ -73,12 +73,13 @@ def test_the_tip_is_no_quicker_where_its_target_jumps() -> None:
     extra = (d.AccelerationLimits(10.0), d.JerkLimits(1000.0), d.TipSpeedLimit(0.4))
     scheme = d.DoubleIndicator(position_gain=50.0, orientation_gain=50.0, extra_limits=extra)
     controller = d.Controller(paper_robot(), scheme, dt=DT)
-    q = np.array(paper_start().q)
-    tip = [paper_start().position]
-    for k in range(300):
-        side = 0.3 if k % 150 < 75 else -0.3
-        target = d.Target(paper_start().position + [side, 0.0, 0.1], paper_start().rotation)
-        q = q + DT * controller.step(q, k * DT, target).dq
-        tip.append(d.Configuration(paper_robot(), q).position)
+    start = paper_start()
+
+    def jumping(t: float) -> d.Target:
+        side = 0.3 if round(t / DT) % 150 < 75 else -0.3
+        return d.Target(start.position + [side, 0.0, 0.1], start.rotation)
+
+    path, _ = driven(controller, start.q, 300, jumping)
+    tip = [d.Configuration(paper_robot(), q).position for q in path]
     fastest = np.linalg.norm(np.diff(tip, axis=0), axis=1).max() / DT
     assert 0.36 < fastest < 0.44

@@ -7,7 +7,7 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
-from helpers_simulation import paper_robot, paper_start, run
+from helpers_simulation import driven, paper_robot, paper_start, run
 from iiwa_dnn.naming import KINDS
 
 A = 4.0
@@ -30,17 +30,15 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(limits) -> N
     controlled = d.Controller(
         robot, scheme(*(kind(limit) for kind, limit in kinds if limit)), dt=DT
     )
-    q = np.array(PAPER_Q0)
-    commands = [np.zeros(7), np.zeros(7)]
     seen = set()
-    for k in range(400):
-        command = controlled.step(q, k * DT, FAR)
-        commands.append(command.dq.copy())
+    _, commands = driven(controlled, PAPER_Q0, 400, FAR)
+    for k, command in enumerate(commands):
+        _, last, before = command.past
         rates = np.abs(
             [
                 command.dq / robot.dq_max,
-                (commands[-1] - commands[-2]) / (DT * (limits[0] or np.inf)),
-                np.diff(commands[-3:], 2, axis=0)[0] / (DT**2 * (limits[1] or np.inf)),
+                (command.dq - last) / (DT * (limits[0] or np.inf)),
+                (command.dq - 2.0 * last + before) / (DT**2 * (limits[1] or np.inf)),
             ]
         )
         names = repr(command)
@@ -54,7 +52,6 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(limits) -> N
             reached = rates[KINDS.index(word) - 1, joint]
             # The way towards the velocity limit ends before it where the jerk is limited.
             assert reached > 1.0 - 1e-6 or (word == "velocity" and limits[1]), (k, joint, names)
-        q = q + DT * command.dq
     assert seen >= {kind for kind, limit in zip(KINDS[2:], limits, strict=True) if limit}
 
 
