@@ -4,11 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 import iiwa_dnn
-from iiwa_dnn import Controller, DoubleIndicator, Limit, Reference, Robot, Scheme, Task
+from iiwa_dnn import (
+    AccelerationLimits,
+    CollisionAvoidance,
+    Controller,
+    DoubleIndicator,
+    JerkLimits,
+    Limit,
+    Reference,
+    Robot,
+    Scheme,
+)
 from iiwa_dnn.checks import Array
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.base import Network
@@ -17,44 +28,44 @@ from iiwa_dnn.qp.layout import QPViews
 from iiwa_dnn.studies.runs import paper_robot
 
 Made = tuple[Controller, Array]
-
-BALLS = ([0.36, 0.16, 0.64], [0.7, 0.0, 0.3], [-0.3, 0.5, 0.6])
-RADII = (0.05, 0.1, 0.1)  # [m]
-DISTANCE = 0.03  # [m]
-DT = 1e-3  # [s]
+BASE = DoubleIndicator()
 
 
 def drawing(
-    scheme: Scheme | None = None,
+    scheme: Scheme = BASE,
     path: Reference | None = None,
     robot: Robot | None = None,
-    mode: str = "converged",
-    dt: float = DT,
+    dt: float = 1e-3,
+    **options: Any,
 ) -> Made:
     """Return a controller that draws a path, by default the heart with the paper's arm."""
     arm = paper_robot() if robot is None else robot
     q0 = arm.start_posture()
-    start = iiwa_dnn.Configuration(arm, q0)
-    reference = (iiwa_dnn.Heart() if path is None else path).anchored(start)
-    scheme = DoubleIndicator() if scheme is None else scheme
-    return Controller(arm, scheme, reference, dt=dt, mode=mode), q0
+    reference = (path or iiwa_dnn.Heart()).anchored(iiwa_dnn.Configuration(arm, q0))
+    return Controller(arm, scheme, reference, dt=dt, **options), q0
 
 
-def with_parts(tasks: tuple[Task, ...] = (), limits: tuple[Limit, ...] = ()) -> Scheme:
-    base = DoubleIndicator()
-    return Scheme(base.costs, [*base.tasks, *tasks], [*base.limits, *limits])
+def with_limits(*limits: Limit) -> Scheme:
+    return DoubleIndicator(extra_limits=limits)
+
+
+def at_limits() -> Made:
+    robot = paper_robot()
+    velocity = robot.dq_max.copy()
+    velocity[[0, 2]] = 0.105, 0.004
+    return drawing(DoubleIndicator(kinetic="inertia"), robot=robot.with_limits(velocity=velocity))
+
+
+def without_solution(policy: Any) -> Made:
+    robot = paper_robot()
+    return drawing(robot=robot.with_limits(velocity=0.045 * robot.dq_max), policy=policy)
 
 
 def among_balls() -> Made:
-    balls = list(map(iiwa_dnn.Sphere, BALLS, RADII))
-    avoidance = iiwa_dnn.CollisionAvoidance(balls, self_collision=False, distance=DISTANCE)
-    return drawing(with_parts(limits=(avoidance,)))
-
-
-def among_boxes() -> Made:
-    box = iiwa_dnn.Box((0.75, 0.0, 0.2), (0.1, 0.1, 0.1))
-    floor = iiwa_dnn.HalfSpace((0.0, 0.0, 1.0), -0.3)
-    return drawing(with_parts(limits=(iiwa_dnn.CollisionAvoidance([box, floor]),)))
+    places = ([0.36, 0.16, 0.64], [0.7, 0.0, 0.3], [-0.3, 0.5, 0.6])
+    balls = [iiwa_dnn.Sphere(*ball) for ball in zip(places, (0.05, 0.1, 0.1), strict=True)]
+    avoidance = CollisionAvoidance(balls, self_collision=False, distance=0.03)
+    return drawing(with_limits(avoidance, AccelerationLimits(1.0)))
 
 
 def two_arms() -> Made:
@@ -62,92 +73,28 @@ def two_arms() -> Made:
     q0 = robot.start_posture()
     start = iiwa_dnn.Configuration(robot, q0)
     tips = ["left_iiwa7_flange", "right_iiwa7_flange"]
-    base = DoubleIndicator()
-    tasks = [replace(task, frame=name) for name in tips for task in base.tasks]
+    tasks = [replace(task, frame=name) for name in tips for task in BASE.tasks]
     paths = {name: iiwa_dnn.Heart().anchored(start.frame(name)) for name in tips}
-    return Controller(robot, Scheme(base.costs, tasks, base.limits), paths, dt=DT), q0
+    return Controller(robot, Scheme(BASE.costs, tasks, BASE.limits), paths, dt=1e-3), q0
 
 
-def softly() -> Made:
-    tasks = (
+def other_tasks() -> Made:
+    tasks = [
+        iiwa_dnn.PositionTask(),
+        iiwa_dnn.AxisTask(),
+        iiwa_dnn.JointCouplingTask({"iiwa7_joint_1": 1.0, "iiwa7_joint_3": 1.0}, weight=0.01),
         iiwa_dnn.PostureTask({"iiwa7_joint_1": 0.1}, weight=0.05),
         iiwa_dnn.AxisTask(direction=(0.0, 0.0, -1.0), weight=0.01),
-    )
-    return drawing(with_parts(tasks))
+    ]
+    return drawing(Scheme(BASE.costs, tasks, BASE.limits))
 
 
-def along_axis() -> Made:
-    tasks = [iiwa_dnn.PositionTask(), iiwa_dnn.AxisTask()]
-    coupling = iiwa_dnn.JointCouplingTask({"iiwa7_joint_1": 1.0, "iiwa7_joint_3": 1.0}, weight=0.01)
-    base = DoubleIndicator()
-    return drawing(Scheme(base.costs, [*tasks, coupling], base.limits))
-
-
-def at_limits() -> Made:
-    robot = paper_robot()
-    velocity = robot.dq_max.copy()
-    velocity[[0, 2]] = 0.105, 0.004
-    return drawing(robot=robot.with_limits(velocity=velocity))
-
-
-def with_rates() -> Made:
-    limits = (iiwa_dnn.AccelerationLimits(10.0), iiwa_dnn.JerkLimits(500.0))
-    return drawing(DoubleIndicator(extra_limits=limits), iiwa_dnn.Line((0.0, -0.1, 0.0)))
-
-
-def through_points() -> Made:
+def tilting() -> Made:
     points = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02, 0.03, 0.0], [0.0, 0.0, 0.01]]
     turns = np.eye(4)[[0, 0, 0, 0]]
     turns[1:3, [1, 2]] = np.diag([0.02, 0.03])
     path = iiwa_dnn.Waypoints([0.0, 0.5, 1.0, 1.5], points, "clamped", turns)
-    return drawing(path=path)
-
-
-def arm(name: str) -> Callable[[], Made]:
-    return lambda: drawing(robot=iiwa_dnn.load_robot(name))
-
-
-SETTINGS: dict[str, Callable[[], Made]] = {
-    "heart": drawing,
-    "velocity limits active": at_limits,
-    "acceleration and jerk": with_rates,
-    "collisions, 21 pairs": among_balls,
-    "collisions with itself, a box, a floor": among_boxes,
-    "two arms": two_arms,
-    "soft tasks": softly,
-    "axis and coupling": along_axis,
-    "block form": lambda: drawing(DoubleIndicator(orientation="block")),
-    "next target, cone": lambda: drawing(DoubleIndicator(tracking="next"), iiwa_dnn.Cone()),
-    "continuous": lambda: drawing(mode="continuous", dt=1e-4),
-    "poses": through_points,
-    "panda": arm("panda"),
-    "ur5": arm("ur5"),
-}
-"""Functions that make each controller, by its name."""
-
-
-def without_solution(policy: str) -> Callable[[], Made]:
-
-    def make() -> Made:
-        robot = paper_robot()
-        made = drawing(robot=robot.with_limits(velocity=0.045 * robot.dq_max))
-        made[0].policy = policy
-        return made
-
-    return make
-
-
-def yielding_with_rates() -> Made:
-    limits = (iiwa_dnn.AccelerationLimits(2.0), iiwa_dnn.JerkLimits(50.0))
-    return drawing(DoubleIndicator(extra_limits=limits), iiwa_dnn.Circle())
-
-
-def braking_among_balls() -> Made:
-    balls = list(map(iiwa_dnn.Sphere, BALLS, RADII))
-    avoidance = iiwa_dnn.CollisionAvoidance(balls, self_collision=False, distance=DISTANCE)
-    return drawing(
-        with_parts(limits=(avoidance, iiwa_dnn.AccelerationLimits(5.0))), iiwa_dnn.Circle()
-    )
+    return drawing(path=iiwa_dnn.Tilting(path))
 
 
 @compiled
@@ -184,17 +131,37 @@ class SaddleFlow(Network):
 
 
 def own_network() -> Made:
-    made = drawing(mode="continuous", dt=1e-4)
-    made[0].solver = iiwa_dnn.DNNSolver(SaddleFlow(), follower=ExplicitEuler(substeps=20))
-    return made
+    solver = iiwa_dnn.DNNSolver(SaddleFlow(), follower=ExplicitEuler(substeps=20))
+    return drawing(mode="continuous", dt=1e-4, solver=solver)
 
 
-SETTINGS |= {
-    "inertia": lambda: drawing(DoubleIndicator(kinetic="inertia")),
+SETTINGS: dict[str, Callable[[], Made]] = {
+    "inertia, velocity limits active": at_limits,
+    "collisions with balls": among_balls,
+    "collisions with itself, a box, a floor": lambda: drawing(
+        with_limits(
+            CollisionAvoidance(
+                [
+                    iiwa_dnn.Box((0.75, 0.0, 0.2), (0.1, 0.1, 0.1)),
+                    iiwa_dnn.HalfSpace((0.0, 0.0, 1.0), -0.3),
+                ]
+            )
+        )
+    ),
+    "two arms": two_arms,
+    "other tasks": other_tasks,
+    "block form, next target, cone": lambda: drawing(
+        DoubleIndicator(orientation="block", tracking="next"), iiwa_dnn.Cone()
+    ),
+    "continuous": lambda: drawing(mode="continuous", dt=1e-4),
+    "tilting poses": tilting,
+    "ur5": lambda: drawing(robot=iiwa_dnn.load_robot("ur5")),
     "a network of one's own": own_network,
-    "without a solution: slow": without_solution("slow"),
-    "without a solution: relax": without_solution("relax"),
-    "without a solution: stop": without_solution("stop"),
-    "yielding to acceleration and jerk": yielding_with_rates,
-    "braking among balls": braking_among_balls,
+    "without a solution: slow": lambda: without_solution("slow"),
+    "without a solution: relax": lambda: without_solution("relax"),
+    "without a solution: stop": lambda: without_solution("stop"),
+    "yielding to acceleration and jerk": lambda: drawing(
+        with_limits(AccelerationLimits(2.0), JerkLimits(50.0)), iiwa_dnn.Circle()
+    ),
 }
+"""Functions that make each controller, by its name."""

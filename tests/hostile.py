@@ -18,9 +18,9 @@ import ctypes
 import subprocess
 import sys
 import tempfile
-import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from itertools import repeat
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -60,24 +60,14 @@ RULES = ("limits broken", "distances broken", "traps")
 
 
 class Case(NamedTuple):
-    """A robot, whose limits hold, among obstacles, and how it is driven there.
-
-    Attributes:
-        robot: The robot.
-        avoidance: The distances that are promised.
-        dt: Control period [s].
-        steps: Number of hostile steps.
-        moving: Whether the obstacles move.
-        orientation: Orientation of a controller's task.
-        policy: Its policy.
-    """
+    """A robot, whose limits hold, among obstacles, and how it is driven there."""
 
     robot: iiwa_dnn.Robot
     avoidance: iiwa_dnn.CollisionAvoidance
-    dt: float
-    steps: int
-    moving: bool
-    orientation: Any
+    dt: float  # [s]
+    steps: int  # hostile ones
+    moving: bool  # obstacles
+    orientation: Any  # of a controller's task
     policy: Any
 
     @property
@@ -86,80 +76,66 @@ class Case(NamedTuple):
         return Configuration(self.robot, self.robot.start_posture())
 
 
+Take = Callable[[Vector, float, list[Any]], tuple[Matrix, list[bool]]]
+"""Follow a wish a step from joint positions q (n,) [rad] and a time [s].
+
+Returns the positions after each step, (k, n), and whether the step promises that distances hold if
+obstacles move.
+"""
+
+
 class Driver(NamedTuple):
-    """What drives an arm.
+    """Steps of an arm, its hostile wishes, the wish for the start, and the way left to it."""
 
-    Attributes:
-        take: ``take(q, t, wishes)``, which follows a wish a step from joint positions q [rad] and a
-            time t [s], and returns the positions after each step, (k, n), and whether the step
-            promises that distances hold if obstacles move.
-        wishes: The hostile wishes, one a step.
-        home: The wish for the start.
-        left: ``left(q)``, what is left of the way to the start, [m] or [rad].
-    """
-
-    take: Callable[[Vector, float, list[Any]], tuple[Matrix, list[bool]]]
+    take: Take
     wishes: Iterator[Any]
     home: Any
-    left: Callable[[Vector], float]
+    left: Callable[[Vector], float]  # of joint positions, [m] or [rad]
 
 
 class Verdict(NamedTuple):
-    """What an arm did, and what is broken.
+    """An arm's motion, and what is broken."""
 
-    Attributes:
-        path: Joint positions [rad], (k + 1, n).
-        left: What is left of the way back to the start, [m] or [rad].
-        times: Mean times of a step in each chunk [s].
-        limits: Limits broken.
-        distances: Samples that are nearer than promised.
-        least: Least distance of still obstacles [m].
-    """
-
-    path: Matrix
-    left: float
-    times: list[float]
+    path: Matrix  # joint positions [rad], (k + 1, n)
+    left: float  # of the way back to the start, [m] or [rad]
     limits: list[Breach]
-    distances: int
-    least: float
+    distances: int  # samples that are nearer than promised
+    least: float  # distance of still obstacles [m]
 
 
 def draw_obstacle(random: np.random.Generator, tip: Vector, until: float) -> Any:
     """Draw an obstacle around a point (3,) [m] that swings up to a time [s], or stands still."""
-    rest: tuple[float, ...] = ()
+    make: Any = swinging
     velocity = np.zeros(3)
     if until > 0.0:
         direction = random.standard_normal(3)
         velocity = random.uniform(0.02, 0.2) * direction / np.linalg.norm(direction)
-        rest = (float(random.uniform(0.5, 2.0)), until)
+        make = partial(swinging, rate=float(random.uniform(0.5, 2.0)), until=until)
     center = tip + 0.35 * random.standard_normal(3)
     kind = random.integers(4)
     if kind == 0:
-        return swinging(iiwa_dnn.Sphere, *rest)(center, 0.08, velocity=velocity)
+        return make(iiwa_dnn.Sphere)(center, 0.08, velocity=velocity)
     if kind == 1:
         end = center + 0.2 * random.standard_normal(3)
-        return swinging(iiwa_dnn.Capsule, *rest)(center, end, 0.05, velocity=velocity)
+        return make(iiwa_dnn.Capsule)(center, end, 0.05, velocity=velocity)
     if kind == 2:
-        return swinging(iiwa_dnn.Box, *rest)(center, [0.08, 0.1, 0.06], velocity=velocity)
+        return make(iiwa_dnn.Box)(center, [0.08, 0.1, 0.06], velocity=velocity)
     normal = random.standard_normal(3)
     normal /= np.linalg.norm(normal)
     offset = float(normal @ tip) - random.uniform(0.1, 0.4)
-    return swinging(iiwa_dnn.HalfSpace, *rest)(normal, offset, velocity=velocity)
+    return make(iiwa_dnn.HalfSpace)(normal, offset, velocity=velocity)
 
 
 def draw_case(seed: int, exported: bool = False) -> Case | None:
-    """Draw a case from a seed, for exported steps a longer one, without motion.
-
-    Returns:
-        The case; None if the start is too near to an obstacle.
-    """
+    """Draw a case, for exported steps a longer one, without motion; None if it begins too near."""
     random = np.random.default_rng(seed)
     robot = iiwa_dnn.load_robot(ARMS[random.integers(len(ARMS))])
     acceleration = np.where(np.isfinite(robot.ddq_max), robot.ddq_max, ACCELERATION)
     jerk = 10.0 ** random.uniform(2.7, 4.0)
-    rates = ((np.inf, np.inf), (acceleration, np.inf), (acceleration, jerk))
     kind = random.choice(3, p=(0.1, 0.4, 0.5))
-    robot = robot.with_limits(acceleration=rates[kind][0], jerk=rates[kind][1])
+    robot = robot.with_limits(
+        acceleration=acceleration if kind > 0 else np.inf, jerk=jerk if kind > 1 else np.inf
+    )
     dt = float(10.0 ** random.uniform(-3.0, np.log10(2e-2)))
     steps = int(HOSTILE / dt) * (LONGER if exported else 1)
     moving = bool(random.random() < 0.3) and not exported
@@ -202,23 +178,22 @@ def pose(robot: iiwa_dnn.Robot, q: Vector) -> Target:
     return Target(there.position, there.rotation)
 
 
-def streams(
-    robot: iiwa_dnn.Robot, random: np.random.Generator
-) -> dict[str, Callable[[float], Target]]:
+Streams = dict[str, Callable[[float], Target]]
+
+
+def streams(robot: iiwa_dnn.Robot, random: np.random.Generator) -> Streams:
     """Return targets at a time [s] that no arm can simply follow."""
     start = robot.start_posture()
     home = pose(robot, start)
     amplitude = 0.3 * np.minimum(np.minimum(robot.q_upper - start, start - robot.q_lower), 3.0)
     rate = random.uniform(0.5, 1.2, robot.dof) * robot.dq_max / amplitude
     stretched = np.where(np.arange(robot.dof) % 2, 0.02, start)
-    stretched = np.clip(stretched, robot.q_lower, robot.q_upper)
+    stretch = np.clip(stretched, robot.q_lower, robot.q_upper) - start
     postures = [posture(robot, random, -0.2) for _ in range(8)]
     hold = random.uniform(0.3, 3.0)
     direction = random.standard_normal(3)
     direction /= np.linalg.norm(direction)
-
-    def out_of_reach(t: float) -> Target:
-        return home if int(t / hold) % 2 else Target(2.0 * direction, home.rotation)
+    far = Target(2.0 * direction, home.rotation)
 
     def reversals(t: float) -> Target:  # a line at 0.4 m/s that turns round within one step
         way = 0.1 - abs((0.4 * t + 0.1) % 0.4 - 0.2)
@@ -227,10 +202,8 @@ def streams(
     return {
         "jumps": lambda t: pose(robot, postures[int(t / hold) % len(postures)]),
         "sinusoids": lambda t: pose(robot, start + amplitude * np.sin(rate * t)),
-        "out of reach": out_of_reach,
-        "singular": lambda t: pose(
-            robot, start + 0.5 * (1.0 - np.cos(0.5 * np.pi * t)) * (stretched - start)
-        ),
+        "out of reach": lambda t: far if int(t / hold) % 2 == 0 else home,
+        "singular": lambda t: pose(robot, start + np.sin(0.25 * np.pi * t) ** 2 * stretch),
         "reversals": reversals,
     }
 
@@ -312,9 +285,7 @@ def scheme_of(case: Case) -> iiwa_dnn.Scheme:
     return iiwa_dnn.DoubleIndicator(orientation=case.orientation, extra_limits=tuple(limits))
 
 
-def by_steps(
-    step: Callable[[Vector, float, Any], tuple[Vector, bool]], dt: float
-) -> Callable[[Vector, float, list[Any]], tuple[Matrix, list[bool]]]:
+def by_steps(step: Callable[[Vector, float, Any], tuple[Vector, bool]], dt: float) -> Take:
     """Follow wishes by steps that return a command [rad/s], and whether distances hold."""
 
     def take(q: Vector, t: float, wishes: list[Any]) -> tuple[Matrix, list[bool]]:
@@ -330,22 +301,18 @@ def by_steps(
     return take
 
 
-def in_c(
-    made: Any, read: Callable[[Vector, list[Any]], tuple[Any, Matrix]]
-) -> Callable[[Vector, float, list[Any]], tuple[Matrix, list[bool]]]:
+def in_c(made: Any, read: Callable[[Vector, list[Any]], tuple[Any, Matrix]]) -> Take:
     """Follow wishes by the C of a controller or a shield, in a loop in C.
 
     `read` returns the kinds of wishes, (k,), and their numbers, (k, w).
     """
+    loop = Path(__file__).with_name("hostile_loop.c")
     with tempfile.TemporaryDirectory() as folder:
         iiwa_dnn.export.c99(made, folder)
-        shield = ["-DSHIELD"] * isinstance(made, iiwa_dnn.Shield)
-        sources = [
-            str(Path(folder) / "controller.c"),
-            str(Path(__file__).with_suffix("")) + "_loop.c",
-        ]
-        words = ["cc", "-std=c99", "-O2", "-shared", "-fPIC", "-I", folder, *shield, *sources]
-        subprocess.run([*words, "-lm", "-o", f"{folder}/loop.so"], check=True)
+        words = ["cc", "-std=c99", "-O2", "-shared", "-fPIC", "-I", folder]
+        words += ["-DSHIELD"] * isinstance(made, iiwa_dnn.Shield)
+        words += [f"{folder}/controller.c", str(loop), "-lm", "-o", f"{folder}/loop.so"]
+        subprocess.run(words, check=True)
         library = ctypes.CDLL(f"{folder}/loop.so")
     library.begin()
 
@@ -413,15 +380,12 @@ def judged(case: Case, driver: Driver) -> Verdict:
     q = case.start.q
     paths = [q[np.newaxis]]
     ok: list[bool] = []
-    times = []
     left = np.inf
     while len(ok) < case.steps + int(BACK / dt) and left > ARRIVED:
         asked = [driver.home] * CHUNK
         if len(ok) < case.steps:
             asked = [next(driver.wishes) for _ in range(CHUNK)]
-        began = time.perf_counter()
         path, promised = driver.take(q, len(ok) * dt, asked)
-        times.append((time.perf_counter() - began) / CHUNK)
         q = path[-1]
         paths.append(path)
         ok.extend(promised)
@@ -430,7 +394,7 @@ def judged(case: Case, driver: Driver) -> Verdict:
     limits = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, robot.dddq_max)
     driven = np.concatenate(paths)
     found = Judge(robot, case.avoidance).verdict(driven, dt, ok)
-    return Verdict(driven, left, times, breaches(driven, dt, *limits), found.broken, found.least)
+    return Verdict(driven, left, breaches(driven, dt, *limits), found.broken, found.least)
 
 
 def way_back(path: Matrix) -> list[Vector]:
@@ -445,11 +409,7 @@ def way_back(path: Matrix) -> list[Vector]:
 
 
 def lead(case: Case, path: Matrix, postures: Iterable[Vector]) -> Vector:
-    """Lead an arm from the end of a path (k, n) [rad] from posture to posture, by a shield.
-
-    Returns:
-        Where it ends, at the last posture or at one that it does not reach, (n,).
-    """
+    """Lead an arm by a shield along postures as far as it comes; its last posture, (n,)."""
     dt = case.dt
     made = iiwa_dnn.Shield(case.robot, dt, case.avoidance.obstacles, DISTANCE)
     made._t = len(path) * dt  # obstacles that have moved stay where they are
@@ -465,11 +425,7 @@ def lead(case: Case, path: Matrix, postures: Iterable[Vector]) -> Vector:
 
 
 def name_stop(case: Case, path: Matrix) -> str:
-    """Name why an arm is not back at the end of a path (k, n) [rad].
-
-    It is led back along the path, and if it does not come to its start, to a hundred postures about
-    its own.
-    """
+    """Name why an arm is not back: it is led back along its path, else to postures nearby."""
     q = lead(case, path, way_back(path))
     if np.abs(path[0] - q).max() < 2.0 * TURN:
         return "minima"
@@ -487,7 +443,6 @@ def main(driven: str, steps: int, seed: int, exported: bool) -> int:
     """Drive until so many steps are done; print what was broken, and the times of a step."""
     make = {"controller": controller, "shield": shield}[driven]
     counts: dict[str, Counter[str]] = {"still": Counter(), "moving": Counter()}
-    times: list[Any] = []
     least = np.inf
     done = 0
     while done < steps:
@@ -503,7 +458,6 @@ def main(driven: str, steps: int, seed: int, exported: bool) -> int:
         if verdict.left > 1e-2 and is_clear(case, case.steps * case.dt):
             found[name_stop(case, verdict.path)] += 1
         counts["moving" if case.moving else "still"].update(found)
-        times.append(np.array(verdict.times, np.float32))
         least = min(least, verdict.least)
         done += taken
         broken = any(found[rule] for rule in RULES)
@@ -513,8 +467,6 @@ def main(driven: str, steps: int, seed: int, exported: bool) -> int:
     for kind, count in counts.items():
         print(f"{driven}, obstacles {kind}: {dict(count)}")
     print(f"least distance from a still obstacle {least:.7f} m, promised {DISTANCE} m")
-    median, p99 = 1e6 * np.percentile(np.concatenate(times), [50.0, 99.0])
-    print(f"mean time of a step in {CHUNK}: median {median:.1f} us, p99 {p99:.0f}")
     return int(any(count[rule] for count in counts.values() for rule in RULES))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import iiwa_dnn
-from export_settings import SETTINGS, drawing, with_parts
+from export_settings import SETTINGS, drawing, with_limits
 from helpers_export import QUICK, WARNINGS, needs, run
 from iiwa_dnn import Controller, DoubleIndicator
 from iiwa_dnn.compiling import build
@@ -43,22 +43,17 @@ def exported(heart: Path, library: ctypes.CDLL) -> ExportedController:
     return ExportedController(library, (heart / "controller.h").read_text(encoding="utf-8"))
 
 
-REACHING = ("velocity limits active", "collisions, 21 pairs")
+REACHING = ("inertia, velocity limits active", "collisions with balls")
 """Controllers whose limits become active."""
 
 STEPS = {
-    "velocity limits active": 1500,
-    "collisions, 21 pairs": 1300,
+    "inertia, velocity limits active": 1500,
+    "collisions with balls": 1300,
     "without a solution: slow": 2000,  # on the path again from 1,467 on, with relax from 1,656 on
     "without a solution: relax": 2000,
     "without a solution: stop": 800,
-    "braking among balls": 1000,
 }
 """Steps until what a controller is there for has come and gone; 500 for all others."""
-
-
-SHOWN_BY_OTHERS = ("heart", "panda")
-"""Controllers whose code is another's too."""
 
 
 def take_kernels_kinematics(controller: Controller) -> None:
@@ -80,7 +75,7 @@ def memory_taken(exported: ExportedController, folder: Path) -> tuple[int, int]:
     return int(np.flatnonzero(scratch)[-1]) + 1, scratch.size
 
 
-@pytest.mark.parametrize("name", [name for name in SETTINGS if name not in SHOWN_BY_OTHERS])
+@pytest.mark.parametrize("name", SETTINGS)
 def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) -> None:
     """Pinocchio's own kinematics have other last digits: tests/robot/test_kinematics_kernel.py."""
     controller, q0 = SETTINGS[name]()
@@ -108,35 +103,25 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
         q = q + dt * dq
     assert np.abs(q - q0).max() > 1e-4
     assert active > 50 or name not in REACHING
-    assert len(actions) > 1 or not name.startswith(("without", "yielding", "braking"))
+    assert len(actions) > 1 or not name.startswith(("without", "yielding", "collisions with balls"))
     taken, scratch = memory_taken(exported, tmp_path)
     assert taken <= 0.6 * scratch
 
 
-@pytest.fixture(scope="module")
-def own_test(heart: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder's own test as a program that ends at undefined behaviour."""
+def test_the_folder_passes_its_own_test_which_can_fail(heart: Path, tmp_path: Path) -> None:
+    """The program ends at undefined behaviour."""
+    program = tmp_path / "test_controller"
     sources = [heart / "test_controller.c", heart / "controller.c"]
-    program = tmp_path_factory.mktemp("program") / "test_controller"
     sanitizers = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-DROUNDS=2")
     run("gcc", *WARNINGS, "-O0", *sanitizers, "-o", program, *sources, "-lm")
-    return program
-
-
-def test_the_folder_passes_its_own_test_with_the_code_free_of_undefined_behaviour(
-    heart: Path, own_test: Path
-) -> None:
-    said = run(own_test, heart / "vectors.csv")
+    said = run(program, heart / "vectors.csv")
     assert re.match(r"500 steps: largest difference of a command \S+ of the .*, 0 actions", said)
-
-
-def test_the_folders_test_can_fail(heart: Path, own_test: Path, tmp_path: Path) -> None:
     lines = (heart / "vectors.csv").read_text(encoding="utf-8").splitlines()
     cells = lines[-1].split(",")
     cells[-2] = repr(float(cells[-2]) + 1e-6)
     (tmp_path / "vectors.csv").write_text("\n".join([*lines[:-1], ",".join(cells), ""]))
     with pytest.raises(AssertionError, match=r"largest difference of a command 3\.2e-07"):
-        run(own_test, tmp_path / "vectors.csv")
+        run(program, tmp_path / "vectors.csv")
 
 
 def test_make_and_the_example_run_as_the_readme_says(heart: Path, tmp_path: Path) -> None:
@@ -226,7 +211,7 @@ class _Closing(iiwa_dnn.JointLimits):
 
 
 def _among(*limits: iiwa_dnn.Limit) -> Controller:
-    return drawing(with_parts(limits=limits))[0]
+    return drawing(with_limits(*limits))[0]
 
 
 def _with_network(network: iiwa_dnn.Network) -> Controller:
@@ -272,17 +257,6 @@ def test_a_reference_without_compiled_form_leaves_the_targets_to_the_caller(tmp_
     for name in ("controller.h", "README.md"):
         assert "controller_target" not in (folder / name).read_text(encoding="utf-8")
     run("gcc", *WARNINGS, "-fsyntax-only", folder / "example.c")
-
-
-@pytest.mark.parametrize(
-    "path", [iiwa_dnn.Tilting(), iiwa_dnn.Tilting(iiwa_dnn.Waypoints([0, 1], np.eye(2, 3)))]
-)
-def test_a_tilting_path_is_exported(path: iiwa_dnn.Reference, tmp_path: Path) -> None:
-    controller, q0 = drawing(path=path)
-    exported = loaded(c99(controller, tmp_path, q0))
-    for t in (0.0, 0.3, 0.9):
-        ours = controller.targets(t)[0]
-        np.testing.assert_allclose(exported.target(t).ravel(), ours, rtol=0, atol=1e-12)
 
 
 def test_the_controller_that_is_exported_stays_as_it_is(tmp_path: Path) -> None:
