@@ -67,6 +67,56 @@ def test_a_wrong_word_is_named_with_the_nearest_option(words, said, tmp_path, ca
     assert list(tmp_path.iterdir()) == []
 
 
+BAD = [
+    ("track --robot robot.urdf", "not XML"),
+    ("track --q0 0 0", "q0: must have shape (7,)"),
+    ("track --duration 1e12", "duration: 1e+16 steps"),
+    ("track --joint-limit 0", "joint-limit: must be"),
+    ("track --speed 0", "speed: must be"),
+    ("track --acceleration-limit -1", "limits.acceleration: must be"),
+    ("track --seed -1", "seed: must be"),
+    ("track hart", "reference: must be one of heart, circle, "),
+    ("track bad.csv", "bad.csv: the header must be t,x,y,z"),
+    ("track --set reference.radius=1", "no setting in [reference] 'radius'"),
+    ("track --set scheme.wieght=1", "no setting in [scheme] 'wieght'; did you mean: weight"),
+    ("track --set run.dtt=1", "no setting in [run] 'dtt'"),
+    ("track --set limits.tipspeed=1", "no setting in [limits] 'tipspeed'"),
+    ("physics --set plant.gain=1", "no setting in [plant] 'gain'"),
+    ("physics --set plant.disturbances.fricton=1", "did you mean: friction"),
+    ("track --plant franka", "plant: must be one of ideal, mujoco, not 'franka'"),
+    ("track --set schema.weight=1", "schema: must be one of the tables"),
+    ("track --set run=1", "run: must be one of the tables"),
+    ("track --set weight", "weight: must be one of the tables"),
+    ("track --config none.toml", "none.toml: cannot be read as TOML"),
+    ("track --out bad.csv/run", "bad.csv/run: cannot be written"),
+    ("paper --table 3", "table: must be one of 1, 2, not '3'"),
+    ("paper --workers 0", "workers: must be a whole number of at least 1"),
+    ("paper --out bad.csv/run", "bad.csv/run: cannot be written to"),
+    ("atlas --workers 0", "workers: must be a whole number of at least 1"),
+    ("atlas --networks nowhere:My", "network: nowhere:My cannot be had in "),
+    ("atlas --networks math:pi", "network: math:pi is no Network: 3.14"),
+    ("atlas --networks zeroing,Eular", "no network 'zeroing,Eular'; did you mean: 'zeroing, E"),
+    ("atlas --disturbances wihte", "no disturbance 'wihte'; did you mean: white"),
+    ("atlas --work -1", "work: must be a finite number above 0"),
+    ("view nowhere", "nowhere: cannot be read as a record: No such file"),
+]
+
+
+@pytest.mark.parametrize(("words", "said"), BAD)
+def test_bad_input_is_one_clear_line_and_leaves_no_file(words, said, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.csv").write_text("x,y,z\n0,0,0\n")
+    (tmp_path / "robot.urdf").write_text("solid robot\n")
+    command, *others = words.split()
+    assert call(command, *others) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.count("\n") == 1
+    assert captured.err.startswith(f"iiwa-dnn {command}: error: ")
+    assert said in captured.err
+    assert {path.name for path in tmp_path.iterdir()} == {"bad.csv", "robot.urdf"}
+
+
 def start(folder: Path, *words: str, **options: object) -> subprocess.Popen[str]:
     """A command in a process of its own."""
     command = [sys.executable, "-m", "iiwa_dnn", *words]

@@ -87,28 +87,3 @@ def test_a_run_that_ends_early_is_said_and_exits_1(folder, tmp_path, monkeypatch
     command = [*TINY, "--workers", "1", "--out", str(tmp_path), "--quiet", "--table", "2"]
     assert call("paper", *command) == 1
     assert "stopped at step 7" in (tmp_path / "report.md").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        ("paper --table 3", "table: must be one of 1, 2, not '3'"),
-        ("paper --workers 0", "workers: must be a whole number of at least 1"),
-        ("atlas --workers 0", "workers: must be a whole number of at least 1"),
-        ("paper --out file/out", "file/out: cannot be written to"),
-    ],
-)
-def test_bad_input_exits_2_with_one_line_and_leaves_no_file(
-    words: str,
-    said: str,
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "file").touch()
-    assert call(*words.split()) == 2
-    message = capsys.readouterr().err
-    assert said in message
-    assert message.count("\n") == 1
-    assert [path.name for path in tmp_path.iterdir()] == ["file"]

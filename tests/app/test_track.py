@@ -37,9 +37,6 @@ def test_a_run_writes_record_metrics_report_settings_and_figures(tmp_path, capsy
     assert "(convergence.png)" in (folder / "report.md").read_text()
 
 
-# Words and tables
-
-
 def test_words_and_tables_reach_the_run(tmp_path: Path) -> None:
     q0 = np.delete(PAPER_Q0, 2)
     file = tmp_path / "mine.toml"
@@ -81,7 +78,7 @@ def test_words_and_tables_reach_the_run(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("words", "dt"),
-    [((), 1e-4), (("circle",), 1e-3), (("--reference", "circle"), 1e-3), (("--robot", "p"), 0)],
+    [((), 1e-4), (("circle",), 1e-3), (("--reference", "circle"), 1e-3)],
 )
 def test_defaults_are_the_papers_experiment(words, dt, tmp_path, monkeypatch) -> None:
     asked: dict[str, Any] = {}
@@ -94,9 +91,6 @@ def test_defaults_are_the_papers_experiment(words, dt, tmp_path, monkeypatch) ->
     monkeypatch.setattr(command, "simulate", wraps(command.simulate)(take))
     monkeypatch.chdir(tmp_path)
     assert call("track", *words) == 2
-    if not dt:
-        assert not asked  # there is no such robot
-        return
     assert asked["dt"] == dt
     assert asked["folders"] == [tmp_path / "runs" / ("circle" if words else "heart")]
     np.testing.assert_array_equal(asked["robot"].q_lower, np.full(7, -2.5))
@@ -150,9 +144,6 @@ def test_a_path_from_a_csv_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert call("track", "--config", "settings.toml", "-q", "--no-plots") == 0
 
 
-# Folders and repetition
-
-
 def test_a_run_is_repeated_bit_for_bit_by_its_settings_and_quietly(tmp_path, capsys) -> None:
     # OSQP repeats itself to the last digit, ProxQP does not.
     words = ("circle", "--noise", "0.01", "--seed", "5", "--filter-window", "4", "--check", "osqp")
@@ -185,9 +176,6 @@ def test_another_run_or_other_files_are_overwritten_only_if_it_is_said(tmp_path,
     assert "seed = 1" in (folder / "settings.toml").read_text()
 
 
-# Exit code 1
-
-
 @pytest.mark.parametrize("quiet", [False, True])
 def test_a_broken_limit_is_said_and_exits_1(quiet, tmp_path, capsys) -> None:
     words = ("--joint-limit", "2.35", "--out", tmp_path, *["-q"] * quiet)
@@ -214,51 +202,6 @@ def test_obstacles_are_kept_away_from(tmp_path: Path, capsys: pytest.CaptureFixt
     assert record["distance"].min() >= 0.03
     assert "Sphere 1" in (metrics["collisions"]["first"], metrics["collisions"]["second"])
     assert "iiwa7_link_4 and Sphere 1" in capsys.readouterr().out
-
-
-# Exit code 2
-
-
-BAD: dict[str, tuple[str, ...]] = {
-    "not XML": ("--robot", "robot.urdf"),
-    "q0: must have shape (7,)": ("--q0", "0", "0"),
-    "duration: 1e+15 steps": ("--duration", "1e12"),
-    "joint-limit: must be": ("--joint-limit", "0"),
-    "speed: must be": ("--speed", "0"),
-    "limits.acceleration: must be": ("--acceleration-limit", "-1"),
-    "seed: must be": ("--seed", "-1"),
-    "reference: must be one of heart, circle, ": ("hart",),
-    "bad.csv: the header must be t,x,y,z": ("bad.csv",),
-    "no setting in [reference] 'radius'": ("--set", "reference.radius=1"),
-    "no setting in [scheme] 'wieght'; did you mean: weight": ("--set", "scheme.wieght=1"),
-    "no setting in [run] 'dtt'": ("--set", "run.dtt=1"),
-    "no setting in [limits] 'tipspeed'": ("--set", "limits.tipspeed=1"),
-    "no setting in [plant] 'gain'": ("--set", "plant.gain=1"),
-    "did you mean: friction": ("--set", "plant.disturbances.fricton=1"),
-    "plant: must be one of ideal, mujoco, not 'franka'": ("--plant", "franka"),
-    "schema: must be one of the tables": ("--set", "schema.weight=1"),
-    "run: must be one of the tables": ("--set", "run=1"),
-    "weight: must be one of the tables": ("--set", "weight"),
-    "none.toml: cannot be read as TOML": ("--config", "none.toml"),
-    "file/run: cannot be written": ("--out", "bad.csv/file/run"),
-}
-
-
-@pytest.mark.parametrize("said", BAD)
-def test_bad_input_exits_2_with_one_clear_line_and_leaves_no_file(
-    said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "bad.csv").write_text("x,y,z\n0,0,0\n")
-    (tmp_path / "robot.urdf").write_text("solid robot\n")
-    before = {path for path in tmp_path.rglob("*") if path.is_file()}
-    assert call("track", *QUICK, *BAD[said]) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert captured.err.count("\n") == 1
-    assert captured.err.startswith("iiwa-dnn track: error: ")
-    assert said in captured.err
-    assert {path for path in tmp_path.rglob("*") if path.is_file()} == before
 
 
 def test_the_script_from_anywhere_and_as_in_this_process(tmp_path: Path) -> None:

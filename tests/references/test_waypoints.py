@@ -62,9 +62,6 @@ def test_about_one_axis_it_is_the_cubic_spline_of_the_angle(ends: str, scipys: s
     np.testing.assert_allclose(targets.angular_velocity, rates, rtol=0, atol=1e-9)
 
 
-# Files
-
-
 def write(folder: Path, header: str, rows: NDArray[np.float64]) -> Path:
     path = folder / "path.csv"
     path.write_text("\n".join([header, *(",".join(map(repr, row)) for row in rows.tolist())]))
@@ -100,14 +97,10 @@ def test_rows_that_begin_or_end_at_speed_are_told(said: list[str], tmp_path: Pat
     file = write(tmp_path, "t,x,y,z", rows)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        path = Waypoints.from_csv(file)
+        Waypoints.from_csv(file)
         Waypoints.from_csv(file, ends="closed")  # which may be at speed
     begun = [f"{file}: the rows {word} at" for word in said]
     assert [str(each.message)[: len(begun[k])] for k, each in enumerate(caught)] == begun
-    # They are told where the spline has to hurry: its speed there is well above that of the rows.
-    early = np.linalg.norm(path.sample(np.linspace(0.0, 0.3, 31)).linear_velocity, axis=1).max()
-    usual = np.linalg.norm(path.sample(np.linspace(3.0, 5.0, 31)).linear_velocity, axis=1).mean()
-    assert (early > 1.1 * usual) == ("begin" in said)
 
 
 @pytest.mark.parametrize(
@@ -128,7 +121,6 @@ def test_csv_dialects(tmp_path: Path, text: str) -> None:
     ("content", "reason"),
     [
         ("", "the header must be"),
-        ("0,0,0,0\n1,1,2,3\n", "the header must be"),
         ("x,y,z\n0,0,0\n1,1,1\n", "the header must be"),
         ("t,x,y,z\n0,0,0,0\n", "at least 2 points"),
         (GOOD + "2,1,one,1\n", "line 4: 4 finite numbers are needed, not '2,1,one,1'"),

@@ -73,26 +73,12 @@ def arm_of(folder: Path, **bodies: str) -> iiwa_dnn.Robot:
     return iiwa_dnn.load_robot(path, tip="flange")
 
 
-@pytest.fixture
-def few_samples(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Look for pairs that may meet in few postures: these tests are about the links."""
-    monkeypatch.setattr(collision, "make_collision_model", partial(make_collision_model, samples=9))
-
-
 ROD = """<origin xyz="0.1 0 0" rpy="0 1.5708 0"/>
 <geometry><cylinder radius="{}" length="0.2"/></geometry>"""
-
-
 DRAWN = f"<visual>{ROD.format(0.03)}</visual>"
-
-
 COVER = f"<collision>{ROD.format(0.04)}</collision>"
-
-
 MASS = """<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
 </inertial>"""
-
-
 BALL_OF_P2 = "<collision><geometry><sphere radius='0.02'/></geometry></collision>"
 
 
@@ -123,7 +109,9 @@ def test_a_pair_is_watched_if_it_may_come_near(gap, joint_1, reason, tmp_path) -
     assert ({"base", "p2"} in watched) == (reason is None)
 
 
-def test_a_controller_warns_of_links_that_no_row_watches(tmp_path: Path, few_samples: None) -> None:
+def test_a_controller_warns_of_links_that_no_row_watches(tmp_path, monkeypatch) -> None:
+    # Look for pairs that may meet in few postures: this is about the links.
+    monkeypatch.setattr(collision, "make_collision_model", partial(make_collision_model, samples=9))
     robot = arm_of(tmp_path, p1=MASS, p2=MASS + COVER, p3=MASS + DRAWN)
     avoidance = iiwa_dnn.CollisionAvoidance([BALL])
     still = iiwa_dnn.Still().anchored(iiwa_dnn.Configuration(robot, np.zeros(3)))

@@ -43,16 +43,6 @@ def test_the_jacobian_of_any_frame_is_the_derivative_of_its_pose(name: str) -> N
     np.testing.assert_array_equal(conf.jacobian, found.jacobian)
 
 
-def test_arrays_of_a_single_joint_have_two_axes(iiwa7: Robot) -> None:
-    robot = load_robot("iiwa7", locked=iiwa7.joint_names[:-1])
-    conf = Configuration(robot, [0.4])
-    expected = [[0.0], [0.0], [0.0], [0.0], [0.0], [1.0]]
-    for jacobian in (conf.jacobian, conf.frame("iiwa7_link_7").jacobian):
-        np.testing.assert_allclose(jacobian, expected, atol=1e-15)
-    assert not conf.frame("iiwa7_link_6").jacobian.any()
-    assert conf.inertia.shape == (1, 1)
-
-
 def test_the_urdf_has_the_masses_and_inertias_that_are_documented(iiwa7: Robot) -> None:
     # MuJoCo judges what Pinocchio makes of them (test_mujoco_model.py).
     for body, facts in zip(list(iiwa7.model.inertias)[1:], IIWA7_INERTIALS[1:-1], strict=False):

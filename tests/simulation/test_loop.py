@@ -37,9 +37,6 @@ def position_error(record: d.Record) -> np.ndarray:
     return np.linalg.norm(dh_pose(record.q)[0] - record.position_desired, axis=1)
 
 
-# What is in the record
-
-
 def test_a_record_is_the_motion_that_its_velocities_make(record: d.Record) -> None:
     dt = record.settings["dt"]
     np.testing.assert_array_equal(record.q[0], PAPER_Q0)
@@ -59,7 +56,6 @@ def test_every_step_was_checked_by_every_reference(record: d.Record) -> None:
     assert (record.reference_residual <= 1e-8).all()
     assert np.isfinite(record.solution_gap).all()
     assert np.isfinite(record.objective_gap).all()
-    assert (record.iterations >= 0).all()
     if record.settings["mode"] == "converged":
         assert record.crosscheck_gap.max() <= 1e-6
         assert record.kkt_residual.max() <= 1e-9
@@ -81,7 +77,6 @@ def test_a_run_of_several_blocks_has_no_seams(motion: str) -> None:
     desired = [reference.at(t).position for t in record.t]
     np.testing.assert_allclose(record.position_desired, desired, rtol=0, atol=1e-14)
     np.testing.assert_allclose(record.kinetic_index, (record.dq**2).sum(axis=1), rtol=1e-12)
-    assert (record.kkt_residual <= 1e-9).all()
     assert position_error(record).max() < 1e-3
 
 
@@ -118,9 +113,6 @@ def test_progress_adds_up_to_the_steps() -> None:
     assert min(told[1:]) > 0
 
 
-# Same call, same bytes
-
-
 @pytest.mark.parametrize("solvers", [(), ("osqp",)], ids=["none", "osqp"])
 @pytest.mark.parametrize("case", list(OPTIONS))
 def test_the_same_call_saves_the_same_bytes(case, solvers, tmp_path) -> None:
@@ -129,9 +121,6 @@ def test_the_same_call_saves_the_same_bytes(case, solvers, tmp_path) -> None:
             tmp_path / name
         )
     assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
-
-
-# What the paper claims
 
 
 def test_cyclic_motion_comes_back_and_minimum_energy_drifts() -> None:
@@ -195,9 +184,6 @@ def test_the_continuous_network_lags_as_much_as_the_papers() -> None:
     settled = run(d.DoubleIndicator(orientation="block"), dt=1e-4, duration=0.1)
     assert position_error(settled).max() < 0.05 * position_error(record)[:1001].max()
     assert d.failures(record) == []
-
-
-# How a run stops
 
 
 @pytest.mark.parametrize("motion", ["euler", "rk4"])

@@ -131,21 +131,6 @@ def test_a_network_of_ones_own_comes_from_a_file_or_a_module(tmp_path, monkeypat
     assert atlas.Cell("atlas_parts.py:Slow") != before, "a changed file makes new cells"
 
 
-@pytest.mark.parametrize(
-    ("option", "value", "reason"),
-    [
-        ("--networks", "nowhere:My", "network: nowhere:My cannot be had in "),
-        ("--networks", "math:pi", "network: math:pi is no Network: 3.14"),
-        ("--networks", "zeroing, Eular", "no network 'zeroing, Eular'; did you mean: 'zeroing, E"),
-        ("--disturbances", "wihte", "no disturbance 'wihte'; did you mean: white"),
-        ("--work", "-1", "work: must be a finite number above 0"),
-    ],
-)
-def test_wrong_options_are_named(option, value, reason, tmp_path, capsys) -> None:
-    assert main(["atlas", "--out", str(tmp_path), option, value]) == 2
-    assert reason in capsys.readouterr().err
-
-
 def row(network: str, values: list[float | None], kind: str = "none", **changes: object) -> dict:
     cell = atlas.Cell(network, disturbance=kind, seeds=len(values), **changes)
     result = dict.fromkeys(atlas.MEASURES, values) | {"failures": [], "taken": [1, 100.0]}

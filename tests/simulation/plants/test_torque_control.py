@@ -39,16 +39,6 @@ def loop(robot, q=START):
     return torques, Arm(robot, q)
 
 
-def test_it_holds_still_with_the_arms_weight(robot):
-    torques, arm = loop(robot)
-    for _ in range(400):
-        torque = torques.torque(arm.q)
-        arm.step(torque)
-    np.testing.assert_allclose(arm.q, START, atol=1e-9)
-    weight = pin.computeGeneralizedGravity(robot.model, robot.model.createData(), START)
-    np.testing.assert_allclose(torque, weight, atol=1e-6)
-
-
 def test_it_reaches_what_the_commands_add_up_to(robot):
     torques, arm = loop(robot)
     time = PERIOD * np.arange(1000)
