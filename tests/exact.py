@@ -8,11 +8,11 @@ and no fraction is needed, and its signs are looked at. Nothing here is shared w
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
 from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from iiwa_dnn.qp.program import QP
 
@@ -22,146 +22,89 @@ Face = frozenset[int]
 
 
 class WholeProgram(NamedTuple):
-    """A program times a power of two: min 1/2 x^T P x + q^T x with A x = b, C x <= d.
+    """A program times a power of two: min 1/2 x^T P x + q^T x with A x = b, C x <= d."""
 
-    Attributes:
-        P: Twice the symmetric part of P times the power, (n, n).
-        q: Twice q times the power, (n,).
-        A: Equality rows and bounds that are equal, as many as are independent, (p, n).
-        b: Right-hand side, (p,).
-        C: Inequality rows, then upper and lower bounds, (m + 2 n, n).
-        d: Right-hand side; None where there is no limit.
-        one: The power.
-    """
-
-    P: Rows
-    q: list[int]
-    A: Rows
-    b: list[int]
-    C: Rows
-    d: list[int | None]
-    one: int
+    P: Rows  # twice its symmetric part, (n, n)
+    q: list[int]  # twice, (n,)
+    Ab: Rows  # equality rows and bounds that are equal, [A | b], (p, n + 1)
+    C: Rows  # inequality rows, then upper and lower bounds, (m + 2 n, n)
+    d: list[int | None]  # None where there is no limit
 
 
-def whole(qp: QP) -> WholeProgram | None:
-    """Convert a program of finite coefficients; None if equality rows contradict each other."""
-    ratios = [float(v).as_integer_ratio() for v in qp.data[np.isfinite(qp.data)]]
-    one = max(below for _, below in ratios)
+def whole(qp: QP) -> WholeProgram:
+    """Convert a program of finite coefficients."""
+    one = max(float(v).as_integer_ratio()[1] for v in qp.data[np.isfinite(qp.data)])
 
-    def number(value: float) -> int:
-        above, below = float(value).as_integer_ratio()
-        return above * (one // below)
+    def numbers(matrix: ArrayLike) -> Rows:
+        return [[int(Fraction(v) * one) for v in row] for row in np.atleast_2d(matrix).tolist()]
 
-    def rows(matrix: Iterable[Iterable[float]]) -> Rows:
-        return [[number(v) for v in row] for row in matrix]
-
-    n = qp.q.size
-    P = rows(qp.P)
-    identity = [[one * (i == k) for k in range(n)] for i in range(n)]
-    table = [[*row, number(b)] for row, b in zip(rows(qp.A), qp.b, strict=True)]
-    table += [[*identity[i], number(qp.ub[i])] for i in np.flatnonzero(qp.lb == qp.ub)]
-    kept = independent(table)
-    if kept is None:
-        return None
-    negative = [[-v for v in row] for row in identity]
-    limits = [*qp.h, *qp.ub, *(-qp.lb)]
+    eye = np.eye(qp.q.size)
+    equal = qp.lb == qp.ub
+    limits = np.concatenate([qp.h, qp.ub, -qp.lb])
+    P = numbers(qp.P)
     return WholeProgram(
-        [[P[i][k] + P[k][i] for k in range(n)] for i in range(n)],
-        [2 * number(v) for v in qp.q],
-        [row[:-1] for row in kept],
-        [row[-1] for row in kept],
-        rows(qp.G) + identity + negative,
-        [None if v == np.inf else number(v) for v in limits],
-        one,
+        [[v + P[k][i] for k, v in enumerate(row)] for i, row in enumerate(P)],
+        [2 * v for v in numbers(qp.q)[0]],
+        numbers(np.column_stack([np.vstack([qp.A, eye[equal]]), [*qp.b, *qp.ub[equal]]])),
+        numbers(np.vstack([qp.G, eye, -eye])),
+        [None if v == np.inf else numbers(v)[0][0] for v in limits],
     )
 
 
-def independent(table: Rows) -> Rows | None:
-    """Return rows [a | b] that are independent; None if a x = b contradict each other."""
-    kept: Rows = []
-    reduced: list[tuple[int, list[int]]] = []
-    for row in table:
-        left = row
-        for pivot, other in reduced:
-            if left[pivot]:
-                factor = left[pivot]
-                left = [other[pivot] * v - factor * w for v, w in zip(left, other, strict=True)]
-        place = next((k for k, value in enumerate(left) if value), None)
-        if place == len(row) - 1:
-            return None
-        if place is not None:
-            kept.append(row)
-            reduced.append((place, left))
-    return kept
+def solve(table: Rows, determined: int) -> list[Fraction] | None:
+    """Solve a system [rows | right-hand side] exactly.
 
-
-def solve(rows: Rows, right: list[int]) -> tuple[list[int], int] | None:
-    """Solve a square system of whole numbers exactly: numerators and their denominator.
-
-    None if it is singular. E. H. Bareiss, "Sylvester's identity and multistep integer-preserving
-    Gaussian elimination", Mathematics of Computation 22 (1968).
+    None if rows contradict each other, or one of the first unknowns, so many, can be chosen; of the
+    others that can, each is zero. E. H. Bareiss, "Sylvester's identity and multistep
+    integer-preserving Gaussian elimination", Mathematics of Computation 22 (1968).
     """
-    size = len(rows)
-    table = [[*row, value] for row, value in zip(rows, right, strict=True)]
+    pivots: list[int] = []
     before = 1
-    for k in range(size):
-        pivot = next((i for i in range(k, size) if table[i][k]), None)
+    for k in range(len(table[0]) - 1):
+        place = len(pivots)
+        pivot = next((i for i in range(place, len(table)) if table[i][k]), None)
         if pivot is None:
-            return None
-        if pivot != k:
-            table[k], table[pivot] = table[pivot], table[k]
-        top = table[k]
+            if k < determined:
+                return None
+            continue
+        table[place], table[pivot] = table[pivot], table[place]
+        pivots.append(k)
+        top = table[place]
         head = top[k]
-        for i in range(size):
-            if i == k:
-                continue
-            row = table[i]
+        for i, row in enumerate(table):
             factor = row[k]
-            if factor or head != before:
+            if i != place and (factor or head != before):
                 table[i] = [
                     (head * v - factor * w) // before for v, w in zip(row, top, strict=True)
                 ]
         before = head
-    return [row[-1] for row in table], before
+    if any(row[-1] for row in table[len(pivots) :]):
+        return None
+    found = [Fraction(0)] * (len(table[0]) - 1)
+    for k, row in zip(pivots, table, strict=False):
+        found[k] = Fraction(row[-1], before)
+    return found
 
 
 def at_face(program: WholeProgram, face: Face) -> tuple[list[Fraction], list[Fraction]] | None:
     """Solve the KKT system of a face: x and the multipliers of its constraints, or None."""
-    order = sorted(face)
     n = len(program.q)
-    below = program.A + [program.C[j] for j in order]
-    limits = program.b + [program.d[j] or 0 for j in order]
-    size = n + len(below)
-    if len(below) > n:
-        return None
-    system = [program.P[i] + [row[i] for row in below] for i in range(n)]
-    system += [row + [0] * len(below) for row in below]
-    found = solve(system, [-v for v in program.q] + limits)
-    if found is None:
-        return None
-    values, scale = found
-    exact = [Fraction(value, scale) for value in values]
-    assert len(exact) == size
-    return exact[:n], exact[n + len(program.A) :]
+    below = program.Ab + [[*program.C[j], program.d[j] or 0] for j in sorted(face)]
+    none = [0] * len(below)
+    table = [[*program.P[i], *(row[i] for row in below), -program.q[i]] for i in range(n)] + [
+        [*row[:-1], *none, row[-1]] for row in below
+    ]
+    found = solve(table, n)
+    return None if found is None else (found[:n], found[n + len(program.Ab) :])
 
 
 def exact_solution(qp: QP, face: Face, most: int = 400) -> list[Fraction] | None:
     """Find the exact solution of a convex program, beginning at a face of its constraints.
 
     Faces are left by the constraints that their point violates and by those whose multiplier is
-    negative, breadth first.
-
-    Args:
-        qp: The program.
-        face: Constraints that are most likely active.
-        most: Faces at most.
-
-    Returns:
-        x (n,), whose KKT conditions hold exactly; None if no face among so many has such a point.
+    negative, breadth first; None if no face among so many has a point whose KKT conditions hold.
     """
     program = whole(qp)
-    if program is None:
-        return None
     waiting = deque([face, frozenset()])
     seen = {face, frozenset()}
     while waiting and len(seen) <= most:
@@ -183,7 +126,11 @@ def _moves(program: WholeProgram, face: Face) -> list[Face] | tuple[list[Fractio
         return [face - {j} for j in sorted(face)]
     x, multipliers = found
     negative = [j for j, value in zip(sorted(face), multipliers, strict=True) if value < 0]
-    violated = [j for j in range(len(program.d)) if j not in face and not _holds(program, j, x)]
+    violated = []
+    for j, (row, limit) in enumerate(zip(program.C, program.d, strict=True)):
+        if j not in face and limit is not None:
+            reached = sum((c * v for c, v in zip(row, x, strict=True) if c), Fraction(0))
+            violated += [j] * (reached > limit)
     if not negative and not violated:
         return (x,)
     moves = [face - {j} for j in negative] + [face | {j} for j in violated]
@@ -191,14 +138,6 @@ def _moves(program: WholeProgram, face: Face) -> list[Face] | tuple[list[Fractio
         moves += [face - {k} | {j} for j in violated for k in sorted(face)]
         moves.insert(0, (face - set(negative)) | set(violated))
     return moves
-
-
-def _holds(program: WholeProgram, j: int, x: list[Fraction]) -> bool:
-    """Test constraint j at a point (n,)."""
-    limit = program.d[j]
-    if limit is None:
-        return True
-    return sum((c * v for c, v in zip(program.C[j], x, strict=True) if c), Fraction(0)) <= limit
 
 
 def face_of(qp: QP, active: np.ndarray) -> Face:

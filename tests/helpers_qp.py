@@ -28,10 +28,8 @@ def known_qp(
     z_box = np.zeros(n)
     for i in rng.permutation(n)[:active_bounds]:
         z_box[i] = rng.exponential() * rng.choice([-1.0, 1.0])
-        if z_box[i] > 0:
-            ub[i] = x[i]
-        else:
-            lb[i] = x[i]
+    ub = np.where(z_box > 0.0, x, ub)
+    lb = np.where(z_box < 0.0, x, lb)
     G = rng.standard_normal((inequalities, n))
     z = np.where(np.arange(inequalities) % 2 == 0, rng.exponential(size=inequalities), 0.0)
     h = G @ x + np.where(z > 0, 0.0, 0.01 + rng.exponential(size=inequalities))
@@ -51,7 +49,7 @@ def network_rates(qp: QP, state: np.ndarray, project: bool = True) -> np.ndarray
     n, p, m = qp.q.size, qp.b.size, qp.h.size
     x, y, z = state[:n], state[n : n + p], state[n + p : n + p + m]
     mu = state[n + p + m :]
-    omega, chi = np.vstack([np.eye(n), -np.eye(n)]), np.concatenate([qp.ub, -qp.lb])
+    omega, chi = bounds_as_rows(qp)
     gradient = qp.P @ x + qp.q + qp.A.T @ y + qp.G.T @ z + omega.T @ mu
     aim = x - gradient
     return np.concatenate(

@@ -23,20 +23,11 @@ def strictly_convex(
     largest_condition: float = 1e6,
     spoilt: bool = True,
 ) -> tuple[QP, Vector]:
-    """A strictly convex program and its only solution.
+    """A strictly convex program of n variables, by default 2 to 30, and its only solution (n,).
 
     Up to n/2 equalities, up to 2n inequalities, and bounds on some variables or on all. At the
-    solution up to n constraints are active, some of them with a zero multiplier.
-
-    Args:
-        rng: Source of randomness.
-        n: Number of variables; None draws it from 2 to 30.
-        largest_condition: Condition number of P is up to this, log-uniform, its eigenvalues
-            spread evenly around 1 in their logarithm.
-        spoilt: Whether some rows are repeated, scaled or made redundant by others.
-
-    Returns:
-        The program, and x (n,) that solves it.
+    solution up to n constraints are active, some of them with a zero multiplier. The condition
+    number of P is up to the largest, log-uniform. If spoilt, some rows repeat others.
     """
     n = int(rng.integers(2, 31)) if n is None else n
     p = int(rng.integers(0, n // 2 + 1))
@@ -80,14 +71,10 @@ def infeasible(rng: np.random.Generator) -> QP:
     weights[rows] = rng.uniform(0.1, 1.0, used)
     y = weights[:p] * rng.choice([-1.0, 1.0], p)
     z = weights[p:]
-    upper = np.isfinite(ub)
-    lower = np.isfinite(lb)
-    z_box = np.zeros(n)
     taking_part = rng.uniform(size=n) < (0.5 if used else 1.0)
-    z_box[upper] = rng.uniform(0.0, 1.0, n)[upper]
-    flip = lower & (~upper | (rng.uniform(size=n) < 0.5))
-    z_box[flip] = -rng.uniform(0.0, 1.0, n)[flip]
-    z_box[~taking_part] = 0.0
+    z_box = np.where(np.isfinite(ub), rng.uniform(0.0, 1.0, n), 0.0)
+    flip = np.isfinite(lb) & (np.isinf(ub) | (rng.uniform(size=n) < 0.5))
+    z_box = taking_part * np.where(flip, -rng.uniform(0.0, 1.0, n), z_box)
     z[-1] = 1.0
     G[-1] = -(A.T @ y + G[:-1].T @ z[:-1] + z_box)
     b = A @ x
@@ -169,8 +156,7 @@ def _positive_definite(rng: np.random.Generator, n: int, condition: float) -> Ma
     exponents = rng.uniform(-0.5, 0.5, n)
     exponents[:2] = -0.5, 0.5
     P = (basis * condition**exponents) @ basis.T
-    symmetric: Matrix = 0.5 * (P + P.T)
-    return symmetric
+    return 0.5 * (P + P.T)
 
 
 def _bounds(rng: np.random.Generator, x: Vector, active: int) -> tuple[Vector, Vector, Vector]:
@@ -181,10 +167,8 @@ def _bounds(rng: np.random.Generator, x: Vector, active: int) -> tuple[Vector, V
     z_box = np.zeros(n)
     for i in rng.permutation(n)[:active]:
         z_box[i] = rng.exponential() * (2.0 * rng.integers(2) - 1.0)
-        if z_box[i] > 0.0:
-            ub[i] = x[i]
-        else:
-            lb[i] = x[i]
+    ub = np.where(z_box > 0.0, x, ub)
+    lb = np.where(z_box < 0.0, x, lb)
     lb[(rng.uniform(size=n) < 0.2) & (z_box >= 0.0)] = -np.inf
     ub[(rng.uniform(size=n) < 0.2) & (z_box <= 0.0)] = np.inf
     return lb, ub, z_box
@@ -194,9 +178,8 @@ def _spoil(rng: np.random.Generator, rows: Matrix) -> None:
     """Make some rows, in place, repetitions or combinations of those before them."""
     for i in range(1, rows.shape[0]):
         kind = rng.uniform()
-        if kind < 0.1:
-            rows[i] = rows[int(rng.integers(0, i))]
-        elif kind < 0.2:
-            rows[i] = rng.uniform(0.1, 10.0) * rows[int(rng.integers(0, i))]
+        if kind < 0.2:
+            scale = rng.uniform(0.1, 10.0) if kind > 0.1 else 1.0
+            rows[i] = scale * rows[int(rng.integers(0, i))]
         elif kind < 0.3:
             rows[i] = rng.uniform(-1.0, 1.0, i) @ rows[:i]
