@@ -47,11 +47,6 @@ from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.limits import braking
 from iiwa_dnn.schemes.program import ProgramArrays, StepProgram
 
-ATTEMPTS = 11
-"""Programs at most: the step's own with a budget of its own; from a last state and from a cold
-start the search of the scaling factor, the task as it is, the scaled program or the search of the
-retreat's factor, the softened program, and the points nearest to two commands."""
-
 NONE, SLOW, RELAX, STOP, _ = map(int, Action)
 BRAKE = -1
 """No policy: the arm goes to rest."""
