@@ -45,8 +45,6 @@ from iiwa_dnn.schemes.step import TARGET_SIZE
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
 
-_FLOAT = np.dtype(np.float64)
-
 _NOTHING = np.zeros(0)
 
 _ACTIONS = {int(action): action for action in Action}
@@ -208,18 +206,22 @@ class Controller:
         if dt != step.dt:
             step.set_period(checks.positive("dt", dt))
         layout = step.layout
-        joints: Any = q if _is_plain(q, layout.dof) else checks.finite_array("q", q, (layout.dof,))
+        program = step.program
+        is_plain = type(q) is np.ndarray and q.ndim == 1
+        joints: Any = q if is_plain else checks.finite_array("q", q, (layout.dof,))
+        try:
+            program.kinematics.update(joints)
+        except (TypeError, ValueError):  # another length, or no numbers
+            return self._compute(checks.finite_array("q", q, (layout.dof,)), t, target, dt)
         row = np.empty(layout.width)
         past = state.past
         samples = step.samples and target is None
         if not samples:
             layout.targets(row)[:] = self.targets(t - past[DELAY, 0], target, dt)
-        program = step.program
-        program.kinematics.update(joints)
         if program.refreshed:
             program.refresh(joints, past[LAST], layout.targets(row), t, dt)
         past[Q] = joints
-        following = np.empty_like(past)
+        following = np.empty(past.shape)
         state.next = following  # a halt from here on counts for the next step
         network = self.solver.state_for(layout.sizes) if step.has_network else _NOTHING
         action = take_step(row, step.plan, past, following, network, step.relaxed, t, samples)
@@ -379,13 +381,6 @@ class Controller:
         program.kinematics.update(q)
         program.write(data, targets, past, self.dt, t)
         return QP.from_data(data, program.sizes)
-
-
-def _is_plain(q: ArrayLike, dof: int) -> bool:
-    """Tell whether joint positions are an array as compiled code takes it."""
-    return (
-        type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == (dof,) and q.flags.c_contiguous
-    )
 
 
 # A change of one of them is checked, and what is derived from them is made anew.
