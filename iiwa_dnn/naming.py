@@ -1,10 +1,21 @@
-"""Names of limits, the same in commands, errors, records, reports and pages."""
+"""Names of limits and actions, the same in commands, errors, records, reports and pages."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 KINDS = ("position", "velocity", "acceleration", "jerk")
 """Kinds of a joint's bound; the code of one in commands and records is its place here, from 1."""
+
+ACTIONS = {2: "slow", 3: "relax", 4: "stop", 5: "euler"}
+"""Actions at a step in place of the network's answer by their codes in commands and records."""
+
+DONE = {
+    "slow": "slowed",
+    "relax": "relaxed",
+    "stop": "stopped",
+    "euler": "taken by Euler's method",
+}
+"""What an action does with a step."""
 
 
 def bound_words(settings: Mapping[str, Any]) -> tuple[str, ...]:

@@ -16,9 +16,9 @@ from iiwa_dnn.app.command_line import SETTINGS_FILE, shown
 from iiwa_dnn.app.track import load
 from iiwa_dnn.errors import import_extra
 from iiwa_dnn.files import one_line, read_toml
-from iiwa_dnn.naming import describe, in_the_way
+from iiwa_dnn.naming import ACTIONS, describe, in_the_way
 from iiwa_dnn.qp.program import Matrix, Vector
-from iiwa_dnn.results.metrics import ACTIONS, orientation_error, position_error
+from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.results.pictures import obstacles_of
 from iiwa_dnn.results.plots import envelope
 from iiwa_dnn.results.report import markdown_table

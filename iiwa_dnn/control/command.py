@@ -10,6 +10,7 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.policies import Action, ProgramKind
+from iiwa_dnn.naming import DONE
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.layout import IntVector, Sizes, offsets
 from iiwa_dnn.schemes.program import ACCELERATION, LimitNames
@@ -280,15 +281,8 @@ class Command:
 
     def __repr__(self) -> str:
         dq = np.array2string(self.dq, precision=4, separator=", ")
-        words = _WORDS[self.action] if self.action or self.ok else "not settled"
-        if self.action and self.against:
-            words += f", against {', '.join(self.against)}"
+        words = "solved" if self.ok else "not settled"
+        if self.action:
+            words = f"no solution: {DONE[self.action.name.lower()]}"
+            words += f", against {', '.join(self.against)}" if self.against else ""
         return f"<Command dq = {dq} rad/s, {words}; ok = {self.ok}>"
-
-
-_WORDS = {
-    Action.NONE: "solved",
-    Action.SLOW: "no solution: slower along the path",
-    Action.RELAX: "no solution: as near to the task as the limits allow",
-    Action.STOP: "no solution: stopped",
-}

@@ -64,7 +64,7 @@ class Controller:
         dt: Control period [s].
         mode: ``"converged"``: the network settles at every step. ``"continuous"``: it advances by
             one control period, as in the paper, and lags: bounds of the joints hold, the rows of
-            other limits, of collisions for example, only where it has settled.
+            other limits only where it has settled; beside obstacles the arm may stop.
         policy: Action at a step without a solution in ``converged`` mode (`control.policies`).
         solver: Network, integrators and tolerance; keeps the network's state between steps.
         delay: Time by which the reference's clock is behind, since a policy slowed it [s].

@@ -48,7 +48,7 @@ from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.schemes.program import add_soft
 
-BUDGET = 60
+MOST_SYSTEMS = 60
 """Linear systems after which a program counts as one without a solution."""
 
 PENALTY = 1e-5

@@ -153,7 +153,7 @@ def take_wish(wish: Vector, given: bool, state: ShieldState, settings: Vector) -
 
 
 @compiled
-def approach(
+def come_nearer(
     state: ShieldState,
     past: Matrix,
     limits: Vector,
@@ -412,7 +412,7 @@ class Shield:
         state[:] = 0.0
         past = self._kept.past
         aim = state[: self.robot.dof]
-        approach(self._state, past, self.motion, self.dt, kind == "position", held, aim)
+        come_nearer(self._state, past, self.motion, self.dt, kind == "position", held, aim)
         target = np.zeros(TARGET_SIZE)
         target[: aim.size] = aim
         return Target.from_data(target)

@@ -312,7 +312,7 @@ def stopping_time(arrays: ProgramArrays, past: Matrix, yielding: Yielding, dq: V
         dq: The command [rad/s], (dof,).
 
     Returns:
-        M; -1 if the motion breaks a limit, or brings a pair too near; 0 if no distance is kept.
+        M; -1 if the motion breaks a limit, or brings a pair too near; 0 where none is to be kept.
     """
     if len(yielding.scenes) == 0:
         return 0.0

@@ -1,6 +1,7 @@
 """Answers of steps without a solution, in one compiled call: limits hold, the task yields.
 
-`iiwa_dnn.control.policies` says what each policy means. The step's own program came first; then
+`iiwa_dnn.control.policies` says what each policy means. The step's own program came first, unless
+the task yielded at the last step; then
 
 1. the scaling factor of the task is computed, by position and velocity limits alone. If it is 1,
    the task as it is; with ``slow``, along a path, the scaled program;
@@ -20,7 +21,7 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.command import NOT_SETTLED, SOLVED, RowViews
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.relaxed import (
-    BUDGET as MOST,
+    MOST_SYSTEMS,
     Yielding,
     attained,
     copied,
@@ -81,7 +82,7 @@ def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
     return Yielding(
         weights,
         limits,
-        np.array([tol, float(MOST)]),
+        np.array([tol, float(MOST_SYSTEMS)]),
         np.array(scenes, dtype=np.int64).reshape(-1, 2),
         dt,
         bool((limits.reshape(6, -1)[4] < np.inf).any()),

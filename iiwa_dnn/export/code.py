@@ -100,7 +100,7 @@ def _shield_texts(code: _Code, shield: shields.Shield) -> dict[str, Any]:
         "limits": code.value("motion", shield.motion),
         "take_positions": code.kernel(shields.take_positions),
         "take_wish": code.kernel(shields.take_wish),
-        "approach": code.kernel(shields.approach),
+        "come_nearer": code.kernel(shields.come_nearer),
         "rows": ROWS,
         "yields": YIELDS,
         "reason": shields.REASON,

@@ -4,14 +4,12 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from iiwa_dnn.files import percent
-from iiwa_dnn.naming import KINDS, describe
+from iiwa_dnn.naming import DONE, KINDS, describe
 from iiwa_dnn.results.metrics import JOINT_LIMITS, compute_metrics
 from iiwa_dnn.results.record import Record
 
 LIMIT_SLACK = 1e-9
 """Excess over a limit [rad, rad/s, m] that is forgiven: rounding of the motion's integration."""
-
-_DONE = {"slow_steps": "slowed", "relax_steps": "relaxed", "stop_steps": "stopped"}
 
 
 def failures(run: Record | Mapping[str, Any]) -> list[str]:
@@ -91,7 +89,11 @@ def _incomplete(metrics: Mapping[str, Any]) -> Iterator[str]:
 def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
     """Name the steps without the network's answer; clipping and active bounds are no failures."""
     incidents = metrics.get("incidents", {})
-    done = {word: incidents[name] for name, word in _DONE.items() if incidents.get(name)}
+    done = {
+        word: incidents[f"{action}_steps"]
+        for action, word in DONE.items()
+        if action != "euler" and incidents.get(f"{action}_steps")
+    }
     if not done:
         return
     counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items())

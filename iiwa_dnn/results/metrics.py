@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.files import plain
-from iiwa_dnn.naming import in_the_way
+from iiwa_dnn.naming import ACTIONS, in_the_way
 from iiwa_dnn.results.record import RATES, FloatArray, Record
 
 PROGRAMS = ("own", "scaled", "softened", "held", "stopped")
@@ -22,9 +22,6 @@ EXCESS_TOLERANCE = 1e-9
 
 BOUNDS = "bounds"
 """Name of what judges a command beside its step's own bounds and rows."""
-
-ACTIONS = {2: "slow", 3: "relax", 4: "stop", 5: "euler"}
-"""Codes in `Record.action`; 0 is the network's own answer."""
 
 SETTLED_AFTER = 0.5
 """Time until an arm in physics has settled [s]; it starts at rest, its weight unknown."""

@@ -13,7 +13,7 @@ from typing import Any
 from tabulate import tabulate
 
 from iiwa_dnn.files import prepare_folder, write_json, write_text
-from iiwa_dnn.naming import describe, unwatched
+from iiwa_dnn.naming import DONE, describe, unwatched
 from iiwa_dnn.results.failures import completed, counted, failures, programs_checked
 from iiwa_dnn.results.metrics import JOINT_LIMITS, compute_metrics
 from iiwa_dnn.results.plots import CAPTIONS, save_figures
@@ -38,10 +38,7 @@ _RESULTS = (
     ("largest torque of each joint", "physics.max_torque_n_m", "N m"),
     ("largest torque, of its limit", "physics.max_torque_share", ""),
     ("steps with a clipped command", "incidents.clipped_steps", ""),
-    ("steps slowed", "incidents.slow_steps", ""),
-    ("steps relaxed", "incidents.relax_steps", ""),
-    ("steps stopped", "incidents.stop_steps", ""),
-    ("steps taken by Euler's method", "incidents.euler_steps", ""),
+    *((f"steps {word}", f"incidents.{own}_steps", "") for own, word in DONE.items()),
 )
 """Rows of numbers: quantity, place in the metrics, and unit."""
 

@@ -1,4 +1,4 @@
-r"""Limits of the joints: bounds on their velocities that no policy ever relaxes.
+r"""Limits of the joints: bounds on their velocities that every command keeps.
 
 With acceleration or jerk limits, a bound comes from the last commands and a way to stop.
 

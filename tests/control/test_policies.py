@@ -11,7 +11,7 @@ import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import fixed, near_target, paper_robot, paper_start
 from iiwa_dnn.control.policies import Action, Policy, ProgramKind
-from iiwa_dnn.results.metrics import ACTIONS
+from iiwa_dnn.naming import ACTIONS
 
 WEIGHTS = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])
 """Weights of a pose's rows where they yield: a metre counts twice as much as a radian."""

@@ -20,7 +20,7 @@ int shield_step(struct controller *c, const double *q, const double *wish, doubl
     }
     @take_positions@(&arena, joints, &kept, settings);
     const bool held = @take_wish@(&arena, asked, wish != NULL, &kept, settings);
-    @approach@(&arena, &kept, past, limits, CONTROLLER_DT, false, held, aim);
+    @come_nearer@(&arena, &kept, past, limits, CONTROLLER_DT, false, held, aim);
     memset(c->state, 0, sizeof c->state);
     memcpy(c->state, c->aim, sizeof c->wish);
     const int action = controller_step(c, c->positions, c->aim, dq);
