@@ -325,6 +325,8 @@ class Record:
         Raises:
             FileError: If the file is missing, damaged or not a record of this version.
         """
+        from iiwa_dnn.results.failures import failures
+
         try:
             # Not np.load, which takes any file that is no archive for a pickled object.
             with Path(path).open("rb") as file:
@@ -335,7 +337,9 @@ class Record:
                 arrays["dq_solver"] = arrays["dq"]
             if len(arrays["rotation_desired"]) == 1:
                 arrays["rotation_desired"] = arrays["rotation_desired"].repeat(len(arrays["t"]), 0)
-            return cls(settings=settings, **arrays)
+            record = cls(settings=settings, **arrays)
+            failures(record)  # lest settings of another version fail later
+            return record
         except Exception as error:  # whatever NumPy, zip and JSON meet in a damaged file
             raise FileError(path, f"cannot be read as a record: {one_line(error)}") from error
 
