@@ -133,10 +133,14 @@ def test_refusals(changes, words):
 def test_a_file_that_is_not_a_record_is_told_in_one_line(heart, tmp_path):
     heart.save(tmp_path / "old.npz")
     with np.load(tmp_path / "old.npz") as stored:
-        np.savez(tmp_path / "old.npz", **{name: stored[name] for name in stored if name != "kind"})
+        arrays = dict(stored)
+    np.savez(tmp_path / "bare.npz", **(arrays | {"settings": np.array("{}")}))
+    del arrays["kind"]
+    np.savez(tmp_path / "old.npz", **arrays)
     np.save(tmp_path / "one.npy", np.zeros(3))
     for name, words in {
         "old.npz": "kind is not a file in the archive",
+        "bare.npz": "as a record",
         "one.npy": "not a zip file",
         "missing": "No such",
         "": "read",
