@@ -117,16 +117,14 @@ def test_positions_are_reached_and_not_passed(robot: d.Robot) -> None:
 
 def test_a_twist_moves_its_frame() -> None:
     """Far from singular poses the damping costs less than a hundredth."""
-    robot = ROBOT
-    shield = d.Shield(robot, DT)
-    frame = robot.frame_names[len(robot.frame_names) // 2]
-    for name in (None, frame):
-        twist = np.array([0.0, 0.0, 0.05, 0.0, 0.0, 0.0])
-        J = d.Configuration(robot, START).frame(name or robot.tip).jacobian
+    shield = d.Shield(ROBOT, DT)
+    twist = np.array([0.0, 0.0, 0.05, 0.0, 0.0, 0.0])
+    for name in (None, ROBOT.frame_names[len(ROBOT.frame_names) // 2]):
+        J = d.Configuration(ROBOT, START).frame(name or ROBOT.tip).jacobian
         reachable = J @ np.linalg.pinv(J) @ twist
         shield.reset()
         path, commands = drive(shield, 100, twist=twist, frame=name)
-        J = d.Configuration(robot, path[-2]).frame(name or robot.tip).jacobian
+        J = d.Configuration(ROBOT, path[-2]).frame(name or ROBOT.tip).jacobian
         np.testing.assert_allclose(J @ commands[-1].dq, reachable, atol=2e-3)
 
 
@@ -224,8 +222,7 @@ def test_margin_and_stopping_time_are_those_of_closed_forms() -> None:
         shield = d.Shield(ROBOT, DT, [ball], distance=0.03)
         margins.append(shield.step(START, np.zeros(7)).margin)
     assert margins[0].distance <= margins[1].distance < 0.6
-    robot = ROBOT
-    room = np.minimum(START - robot.q_lower, robot.q_upper - START).min()
+    room = np.minimum(START - ROBOT.q_lower, ROBOT.q_upper - START).min()
     assert margins[0].joint == pytest.approx(room, abs=1e-12)
     shield = d.Shield(ROBOT, DT)
     _, commands = drive(shield, 100, dq=np.full(7, 0.5))

@@ -113,7 +113,7 @@ def test_programs_with_narrow_bounds_are_judged_by_proxqp_itself() -> None:
     assert judged.count(0) >= 99
 
 
-@pytest.mark.parametrize("name", sorted({"clarabel", "daqp", "piqp", "quadprog"}))
+@pytest.mark.parametrize("name", ["clarabel", "daqp", "piqp", "quadprog"])
 def test_any_solver_of_qpsolvers_judges(name: str) -> None:
     rng = np.random.default_rng(60)
     for active in range(4):
@@ -126,6 +126,8 @@ def test_any_solver_of_qpsolvers_judges(name: str) -> None:
 def test_a_solver_that_is_not_installed_is_refused_with_those_that_are() -> None:
     with pytest.raises(InvalidInputError, match=r"daqp.*proof, not 'gurobi'"):
         CrossCheck(("gurobi",))
+    with pytest.raises(InvalidInputError, match=r"^solvers\b"):
+        CrossCheck("proxqp")  # a text is a sequence too
     iiwa_dnn.qp.register()
     with pytest.raises(InvalidInputError, match="not 'iiwa_dnn'"):
         CrossCheck(("iiwa_dnn",))
@@ -159,17 +161,8 @@ def test_the_worst_of_the_stages_of_each_step() -> None:
     np.testing.assert_array_equal(worst.reference_residual, [[1e-9, 1e-9], [1e-9, np.inf]])
 
 
-@pytest.mark.parametrize(
-    ("argument", "value"),
-    [
-        ("solvers", "proxqp"),  # a text is a sequence too
-        *[
-            (name, bad)
-            for name in ("tolerance", "reference_tolerance")
-            for bad in (0.0, -1e-6, np.nan, np.inf, None, "tight")
-        ],
-    ],
-)
+@pytest.mark.parametrize("argument", ["tolerance", "reference_tolerance"])
+@pytest.mark.parametrize("value", [0.0, -1e-6, np.nan, np.inf, None, "tight"])
 def test_a_bad_argument_is_named(argument: str, value: object) -> None:
     with pytest.raises(InvalidInputError, match=rf"^{argument}\b") as caught:
         CrossCheck(**{argument: value})

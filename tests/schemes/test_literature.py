@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array
-from helpers_simulation import heart, near_target, paper_robot, paper_start, run
+from helpers_simulation import near_target, paper_robot, paper_start, run
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.schemes.literature import bi_criteria
 
@@ -101,10 +101,6 @@ def test_the_largest_speed_is_that_of_a_linear_program() -> None:
     assert speed <= 1.01 * best.fun
     between = bi_criteria(paper_robot(), 0.3).build_qp(paper_start(), MOVING)
     assert_array_equal(between.P, np.diag([0.3] * 7 + [0.7]))
-
-
-def test_the_least_largest_speed_draws_the_heart() -> None:
-    assert d.failures(run(bi_criteria(paper_robot(), 0.0), heart(), dt=1e-2, duration=2.0)) == []
 
 
 @pytest.mark.parametrize("gain", [np.inf, 300.0, 5e3])

@@ -1,7 +1,5 @@
 """The integrators against scipy's at tight tolerance, their order, and what they settle to."""
 
-import json
-
 import numpy as np
 import pytest
 
@@ -51,12 +49,6 @@ def test_a_flow_of_a_subclass_is_integrated(integrator: Integrator, project: boo
     assert d.DNNSolver(network).compiled_answer(BOUNDS.sizes) is None
 
 
-def test_a_subclass_that_changes_nothing_stays_compiled() -> None:
-    solver = d.DNNSolver(type("Subclass", (d.ProjectionNetwork,), {})())
-    for duration in (0.0, 1e-4):
-        assert solver.compiled_answer(BOUNDS.sizes, duration) is not None
-
-
 @pytest.mark.parametrize(
     "network",
     [d.ProjectionNetwork(), d.ProjectionNetwork(rho=1e-4, primal_projection=False)],
@@ -79,12 +71,3 @@ def test_a_state_or_a_point_of_another_size_is_refused(network, integrator) -> N
         for size in points:
             with pytest.raises(d.InvalidInputError, match="point"):
                 call(np.zeros(19), np.zeros(size))
-
-
-def test_integrators_and_networks_name_themselves() -> None:
-    counted = json.loads(json.dumps(d.ExplicitEuler(np.int64(8)).settings()))
-    assert counted == {"name": "ExplicitEuler", "substeps": 8}
-    network = d.ProjectionNetwork(rho=np.float64(1e-4), primal_projection=False)
-    assert json.loads(json.dumps(network.settings())) == {
-        "name": "ProjectionNetwork", "rho": 1e-4, "primal_projection": False,
-    }  # fmt: skip
