@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-import iiwa_dnn
+import iiwa_dnn as d
 from helpers_simulation import driven
-from iiwa_dnn import AccelerationLimits, CollisionAvoidance, CrossCheck, JerkLimits, Limit
 from iiwa_dnn.control.command import RowLayout
 from iiwa_dnn.control.policies import Policy, ProgramKind
 
@@ -13,26 +12,26 @@ STEPS = 120
 SPEED = 0.15
 
 
-def limits_of(name: str, tip: np.ndarray) -> tuple[Limit, ...]:
-    ball = iiwa_dnn.Sphere((tip + [0.06, 0.03, 0.0]).tolist(), 0.03)
+def limits_of(name: str, tip: np.ndarray) -> tuple[d.Limit, ...]:
+    ball = d.Sphere((tip + [0.06, 0.03, 0.0]).tolist(), 0.03)
     return {
         "plain": (),
-        "acceleration": (AccelerationLimits(5.0),),
-        "jerk": (AccelerationLimits(5.0), JerkLimits(500.0)),
-        "obstacle": (CollisionAvoidance([ball], distance=0.01),),
-        "braking": (AccelerationLimits(5.0), CollisionAvoidance([ball], distance=0.01)),
+        "acceleration": (d.AccelerationLimits(5.0),),
+        "jerk": (d.AccelerationLimits(5.0), d.JerkLimits(500.0)),
+        "obstacle": (d.CollisionAvoidance([ball], distance=0.01),),
+        "braking": (d.AccelerationLimits(5.0), d.CollisionAvoidance([ball], distance=0.01)),
     }[name]
 
 
 def yielding_steps(arm: str, limits: str, policy: Policy) -> tuple[RowLayout, np.ndarray]:
     """Rows of the steps that yield, of an arm on a circle that is too quick for it, near a ball."""
-    robot = iiwa_dnn.load_robot(arm)
+    robot = d.load_robot(arm)
     q = robot.start_posture()
-    start = iiwa_dnn.Configuration(robot, q)
-    scheme = iiwa_dnn.DoubleIndicator(extra_limits=limits_of(limits, start.position))
+    start = d.Configuration(robot, q)
+    scheme = d.DoubleIndicator(extra_limits=limits_of(limits, start.position))
     slow = robot.with_limits(velocity=np.minimum(robot.dq_max, SPEED))
-    circle = iiwa_dnn.Circle(0.06, 1.5).anchored(start)
-    controller = iiwa_dnn.Controller(slow, scheme, circle, policy=policy)
+    circle = d.Circle(0.06, 1.5).anchored(start)
+    controller = d.Controller(slow, scheme, circle, policy=policy)
     taken = np.array([command.row for command in driven(controller, q, STEPS)[1]])
     kinds = controller.layout.view(taken, "decision")[:, 3]
     taken = taken[(kinds > ProgramKind.OWN) & (kinds < ProgramKind.STOPPED)]
@@ -63,7 +62,7 @@ def test_solvers_and_the_proof_agree_with_an_answer_and_with_no_other(arm, limit
     random = np.random.default_rng(1)
     others[:, : layout.dof] = random.uniform(-SPEED, SPEED, (len(others), layout.dof))
     for name in ("proxqp", "osqp", "proof"):
-        check = CrossCheck((name,))
+        check = d.CrossCheck((name,))
         agreement = check.check_block(programs, layout.sizes, points)
         assert (agreement.reference_residual <= check.reference_tolerance).all()
         assert (agreement.solution_gap <= check.tolerance).all()
@@ -80,7 +79,7 @@ def test_a_command_that_is_held_back_is_within_its_bounds(limits: str, policy: P
 
 
 def test_the_excess_of_an_answer_counts_its_rows_and_a_multiplier_needs_its_bound() -> None:
-    qp = iiwa_dnn.QP(np.eye(2), np.zeros(2), G=[[1.0, 1.0]], h=[0.5], lb=[-1.0] * 2, ub=[1.0] * 2)
+    qp = d.QP(np.eye(2), np.zeros(2), G=[[1.0, 1.0]], h=[0.5], lb=[-1.0] * 2, ub=[1.0] * 2)
     layout = RowLayout(qp.sizes, 2, 0)
     row = np.zeros((1, layout.width))
     layout.view(row, "program")[:] = qp.data

@@ -84,8 +84,6 @@ SCHEMES: dict[str, d.Scheme] = {
     "no home": d.DoubleIndicator(),
     "pseudo-inverse": d.PseudoInverse(),
 }
-
-
 STATUS = {"converged": d.Status.SOLVED, "continuous": d.Status.ADVANCED}
 
 

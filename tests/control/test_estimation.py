@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import driven, heart, paper_robot, paper_start
-from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
-from iiwa_dnn.references import Still
-from iiwa_dnn.schemes import AccelerationLimits, DoubleIndicator, JerkLimits
 
 DT = 1e-3
 
@@ -88,9 +86,9 @@ def shaken(estimator: JointEstimator | None) -> tuple[np.ndarray, float, float]:
     Returns 1 for each command that is ok, 2 if it is limited; the last speed; and the delay.
     """
     robot = paper_robot().with_limits(acceleration=10.0, jerk=100.0)
-    limits = (AccelerationLimits(), JerkLimits())
-    scheme = DoubleIndicator(position_gain=9.5, orientation_gain=9.5, extra_limits=limits)
-    controller = Controller(robot, scheme, Still().anchored(paper_start()), dt=2e-3)
+    limits = (d.AccelerationLimits(), d.JerkLimits())
+    scheme = d.DoubleIndicator(position_gain=9.5, orientation_gain=9.5, extra_limits=limits)
+    controller = d.Controller(robot, scheme, d.Still().anchored(paper_start()), dt=2e-3)
     q = np.array(PAPER_Q0)
     late = np.zeros(7)
     said = []
@@ -119,8 +117,8 @@ def test_a_loop_with_an_estimator_leaves_an_arm_at_rest_alone() -> None:
 
 def test_a_command_against_a_velocity_limit_is_not_limited_but_cannot() -> None:
     robot = paper_robot().with_limits(velocity=0.02, acceleration=10.0, jerk=1000.0)
-    limits = (AccelerationLimits(), JerkLimits())
-    controller = Controller(robot, DoubleIndicator(extra_limits=limits), heart(), dt=1e-3)
+    limits = (d.AccelerationLimits(), d.JerkLimits())
+    controller = d.Controller(robot, d.DoubleIndicator(extra_limits=limits), heart(), dt=1e-3)
     first, *_, last = driven(controller, PAPER_Q0, 300)[1]
     assert (first.ok, first.limited) == (True, False)
     assert (last.ok, last.limited) == (False, False)

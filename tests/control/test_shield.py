@@ -18,9 +18,7 @@ SMOOTH = PLAIN.with_limits(acceleration=10.0, jerk=500.0)
 BALL = d.Sphere([0.36, 0.16, 0.64], 0.05)
 
 
-def drive(
-    shield: d.Shield, steps: int, q: np.ndarray = START, **wish: Any
-) -> tuple[np.ndarray, list[ShieldCommand]]:
+def drive(shield, steps, q=START, **wish: Any) -> tuple[np.ndarray, list[ShieldCommand]]:
     """Follow every command from q; return the joint positions (steps + 1, n) and the commands."""
     path = [q]
     commands = []

@@ -9,9 +9,6 @@ import iiwa_dnn as d
 from helpers_qp import known_qp
 from iiwa_dnn.networks.integrators.base import BUDGET, SUBSTEPS, TOLERANCE
 
-REFERENCES = d.CrossCheck(("proxqp", "osqp"))
-
-
 DENSE = [name for name in dir(problems) if name.startswith("get_") and "sparse" not in name]
 
 

@@ -8,26 +8,16 @@ import numpy as np
 import pytest
 import qpsolvers
 
-import iiwa_dnn
+import iiwa_dnn as d
 from helpers_qp import known_qp
-from helpers_simulation import heart, paper_start, run
-from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.solver import DNNSolver
+from helpers_simulation import run
 from iiwa_dnn.qp import QP, Solution, crosscheck
 from iiwa_dnn.qp.crosscheck import Agreement, CheckPool, CrossCheck
-from iiwa_dnn.results.failures import failures
-from iiwa_dnn.results.metrics import compute_metrics
-from iiwa_dnn.schemes import DoubleIndicator
 
 SOLVERS = ("proxqp", "osqp")
 BOTH = CrossCheck(SOLVERS)
 EACH = [CrossCheck((name,)) for name in SOLVERS]
 IDS = list(SOLVERS)
-
-
-def heart_qp(t: float = 1.3, orientation: str = "so3") -> QP:
-    scheme = DoubleIndicator(orientation=orientation).anchored(paper_start())
-    return scheme.build_qp(paper_start(), heart().at(t))
 
 
 def value(qp: QP, x: np.ndarray) -> float:
@@ -109,7 +99,7 @@ def test_programs_with_narrow_bounds_are_judged_by_proxqp_itself() -> None:
         lb[0] = x[0]
         qp = QP(np.eye(7), A.T @ rng.standard_normal(6) - x + np.eye(7)[0], None, None,
                 A, A @ x, lb, lb + 1e-3)  # fmt: skip
-        judged.append(CrossCheck().check(qp, DNNSolver().solve(qp).x).judge[0, 0])
+        judged.append(CrossCheck().check(qp, d.DNNSolver().solve(qp).x).judge[0, 0])
     assert judged.count(0) >= 99
 
 
@@ -124,12 +114,12 @@ def test_any_solver_of_qpsolvers_judges(name: str) -> None:
 
 
 def test_a_solver_that_is_not_installed_is_refused_with_those_that_are() -> None:
-    with pytest.raises(InvalidInputError, match=r"daqp.*proof, not 'gurobi'"):
+    with pytest.raises(d.InvalidInputError, match=r"daqp.*proof, not 'gurobi'"):
         CrossCheck(("gurobi",))
-    with pytest.raises(InvalidInputError, match=r"^solvers\b"):
+    with pytest.raises(d.InvalidInputError, match=r"^solvers\b"):
         CrossCheck("proxqp")  # a text is a sequence too
-    iiwa_dnn.qp.register()
-    with pytest.raises(InvalidInputError, match="not 'iiwa_dnn'"):
+    d.qp.register()
+    with pytest.raises(d.InvalidInputError, match="not 'iiwa_dnn'"):
         CrossCheck(("iiwa_dnn",))
 
 
@@ -164,12 +154,12 @@ def test_the_worst_of_the_stages_of_each_step() -> None:
 @pytest.mark.parametrize("argument", ["tolerance", "reference_tolerance"])
 @pytest.mark.parametrize("value", [0.0, -1e-6, np.nan, np.inf, None, "tight"])
 def test_a_bad_argument_is_named(argument: str, value: object) -> None:
-    with pytest.raises(InvalidInputError, match=rf"^{argument}\b") as caught:
+    with pytest.raises(d.InvalidInputError, match=rf"^{argument}\b") as caught:
         CrossCheck(**{argument: value})
     assert caught.value.argument == argument
 
 
-class Liar(DNNSolver):
+class Liar(d.DNNSolver):
     """Claims to have solved everything, and has not at one call."""
 
     def __init__(self, wrong_at: int, size: float = 1e-5) -> None:
@@ -191,13 +181,13 @@ def test_a_run_with_one_wrong_answer_names_step_and_solver(check: CrossCheck) ->
     record = run(solver=Liar(wrong_at=17), check=check, duration=0.03)
     assert np.flatnonzero(record.crosscheck_gap > 1e-6).tolist() == [17]
     np.testing.assert_allclose(record.solution_gap[17], 1e-5, rtol=1e-2)
-    crosscheck = compute_metrics(record)["crosscheck"]
+    crosscheck = d.compute_metrics(record)["crosscheck"]
     assert crosscheck["disagreements"] == 1
     assert crosscheck["steps_checked"] == 30
     assert crosscheck["reference_failures"] == 0
     assert crosscheck["max_solution_gap"] == pytest.approx(1e-5, rel=1e-2)
     assert crosscheck["first_disagreement"]["step"] == 17
-    (reason,) = failures(record)
+    (reason,) = d.failures(record)
     assert "step 17 " in reason
     assert any(name in reason for name in check.solvers)
     assert "1e-05" in reason
@@ -215,7 +205,7 @@ def jobs(count: int, size: int = 20) -> list[tuple]:
     for number in range(count):
         rng = np.random.default_rng(number)
         qps = [known_qp(rng, 5, 2, 1)[0] for _ in range(size)]
-        x = np.stack([DNNSolver().solve(qp).x for qp in qps])
+        x = np.stack([d.DNNSolver().solve(qp).x for qp in qps])
         x[:, 0] += 1e-7 * (100 * number + np.arange(size))
         made.append((np.stack([qp.data for qp in qps]), qps[0].sizes, x))
     return made

@@ -26,9 +26,7 @@ limits = arrays(np.float64, 7, elements=st.one_of(st.floats(0.01, 1e3), st.just(
     gain=st.floats(1e-3, 1e4),
     dt=st.sampled_from([np.inf, 1e-2]),
 )
-def test_bounds_are_the_papers_formula_within_the_velocity_limit(
-    q: Array, lower: Array, upper: Array, speed: Array, gain: float, dt: float
-) -> None:
+def test_bounds_are_the_papers_formula(q, lower, upper, speed, gain, dt) -> None:
     robot = paper_robot().with_limits(lower=-lower, upper=upper, velocity=speed)
     qp = rows_of(d.JointLimits(gain=gain), d.Configuration(robot, q), dt=dt)
     kappa = min(gain, 1.0 / dt) if dt < np.inf else gain

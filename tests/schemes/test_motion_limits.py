@@ -15,8 +15,6 @@ from iiwa_dnn.schemes.limits import braking, check_ranges, joint_bounds, largest
 from judge_limits import Breach, breaches
 
 INF = math.inf
-
-
 Limits = tuple[float, float, float]
 
 
@@ -116,9 +114,7 @@ def test_outside_a_short_range_a_joint_does_not_come_back_beyond_its_other_side(
     seed=st.integers(0, 1000),
 )
 @example(speed=2.0, acceleration=20.0, jerk=1e5, dt=1e-2, upper=5.5e-5, seed=0)
-def test_a_range_that_is_not_refused_is_long_enough(
-    speed: float, acceleration: float, jerk: float, dt: float, upper: float, seed: int
-) -> None:
+def test_a_range_that_is_taken_is_long_enough(speed, acceleration, jerk, dt, upper, seed) -> None:
     # 1.1e-4 rad were accepted at 20 rad/s^2, 1e5 rad/s^3 and 10 ms, and left by 1.5e-4 rad.
     limits = (speed, acceleration, jerk)
     while True:
