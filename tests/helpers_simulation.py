@@ -6,8 +6,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import qpsolvers
-import scipy.sparse as spa
 from numpy.typing import ArrayLike, NDArray
 
 from helpers_kinematics import PAPER_Q0
@@ -89,18 +87,6 @@ def driven(
     return np.array(path), commands
 
 
-def solve_by(solver: str, qp: QP) -> NDArray[np.float64]:
-    """The program's solution by an established solver, straight through qpsolvers."""
-    problem = qp.to_qpsolvers()
-    options: dict[str, Any] = {"backend": "dense"}
-    if solver == "osqp":
-        problem.P, problem.A = spa.csc_matrix(problem.P), spa.csc_matrix(problem.A)
-        options = {"polishing": True, "raise_error": False}
-    solution = qpsolvers.solve_problem(problem, solver, eps_abs=1e-11, eps_rel=0.0, **options)
-    assert solution.is_optimal(1e-8)
-    return solution.x
-
-
 def rows_of(part: Any, conf: Configuration, target: Target | None = None, **options: Any) -> QP:
     """The program of one limit or task alone; by default the tip is to stay where it is."""
     kind = "limits" if isinstance(part, Limit) else "tasks"
@@ -127,12 +113,6 @@ def fixed(qp: QP) -> Scheme:
     cost = own(Cost, quadratic=(qp.P, qp.q))
     task = own(Task, p, equations=(qp.A, qp.b))
     return Scheme([cost], [task], [own(Limit, m, inequalities=(qp.G, qp.h), bounds=(qp.lb, qp.ub))])
-
-
-def velocity_bounds(conf: Configuration, gain: float) -> tuple[NDArray[np.float64], ...]:
-    """Lower and upper velocity bounds of the joint limits at a configuration."""
-    qp = rows_of(JointLimits(gain=gain), conf)
-    return qp.lb, qp.ub
 
 
 def orientation_rows(

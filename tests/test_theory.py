@@ -3,37 +3,31 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
+import iiwa_dnn
 from helpers_kinematics import PAPER_Q0
 from helpers_qp import bounds_as_rows, known_qp, network_rates
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start
 from iiwa_dnn import (
     QP,
-    Circle,
     Configuration,
-    Controller,
-    CyclicMotion,
     DNNSolver,
     DoubleIndicator,
     ExplicitEuler,
-    ImplicitEuler,
-    JointLimits,
-    KineticEnergy,
     Network,
     OneLayerNetwork,
     ProjectionNetwork,
-    Reference,
-    Scheme,
+    Record,
     Status,
-    Target,
-    Waypoints,
     simulate,
 )
 from iiwa_dnn.networks.primal_dual import SHARE
@@ -43,6 +37,22 @@ from iiwa_dnn.studies.paper import MAX_ERROR
 Array = NDArray[np.float64]
 RHO, DELTA = 9e-5, 10.2
 SO3 = DoubleIndicator(orientation="so3", home=PAPER_Q0)
+UNPROJECTED = ProjectionNetwork(primal_projection=False)
+PAGE = (Path(__file__).parents[1] / "docs" / "theory.md").read_text(encoding="utf-8")
+
+
+def run(path: iiwa_dnn.Reference, scheme: iiwa_dnn.Scheme = SO3, **options: Any) -> Record:
+    """A run of the paper's arm from its start, without a check."""
+    return simulate(paper_robot(), scheme, path, PAPER_Q0, check=UNCHECKED, **options)
+
+
+def euler(network: Network, qp: QP, state: ArrayLike, step: float, count: int) -> Iterator[Array]:
+    """The states after so many steps of Euler's method."""
+    state = np.array(state, dtype=float)
+    rates = network.flow(qp).rates
+    for _ in range(count):
+        state = state + step * rates(state)
+        yield state
 
 
 def strong_qp(rng: np.random.Generator, active: int) -> QP:
@@ -137,15 +147,9 @@ def test_with_the_primal_projection_there_is_a_lyapunov_function(
 def test_settling_takes_as_long_as_the_multiplier_is_far_away(far: float) -> None:
     """P = A = 1, |x| <= 1: no exponential rate holds from everywhere, it would be log D."""
     qp = QP([[1.0]], [0.0], A=[[1.0]], b=[0.0], lb=[-1.0], ub=[1.0])
-    network = ProjectionNetwork()
-    state = np.array([0.0, -far, 0.0, 0.0])
-    rates = network.flow(qp).rates
-    step, settled = 0.01, 0.0
-    for k in range(round((far + 40.0) / step)):
-        state = state + step * rates(state)
-        if np.linalg.norm(state) > 1e-6:
-            settled = k * step
-    assert settled == pytest.approx(far + 28.0, abs=1.0)
+    states = euler(ProjectionNetwork(), qp, [0.0, -far, 0.0, 0.0], 0.01, round(100 * (far + 40)))
+    away = [np.linalg.norm(state) > 1e-6 for state in states]
+    assert 0.01 * np.flatnonzero(away)[-1] == pytest.approx(far + 28.0, abs=1.0)
 
 
 @pytest.mark.parametrize("gain", [10.2, 1000.0])
@@ -178,19 +182,12 @@ def test_without_cost_the_flow_circles() -> None:
 @pytest.mark.parametrize("weight", [0.2, 0.9])
 def test_the_lag_of_a_continuous_run_follows_from_a_settled_one(weight: float) -> None:
     scheme, duration = DoubleIndicator(weight, orientation="so3", home=PAPER_Q0), 0.6
-    lagging = simulate(
-        paper_robot(), scheme, heart(), PAPER_Q0,
-        mode="continuous", duration=duration, check=UNCHECKED,
-    )  # fmt: skip
-    settled = simulate(
-        paper_robot(), scheme, heart(), PAPER_Q0,
-        dt=5e-3, duration=duration, motion="midpoint", check=UNCHECKED,
-    )  # fmt: skip
-    solver = DNNSolver()
-    y = np.array([
-        solver.solve(scheme.build_qp(Configuration(paper_robot(), q), heart().at(t))).y[:3]
-        for q, t in zip(settled.q, settled.t, strict=True)
-    ])  # fmt: skip
+    lagging = run(heart(), scheme, mode="continuous", duration=duration)
+    settled = run(heart(), scheme, dt=5e-3, duration=duration, motion="midpoint")
+    y = []
+    for q, t in zip(settled.q, settled.t, strict=True):
+        qp = scheme.build_qp(Configuration(paper_robot(), q), heart().at(t))
+        y.append(DNNSolver().solve(qp).y[:3])
     expected = np.zeros((len(y), 3))
     for k, rate in enumerate(np.gradient(y, settled.t, axis=0)[1:]):
         still = RHO * rate / DELTA
@@ -203,21 +200,18 @@ def test_the_lag_of_a_continuous_run_follows_from_a_settled_one(weight: float) -
 @pytest.mark.parametrize("step", [0.1, 50.0])
 def test_a_backward_euler_step_minimises_a_strongly_convex_function(step: float) -> None:
     rng = np.random.default_rng(7)
-    network = ProjectionNetwork(primal_projection=False)
     for _ in range(5):
         qp, _ = known_qp(rng, 4, 2, 2)
         qp = QP(np.zeros((4, 4)), qp.q, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)  # even so
-        state = rng.standard_normal(network.state_size(qp))
+        state = rng.standard_normal(UNPROJECTED.state_size(qp))
         x, y, mu = state[:4], state[4:6], state[6:]
         omega, chi = bounds_as_rows(qp)
 
         def function(new: Array, qp: QP = qp, x: Array = x, y: Array = y, mu: Array = mu,
                      omega: Array = omega, chi: Array = chi) -> float:  # fmt: skip
             w = omega @ new - chi
-            corner = -mu / (1.0 + step)  # where the two slopes of phi meet
-            slope = mu / (1.0 + step)
-            beyond = np.maximum(w - corner, 0.0)
-            phi = slope * w + 0.5 * step * beyond**2
+            slope = mu / (1.0 + step)  # up to -slope, where the other one of phi begins
+            phi = slope * w + 0.5 * step * np.maximum(w + slope, 0.0) ** 2
             distance = np.sum((new - x) ** 2) + np.sum((y + step * (qp.A @ new - qp.b)) ** 2)
             return float(distance / (2.0 * step) + qp.q @ new + phi.sum())
 
@@ -226,7 +220,7 @@ def test_a_backward_euler_step_minimises_a_strongly_convex_function(step: float)
             sag = 0.5 * (function(a) + function(b)) - function(0.5 * (a + b))
             assert sag >= np.sum((a - b) ** 2) / (8.0 * step) - 1e-9
         new = state.copy()
-        ImplicitEuler(step=step).advance(network, qp, new, step)
+        iiwa_dnn.ImplicitEuler(step=step).advance(UNPROJECTED, qp, new, step)
         residual = new - state - step * network_rates(qp, new, False)
         assert np.abs(residual).max() < 1e-7 * max(1.0, step)
         best = minimize(function, x, method="BFGS", options={"gtol": 1e-9})
@@ -238,59 +232,37 @@ def test_eulers_error_is_the_joint_acceleration_half_a_step_late_and_fed_back() 
     turns = Rotation.from_rotvec([[0, 0, 0], [-0.25, -0.16, 0.18], [0.05, -0.24, -0.04]])
     poses = (turns * Rotation.from_matrix(paper_start().rotation)).as_quat()[:, [3, 0, 1, 2]]
     points = paper_start().position + [[0, 0, 0], [0.03, 0, 0.02], [0, 0.02, 0]]
-    path = Waypoints([0.0, 1.2, 2.4], points, "clamped", poses).anchored(paper_start())
-    dt, duration, largest = 1e-3, 2.4, {}
-    for tracking in ("paper", "next"):
-        scheme = DoubleIndicator(orientation="so3", home=PAPER_Q0, tracking=tracking)
-        run = simulate(
-            paper_robot(), scheme, path, PAPER_Q0, dt=dt, duration=duration, check=UNCHECKED
-        )
-        largest[tracking] = orientation_error(run).max()
-        if tracking == "paper":
-            record = run
-    error, added = np.zeros(3), []
+    path = iiwa_dnn.Waypoints([0.0, 1.2, 2.4], points, "clamped", poses).anchored(paper_start())
+    dt = 1e-3
+    record = run(path, dt=dt, duration=2.4)
+    largest = orientation_error(record).max()
+    errors = [np.zeros(3)]
+    most = 0.0
     for k in range(1, len(record.dq)):
         jacobian = Configuration(paper_robot(), record.q[k]).jacobian[3:]
-        added.append(0.5 * dt * jacobian @ (record.dq[k] - record.dq[k - 1]))
-        error = (1.0 - DELTA * dt) * error + added[-1]
-        largest["expected"] = max(largest.get("expected", 0.0), float(np.linalg.norm(error)))
-    assert abs(largest["paper"] / largest["expected"] - 1.0) < 0.02
-    assert largest["paper"] < np.linalg.norm(added, axis=1).max() / (DELTA * dt)
-    assert largest["next"] < 1e-3 * largest["paper"]
+        added = 0.5 * dt * jacobian @ (record.dq[k] - record.dq[k - 1])
+        errors.append((1.0 - DELTA * dt) * errors[-1] + added)
+        most = max(most, float(np.linalg.norm(added)))
+    assert largest == pytest.approx(np.linalg.norm(errors, axis=1).max(), rel=0.02)
+    assert largest < most / (DELTA * dt)
+    ahead = DoubleIndicator(orientation="so3", home=PAPER_Q0, tracking="next")
+    assert orientation_error(run(path, ahead, dt=dt, duration=2.4)).max() < 1e-3 * largest
 
 
 def test_the_mean_square_that_noise_leaves() -> None:
     sigma, dt = 0.01, 4e-3
-    target = Circle(radius=1e-9, period=10.0).anchored(paper_start())  # as good as standing still
+    target = iiwa_dnn.Circle(radius=1e-9, period=10.0).anchored(paper_start())  # at rest
     errors = [
-        position_error(
-            simulate(
-                paper_robot(), SO3, target, PAPER_Q0,
-                dt=dt, duration=8.0, noise=sigma, seed=seed, check=UNCHECKED,
-            )
-        )[125:]
+        position_error(run(target, dt=dt, duration=8.0, noise=sigma, seed=seed))[125:]
         for seed in range(4)
-    ]  # fmt: skip
+    ]
     square = np.sum(paper_start().jacobian[:3] ** 2)
     expected = square / 3.0 * sigma**2 * dt / (2.0 * DELTA)
     # 30 s at 10 rad/s in three axes: some 450 independent samples of a square, 7 %.
     assert np.mean(np.concatenate(errors) ** 2) == pytest.approx(expected, rel=0.2)
 
 
-def test_the_filter_delays_and_that_is_nine_of_eulers_errors() -> None:
-    def largest(window: int) -> float:
-        record = simulate(
-            paper_robot(), SO3, heart(), PAPER_Q0,
-            dt=1e-3, duration=5.0, filter_window=window, check=UNCHECKED,
-        )  # fmt: skip
-        return float(np.linalg.norm(position_error(record), axis=1).max())
-
-    plain, filtered = largest(1), largest(10)
-    # Ten samples are late by four and a half steps, Euler's method by half a step of its own.
-    assert filtered / plain == pytest.approx((4.5 + 0.5) / 0.5, rel=0.05)
-
-
-class Straight(Reference):
+class Straight(iiwa_dnn.Reference):
     """A straight line at constant velocity."""
 
     name = "straight"
@@ -301,14 +273,16 @@ class Straight(Reference):
         target[12:15] = [0.02, 0.03, -0.01]
 
 
-def test_the_lag_is_the_delay_times_the_joints_acceleration_over_the_gain() -> None:
-    """Also on a straight line at constant velocity, whose target has no acceleration."""
+@pytest.mark.parametrize("window", [1, 10])
+def test_the_lag_is_the_delay_times_the_joints_acceleration_over_the_gain(window: int) -> None:
+    """Also on a straight line at constant velocity, whose target has no acceleration.
+
+    Ten samples are late by four and a half steps, Euler's method by half a step of its own.
+    """
     dt = 1e-3
-    path = Straight().anchored(paper_start())
-    options = {"dt": dt, "filter_window": 10, "check": UNCHECKED}
-    record = simulate(paper_robot(), SO3, path, PAPER_Q0, **options)
+    record = run(Straight().anchored(paper_start()), dt=dt, filter_window=window)
     acceleration = np.gradient(record.dq, dt, axis=0)
-    delay = 5.0 * dt  # four and a half steps of the filter, and half a step of Euler's method
+    delay = 0.5 * window * dt
     for k in range(1000, record.steps, 250):
         moved = Configuration(paper_robot(), record.q[k]).jacobian[:3] @ acceleration[k]
         error = np.linalg.norm(position_error(record)[k])
@@ -320,11 +294,7 @@ def test_across_active_sets_a_step_within_the_linear_bound_may_grow(
     step: float, settles: bool
 ) -> None:
     qp = QP([[1.0]], [-10.0], lb=[-1.0], ub=[1.0])
-    network = ProjectionNetwork(primal_projection=False)
-    state = np.zeros(network.state_size(qp))
-    rates = network.flow(qp).rates
-    for _ in range(1000):
-        state = state + step * rates(state)
+    *_, state = euler(UNPROJECTED, qp, np.zeros(UNPROJECTED.state_size(qp)), step, 1000)
     assert bool(abs(state[0] - 1.0) < 1e-9) is settles
     assert settles or np.abs(state).max() > 1e20
 
@@ -333,25 +303,24 @@ def test_a_state_that_is_no_number_ends_what_is_advanced() -> None:
     """Its point is clipped to the bounds, and once went on as an answer of the continuous mode."""
     qp = QP([[1.0]], [-10.0], lb=[-1.0], ub=[1.0])
     network = ProjectionNetwork(rho=1e-3, primal_projection=False)
-    follower = ExplicitEuler(substeps=1)
-    solver = DNNSolver(network, follower=follower)
-    statuses = [solver.advance(qp, 1e-2).status for _ in range(400)]
-    assert statuses[0] is Status.ADVANCED
-    assert Status.NOT_FINITE in statuses
+    solvers = [DNNSolver(network, follower=ExplicitEuler(substeps=1)) for _ in range(2)]
     # The same within a control step: a posture far away, which the joints cannot reach at once.
-    free = Scheme([KineticEnergy(), CyclicMotion(home=(0.0,) * 7)], [], [JointLimits()])
-    solver = DNNSolver(network, follower=follower)
-    controller = Controller(paper_robot(), free, dt=1e-2, mode="continuous", solver=solver)
-    start = paper_start()
-    target = Target(start.position, start.rotation)
-    statuses = [controller.step(PAPER_Q0, 1e-2 * k, target).solution.status for k in range(600)]
-    assert statuses[0] is Status.ADVANCED
-    assert Status.NOT_FINITE in statuses
+    costs = [iiwa_dnn.KineticEnergy(), iiwa_dnn.CyclicMotion(home=(0.0,) * 7)]
+    free = iiwa_dnn.Scheme(costs, [], [iiwa_dnn.JointLimits()])
+    options = {"dt": 1e-2, "mode": "continuous", "solver": solvers[1]}
+    controller = iiwa_dnn.Controller(paper_robot(), free, **options)
+    target = iiwa_dnn.Target(paper_start().position, paper_start().rotation)
+    for advance in (
+        lambda k: solvers[0].advance(qp, 1e-2),
+        lambda k: controller.step(PAPER_Q0, 1e-2 * k, target).solution,
+    ):
+        statuses = [advance(k).status for k in range(600)]
+        assert statuses[0] is Status.ADVANCED
+        assert Status.NOT_FINITE in statuses
 
 
 def test_the_prediction_is_as_far_from_the_papers_first_row_as_is_said() -> None:
-    page = (Path(__file__).parents[1] / "docs" / "theory.md").read_text(encoding="utf-8")
-    predicted = [1e-5 * float(each) for each in re.findall(r"xi = 0\.\d: ([\d.]+)e-5 m", page)]
+    predicted = [1e-5 * float(each) for each in re.findall(r"xi = 0\.\d: ([\d.]+)e-5 m", PAGE)]
     shares = np.abs(1.0 - np.array(predicted) / MAX_ERROR)
     assert np.sort((100.0 * shares).round()).tolist() == [1.0, 1.0, 15.0, 25.0, 27.0, 56.0, 58.0]
 
@@ -362,14 +331,10 @@ def test_a_multiplier_that_is_not_active_limits_the_step_too() -> None:
     network = ProjectionNetwork()
     start = np.array([0.0, 0.01, 0.0])
     assert network.stable_step(qp, start) == 2.0
-    rates = network.flow(qp).rates
     for step, grows in ((1.9, False), (2.1, True)):
-        state = start.copy()
-        for _ in range(100):
-            state = state + step * rates(state)
+        *_, state = euler(network, qp, start, step, 100)
         assert bool(np.abs(state).max() > start.max()) is grows
-    page = (Path(__file__).parents[1] / "docs" / "theory.md").read_text(encoding="utf-8")
-    assert r"h < \min(2/\max(\pi_{\max}, 1), \pi_{\min}/s_{\max})" in page
+    assert r"h < \min(2/\max(\pi_{\max}, 1), \pi_{\min}/s_{\max})" in PAGE
 
 
 def test_a_clipped_joint_takes_its_column_out_and_an_active_multiplier_adds_a_row() -> None:
