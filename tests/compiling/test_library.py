@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import ctypes
-import os
-import subprocess
-import sys
-import threading
 import traceback
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numba
@@ -16,7 +13,8 @@ import pytest
 
 import iiwa_dnn
 from helpers_kinematics import PAPER_Q0
-from helpers_simulation import paper_robot
+from helpers_physics import run_python
+from helpers_simulation import heart, paper_robot
 from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.references.base import enter_path
 from iiwa_dnn.references.shapes import heart_path
@@ -30,9 +28,8 @@ def _limit(step: Any, constants: Any, G: Any, h: Any, lb: Any, ub: Any) -> None:
     ub[1] = min(ub[1], constants[1] * step.jacobian[1, 5])
 
 
-_P = numba.types.CPointer(numba.types.float64)
-_I = numba.types.int64
-_D = numba.types.float64
+_D, _I = numba.types.float64, numba.types.int64
+_P = numba.types.CPointer(_D)
 
 
 @numba.cfunc(
@@ -61,10 +58,8 @@ class Own(iiwa_dnn.Limit):
 
 
 def _commands(limit: iiwa_dnn.Limit, steps: int = 20) -> np.ndarray:
-    robot = paper_robot()
     scheme = iiwa_dnn.DoubleIndicator(extra_limits=[limit])
-    conf = iiwa_dnn.Configuration(robot, PAPER_Q0)
-    controller = iiwa_dnn.Controller(robot, scheme, iiwa_dnn.Heart().anchored(conf), dt=1e-3)
+    controller = iiwa_dnn.Controller(paper_robot(), scheme, heart(), dt=1e-3)
     q = np.array(PAPER_Q0)
     found = []
     for k in range(steps):
@@ -113,33 +108,30 @@ def test_what_has_other_types_is_refused(wrong: object) -> None:
 
 
 def test_a_path_is_entered_from_python_and_by_two_threads() -> None:
-    heart = iiwa_dnn.Heart()
-    expected = heart.at(3.0).data
+    path = iiwa_dnn.Heart()
+    expected = path.at(3.0).data
     found: list[np.ndarray] = []
 
     def enter() -> None:
         for _ in range(1000):
-            target = np.array(heart.base)
-            enter_path(enter_path.address(heart.path), 3.0, heart.constants, target)
+            target = np.array(path.base)
+            enter_path(enter_path.address(path.path), 3.0, path.constants, target)
             found.append(target)
 
-    threads = [threading.Thread(target=enter) for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    with ThreadPoolExecutor() as pool:
+        for _ in range(2):
+            pool.submit(enter)
     assert len(found) == 2000
     assert all(target.tobytes() == expected.tobytes() for target in found)
 
 
 RUNS = """
-import sys
 import numpy as np
 import iiwa_dnn
 from iiwa_dnn.compiling.library import INTERPRETED
 from iiwa_dnn.studies import paper
 
-assert INTERPRETED == (sys.argv[1] == "1")
+assert INTERPRETED == FLAG
 robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
 slow = robot.with_limits(velocity=0.1 * robot.dq_max)
 ball = iiwa_dnn.CollisionAvoidance([iiwa_dnn.Sphere((0.5, 0.2, 0.6), 0.05)])
@@ -158,7 +150,7 @@ for arm, limits, options in runs:
     scheme = iiwa_dnn.DoubleIndicator(extra_limits=limits)
     controller = iiwa_dnn.Controller(arm, scheme, heart, dt=1e-2, **options)
     q = np.array(paper.START)
-    for k in range(int(sys.argv[2])):
+    for k in range(500):
         command = controller.step(q, 1e-2 * k)
         q = q + 1e-2 * command.dq
         print(command.action.name, *[x.hex() for x in command.dq.tolist()])
@@ -169,12 +161,7 @@ for arm, limits, options in runs:
 def test_whole_steps_have_the_same_bits_interpreted() -> None:
     results = []
     for flag in ("0", "1"):
-        done = subprocess.run(
-            [sys.executable, "-W", "ignore", "-c", RUNS, flag, "500"],
-            env={**os.environ, "IIWA_DNN_INTERPRETED": flag},
-            capture_output=True,
-            text=True,
-        )
+        done = run_python(RUNS.replace("FLAG", flag), IIWA_DNN_INTERPRETED=flag)
         assert done.returncode == 0, done.stderr
         results.append(done.stdout.splitlines())
     assert results[0] == results[1]

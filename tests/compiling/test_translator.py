@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import re
+from copy import deepcopy
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -62,16 +63,13 @@ def arithmetic(a: float, b: float, i: int, j: int) -> tuple[float, float, float,
 
 @compiled
 def whole(i: int, j: int) -> tuple[int, int, int, int]:
-    """Compute with whole numbers."""
     return i // j, i % j, min(i, j), max(i, j)
 
 
 @compiled
 def functions(a: float, b: float) -> tuple[float, float, float, float, float, float, float]:
-    """Compute elementary functions."""
-    root = np.sqrt(abs(a)) + math.sqrt(abs(b))
     return (
-        root,
+        np.sqrt(abs(a)) + math.sqrt(abs(b)),
         math.sin(a) * math.cos(b) + math.log(1.0 + a * a),
         math.atan2(a, b),
         math.copysign(a, b),
@@ -83,7 +81,6 @@ def functions(a: float, b: float) -> tuple[float, float, float, float, float, fl
 
 @compiled
 def decisions(a: float, b: float, i: int) -> int:
-    """Take branches."""
     found = 0
     if -1.0 < a <= 1.0 and not b > 0.0 or i == 2:
         found += 1
@@ -97,7 +94,6 @@ def decisions(a: float, b: float, i: int) -> int:
 
 @compiled
 def loops(values: Vector, n: int) -> float:
-    """Go through ranges."""
     total = 0.0
     for i in range(n):
         if values[i] < -1.0:
@@ -122,7 +118,6 @@ def loops(values: Vector, n: int) -> float:
 
 @compiled
 def arrays(values: Vector, rows: Matrix, counts: IntVector) -> None:
-    """Write into parts of arrays."""
     own = np.empty((2, values.size))
     other = np.zeros(values.size)
     kept = values.copy()
@@ -143,13 +138,11 @@ def arrays(values: Vector, rows: Matrix, counts: IntVector) -> None:
 
 @compiled
 def views_of(data: Vector, n: int) -> Views:
-    """Make views."""
     return Views(data[:n], data[n:].reshape((data.size - n) // n, n), 2.0)
 
 
 @compiled
 def change(views: Views, factor: float) -> Pair:
-    """Write through views, and return two numbers."""
     for i in range(views.data.size):
         views.data[i] *= factor
         views.rows[0, i] -= views.rate
@@ -158,19 +151,16 @@ def change(views: Views, factor: float) -> Pair:
 
 @compiled
 def shift(views: Views) -> None:
-    """Write through a member."""
     fill(views.data)
 
 
 @compiled
 def fill(values: Vector) -> None:
-    """Write."""
     values[0] += 1.0
 
 
 @released
 def views(data: Vector, n: int) -> float:
-    """Hand views on."""
     own = views_of(data, n)
     a, _ = change(own, 1.5)
     _, b = change(views_of(data, n), 0.5)
@@ -183,16 +173,9 @@ def views(data: Vector, n: int) -> float:
 
 @compiled
 def constants(a: float) -> float:
-    """Read constants."""
     sum = SECOND + FIRST + LOW
     other = LARGE if a < np.inf else -np.inf
     return a * TABLE[1] + LIMIT + sum + other
-
-
-@compiled
-def through(values: Vector) -> None:
-    """Write by another kernel."""
-    fill(values)
 
 
 @entry
@@ -202,7 +185,6 @@ def enter(address: int, views: Views, factor: float) -> Pair:
 
 @compiled
 def scratch(n: int) -> float:
-    """Take more memory than an arena has."""
     large = np.zeros((n, n))
     total = 0.0
     for i in range(n):
@@ -217,9 +199,7 @@ def scratch(n: int) -> float:
 
 
 def _module(path: Path, name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec
-    assert spec.loader
+    spec: Any = importlib.util.spec_from_file_location(name, path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -237,12 +217,7 @@ def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Any]:
 RNG = np.random.default_rng(0)
 NUMBERS = [0.0, -0.0, 0.3, -1.7, 2.5, 1e-300, -7.25, 1e17]
 CALLS: list[tuple[Any, ...]] = [
-    *(
-        ("arithmetic", a, b, i, j)
-        for a in NUMBERS
-        for b in (0.7, -3.1)
-        for i, j in ((7, -3), (-7, 2))
-    ),
+    *(("arithmetic", a, b, *ij) for a in NUMBERS for b in (0.7, -3.1) for ij in ((7, -3), (-7, 2))),
     *(("functions", a, b) for a in NUMBERS[:-1] for b in (0.7, -3.1, -0.0)),
     *(("functions", *RNG.standard_normal(2).tolist()) for _ in range(500)),
     *(("decisions", a, b, i) for a in NUMBERS for b in (0.5, -0.5) for i in (0, 2, 3, 9)),
@@ -259,8 +234,7 @@ CALLS: list[tuple[Any, ...]] = [
 def test_the_library_has_the_bits_of_python(both: tuple[Any, Any], name: str) -> None:
     python, library = both
     for _, *arguments in [call for call in CALLS if call[0] == name]:
-        ours = [np.copy(x) if isinstance(x, np.ndarray) else x for x in arguments]
-        theirs = [np.copy(x) if isinstance(x, np.ndarray) else x for x in arguments]
+        ours, theirs = deepcopy(arguments), deepcopy(arguments)
         expected = getattr(python, name)(*ours)
         found = getattr(library, f"own_{name}")(*theirs)
         assert np.array(found).tobytes() == np.array(expected).tobytes(), arguments
@@ -275,19 +249,18 @@ def test_named_tuples_come_from_python_too(both: tuple[Any, Any]) -> None:
     np.testing.assert_array_equal(one.data, other.data)
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        (np.zeros(3),),
-        (np.zeros(3), 2, 1),
-        (np.zeros((3, 1)), 3),
-        (np.zeros(3, dtype=np.float32), 3),
-        (np.zeros(6)[::2], 3),
-        ([0.0, 1.0], 2),
-        (np.zeros(3), 2.5),
-        (np.zeros(3), "2"),
-    ],
-)
+WRONG: list[tuple[Any, ...]] = [
+    (np.zeros(3),),
+    (np.zeros(3), 2, 1),
+    (np.zeros((3, 1)), 3),
+    (np.zeros(3, dtype=np.float32), 3),
+    (np.zeros(6)[::2], 3),
+    ([0.0, 1.0], 2),
+    (np.zeros(3), 2.5),
+]
+
+
+@pytest.mark.parametrize("arguments", WRONG)
 def test_wrong_arguments_are_errors(both: tuple[Any, Any], arguments: tuple[Any, ...]) -> None:
     with pytest.raises(TypeError):
         both[1].own_loops(*arguments)
@@ -297,14 +270,15 @@ def test_a_closed_array_is_read_and_never_written(both: tuple[Any, Any]) -> None
     closed = np.ones(4)
     closed.flags.writeable = False
     assert both[1].own_loops(closed, 4) == both[0].loops(closed, 4)
-    with pytest.raises(TypeError, match="is read-only"):
-        both[1].own_arrays(closed, np.ones((2, 4)), np.arange(3))
-    with pytest.raises(TypeError, match="is read-only"):
-        both[1].own_through(closed)
-    for name in ("own_shift", "own_change"):
-        views = both[0].Views(closed, np.ones((1, 2)), 0.5)
+    views = both[0].Views(closed, np.ones((1, 2)), 0.5)
+    for name, *arguments in (
+        ("arrays", closed, np.ones((2, 4)), np.arange(3)),
+        ("fill", closed),
+        ("shift", views),
+        ("change", views, 1.0),
+    ):
         with pytest.raises(TypeError, match="is read-only"):
-            getattr(both[1], name)(views, *([1.0] if name == "own_change" else []))
+            getattr(both[1], f"own_{name}")(*arguments)
     assert closed.tolist() == [1.0] * 4
 
 
@@ -312,10 +286,7 @@ REFUSED = [
     ("def f(a) -> None:\n    pass", "`a` is no type"),
     ("def f(a: tuple[int, float]) -> None:\n    pass", "`tuple[int, float]` is no type"),
     ("def f(a: float, *, b: float) -> float:\n    return b", "name 'b' is not defined"),
-    (
-        "def f(a: int) -> int:\n    while a:\n        return a**2",
-        "`return a ** 2` has no translation",
-    ),
+    ("def f(a: int) -> int:\n    return a**2", "`return a ** 2` has no translation"),
     ("def f() -> None:\n    g()\n@compiled\ndef g(a: float) -> None:\n    pass", "argument 2 is"),
     ("def f(a: float) -> float:\n    return np.sin(a)", "has no translation: 'np.sin'"),
     ("def f(a: Matrix) -> None:\n    a = a[:, 0]", "has gaps between its rows"),
@@ -326,7 +297,6 @@ REFUSED = [
     ("def f(n: int) -> None:\n    for i in range(n, 0, -1):\n        pass", "has a step"),
     ("def f(a: float) -> None:\n    for x in (a, a):\n        pass", "has no translation"),
     ("def f(a: float) -> None:\n    with a:\n        pass", "`with a:` has no translation"),
-    ("def f(a: float) -> float:\n    return [a][0]", "has no translation"),
     ("def f(a: Vector) -> float:\n    return a[-1]", "counts from the end"),
 ]
 BY_THE_COMPILER = [
