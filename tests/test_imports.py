@@ -62,20 +62,14 @@ def test_imports_point_forward() -> None:
     ("own", "source", "fault"),
     [
         ("qp/program", "from iiwa_dnn.networks import DNNSolver", ["networks"]),
-        ("qp/program", "from iiwa_dnn import networks", ["networks"]),
         ("qp/program", "import iiwa_dnn.networks as s", ["networks"]),
         ("qp/program", "def f():\n    from .. import networks", ["networks"]),
-        ("qp/program", "if TYPE_CHECKING:\n    from ..networks import A", ["networks"]),
-        ("qp/program", "from iiwa_dnn import load_robot", ["__init__"]),
         ("qp/program", "import iiwa_dnn", ["__init__"]),
-        ("qp/__init__", "from ..networks import A", ["networks"]),
-        ("results/plots", "from iiwa_dnn.robot import Robot", ["robot"]),
         ("results/report", "from iiwa_dnn import qp, simulation", ["qp", "simulation"]),
         ("__init__", "from iiwa_dnn.studies import atlas", ["studies"]),
         ("networks/solver", "from iiwa_dnn.qp import QP\nfrom .. import checks\nimport numpy", []),
         ("networks/__init__", "from .projection import Projection", []),
         ("results/pictures", "from .record import Record\nfrom iiwa_dnn.robot import Robot", []),
-        ("studies/atlas", "from iiwa_dnn import QP, simulate\nfrom .paper import START", []),
     ],
 )
 def test_a_wrong_import_is_found_and_a_right_one_passes(own: str, source: str, fault: str) -> None:

@@ -281,6 +281,7 @@ def test_the_lag_is_the_delay_times_the_joints_acceleration_over_the_gain(window
     """
     dt = 1e-3
     record = run(Straight().anchored(paper_start()), dt=dt, filter_window=window)
+    assert record.settings["reference"] == {"name": "straight"}  # which is no dataclass
     acceleration = np.gradient(record.dq, dt, axis=0)
     delay = 0.5 * window * dt
     for k in range(1000, record.steps, 250):

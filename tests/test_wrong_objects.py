@@ -8,7 +8,7 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
-from helpers_simulation import heart, paper_robot, paper_start, run
+from helpers_simulation import heart, paper_robot, paper_start
 
 EYE = np.eye(3)
 SCHEME = d.DoubleIndicator()
@@ -36,16 +36,6 @@ class Distant(d.Cost):
 class Overwriting(d.Cost):
     def quadratic(self, step: d.Step) -> Any:
         step.q[:] = 0.0
-
-
-class Plain(d.Reference):
-    """A path that is no dataclass."""
-
-    name = "plain"
-    period = 1.0
-
-    def move(self, t: float, target: np.ndarray) -> None:
-        """Leave the target as it is."""
 
 
 CALLS: list[tuple[Callable[[], Any], str]] = [
@@ -97,9 +87,3 @@ def test_an_attribute_of_a_controller_is_checked_as_its_argument_is(name: str, v
 def test_a_part_cannot_move_the_robot_that_it_is_asked_about() -> None:
     with pytest.raises(ValueError, match="read-only"):
         drive(d.Scheme([Overwriting()], [d.PositionTask()]))
-
-
-def test_a_path_needs_not_be_a_dataclass() -> None:
-    record = run(reference=Plain().anchored(paper_start()))
-    assert record.settings["reference"] == {"name": "plain"}
-    assert d.failures(record) == []

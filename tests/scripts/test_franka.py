@@ -14,13 +14,13 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
+from functools import partial
 
 import pytest
 
 import iiwa_dnn
+from helpers_physics import ROOT, run_python
 
-ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "build" / "franka-sim"
 PYTHON = FOLDER / "bin" / "python"
 SERVER = (
@@ -54,16 +54,11 @@ def make_environment() -> None:
     """Install the server, unless it is there already."""
     if (FOLDER / "fr3.xml").exists():
         return
-    subprocess.run([sys.executable, "-m", "venv", "--without-pip", FOLDER], check=True)
+    run = partial(subprocess.run, check=True)
+    run([sys.executable, "-m", "venv", "--without-pip", FOLDER])
     pip = [sys.executable, "-m", "pip", "--python", PYTHON, "--disable-pip-version-check"]
-    subprocess.run([*pip, "install", "-q", "--no-deps", *PACKAGES], check=True)
-    urdf = iiwa_dnn.load_robot("fr3").path
-    subprocess.run([PYTHON, "-c", MODEL, str(urdf), FOLDER / "fr3.xml"], check=True)
-
-
-def die_with_parent() -> None:
-    """Let the server be killed where its parent was."""
-    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+    run([*pip, "install", "-q", "--no-deps", *PACKAGES])
+    run([PYTHON, "-c", MODEL, str(iiwa_dnn.load_robot("fr3").path), FOLDER / "fr3.xml"])
 
 
 @pytest.fixture(scope="module")
@@ -77,10 +72,10 @@ def server() -> Iterator[subprocess.Popen[bytes]]:
             make_environment()
         except (OSError, subprocess.CalledProcessError) as error:
             pytest.skip(f"franka-sim cannot be installed here: {error}")
-        environment = {**os.environ, "FR3_MJCF": str(FOLDER / "fr3.xml")}
-        process = subprocess.Popen(
-            SERVER, env=environment, stdout=log, stderr=log, preexec_fn=die_with_parent
-        )
+        options = {"env": {**os.environ, "FR3_MJCF": str(FOLDER / "fr3.xml")}, "stdout": log}
+        # Killed where its parent was: PR_SET_PDEATHSIG.
+        die = partial(ctypes.CDLL(None).prctl, 1, signal.SIGKILL)
+        process = subprocess.Popen(SERVER, stderr=log, preexec_fn=die, **options)
         try:
             with socket.socket() as link:
                 while link.connect_ex(("127.0.0.1", 1337)):
@@ -111,9 +106,7 @@ def test_the_motion_is_accepted_with_room_for_lost_commands(
         f"from scripts import franka\n{before}\n"
         f"franka.main('127.0.0.1', {duration}, {radius}, {period})"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120
-    )
+    done = run_python(code)
     assert server.poll() is None
     if fault:
         assert fault in done.stderr

@@ -38,12 +38,6 @@ def test_posture_rows_are_the_rates_of_the_vertical_seen_from_the_tool() -> None
     np.testing.assert_array_equal(study.Posture(2).equations(step_at(NEAR, b.repeat(2)))[0], A[:2])
 
 
-def test_two_rows_nearly_lose_a_direction_where_the_tool_is_level() -> None:
-    step = step_at(np.array(study.START), np.zeros(6))
-    least = [np.linalg.svd(study.Posture(k).equations(step)[0])[1][1] for k in (2, 3)]
-    assert least[0] < 0.1 * least[1]
-
-
 def test_nearest_points_are_the_nearest_of_many() -> None:
     points, distance = study.nearest_points(states(NEAR))
     joints = np.array([f.position for f in states(NEAR)])
@@ -77,20 +71,17 @@ def test_jacobian_of_the_nearest_point(link: int) -> None:
 
 
 def test_rows_of_avoidance_remember_the_approach_at_the_outer_distance() -> None:
-    limit, dq, values = study.PointAvoidance(), np.array([-0.1, 0, 0, 0, 0, 0]), []
+    limit, dq, approach = study.PointAvoidance(), np.array([-0.1, 0, 0, 0, 0, 0]), []
     for turned in np.linspace(0.0, 0.1, 400):  # joint 1 alone turns the arm towards the point
         q = study.START - turned * np.eye(6)[0]
         G, h = limit.inequalities(step_at(q, dq))
-        assert (h >= 0.0).all()
-        np.testing.assert_array_equal(G[6:], 0.0)
-        values.append((study.nearest_points(states(q))[1].min(), h[:3].max(), G[3:].any()))
-    distance, bound, second = np.array(values).T
-    assert distance[0] > study.OUTER
-    assert not bound[distance > study.OUTER * 1.001].any()
-    inside = (distance < study.OUTER * 0.998) & (second == 0)
-    assert inside.any()
-    scale = (distance[inside] - study.INNER) / (study.OUTER - study.INNER)
-    approach = bound[inside] / scale.clip(1e-9)
+        distance = study.nearest_points(states(q))[1].min()
+        if distance > study.OUTER * 1.001:
+            assert not h.any()
+        elif distance < study.OUTER * 0.998 and not G[3:].any():  # one link is near
+            assert (h >= 0.0).all()
+            scale = (distance - study.INNER) / (study.OUTER - study.INNER)
+            approach.append(h.max() / max(scale, 1e-9))
     np.testing.assert_allclose(approach, approach[0], rtol=1e-9)
     assert approach[0] > 0.0
 
