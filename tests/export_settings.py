@@ -107,7 +107,7 @@ def damped_rates(qp: QPViews, constants: Array, state: Array, rates: Array) -> N
             slope += qp.P[i, k] * state[k]
         for j in range(qp.b.size):
             slope += qp.A[j, i] * state[n + j]
-        aim = min(max(state[i] - constants[0] * slope, qp.lb[i]), qp.ub[i])
+        aim = min(max(state[i] - 0.5 * slope, qp.lb[i]), qp.ub[i])
         rates[i] = aim - state[i]
     for j in range(qp.b.size):
         missing = -qp.b[j]
@@ -120,14 +120,6 @@ class SaddleFlow(Network):
     """A network of one's own in compiled code, for programs without inequality rows."""
 
     compiled_rates = staticmethod(damped_rates)
-
-    def constants(self, sizes: tuple[int, int, int]) -> Array:
-        """Return the length of the step towards x's aim, (1,)."""
-        return np.array([0.5])
-
-    def state_size(self, qp: iiwa_dnn.QP) -> int:
-        """Count the states."""
-        return int(qp.q.size + qp.b.size)
 
 
 def own_network() -> Made:

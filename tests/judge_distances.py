@@ -15,7 +15,7 @@ from iiwa_dnn.robot.collision import coal_geometry, collision_model
 SLACK = 1e-6
 """Distance that coal's own tolerance may cost [m]."""
 
-AHEAD = (16, 2000)
+AHEAD = 200
 """Samples for which it is looked whether a distance has to be computed again."""
 
 
@@ -35,9 +35,8 @@ class Judge:
         self._obstacles = avoidance.obstacles
         self._promised = avoidance.distance
         model = collision_model(robot)
-        self._geometry = geometry = coal_geometry(
-            robot, model, model.pairs(robot) if avoidance.self_collision else ()
-        )
+        pairs = model.pairs(robot) if avoidance.self_collision else ()
+        self._geometry = geometry = coal_geometry(robot, model, pairs)
         self._reach = reach_of(robot, geometry)
         self._first = geometry.ngeoms
         self._rest = []
@@ -81,19 +80,16 @@ class Judge:
         i = 0
         while i < len(doubled):
             distance = self.distance(doubled[i], clock[i])
-            least = distance if not moving and distance < least else least
+            if not moving:
+                least = min(least, distance)
             if distance < allowed:
                 excused = moving and i > 0 and not ok[(i - 1) // 2]
-                if excused:
-                    excused = distance >= self.distance(doubled[i - 1], clock[i]) - SLACK
-                broken += not excused
-            for count in AHEAD:
-                ahead = slice(i + 1, i + 1 + count)
-                gone = np.abs(doubled[ahead] - doubled[i]) @ self._reach
-                gone += fastest * (clock[ahead] - clock[i])
-                near = np.flatnonzero(gone > max(distance - allowed, 0.0))
-                if near.size:
-                    break
+                still = excused and self.distance(doubled[i - 1], clock[i])
+                broken += not excused or distance < still - SLACK
+            ahead = slice(i + 1, i + 1 + AHEAD)
+            gone = np.abs(doubled[ahead] - doubled[i]) @ self._reach
+            gone += fastest * (clock[ahead] - clock[i])
+            near = np.flatnonzero(gone > max(distance - allowed, 0.0))
             i += 1 + (int(near[0]) if near.size else len(gone))
         return Verdict(least, broken)
 
@@ -116,21 +112,20 @@ def swinging(kind: type[Any], rate: float = 1.0, until: float = np.inf) -> type[
     """Return a shape that swings at a rate [1/s] up to a time [s], no faster than its velocity."""
 
     def shift(obstacle: Any, t: float) -> Vector:
-        shifted: Vector = np.sin(rate * min(t, until)) / rate * np.array(obstacle.velocity)
-        return shifted
+        return np.sin(rate * min(t, until)) / rate * np.array(obstacle.velocity)
 
     return type(kind.__name__, (kind,), {"shift": shift})
 
 
 def obstacles_for(moving: bool) -> list[Any]:
     """Return one obstacle of each kind, around an arm of 0.9 m at the origin."""
-    path = {"velocity": (0.0, 0.1, 0.0)} if moving else {}
+    velocity = (0.0, 0.1 * moving, 0.0)
     turn = pin.exp3(np.array([0.4, -0.3, 0.5])).tolist()
     return [
-        swinging(iiwa_dnn.Sphere)([0.45, 0.35, 0.5], 0.1, **path),
-        swinging(iiwa_dnn.Capsule)([-0.5, 0.2, 0.2], [-0.4, 0.4, 0.9], 0.05, **path),
+        swinging(iiwa_dnn.Sphere)([0.45, 0.35, 0.5], 0.1, velocity=velocity),
+        swinging(iiwa_dnn.Capsule)([-0.5, 0.2, 0.2], [-0.4, 0.4, 0.9], 0.05, velocity=velocity),
         iiwa_dnn.Box([0.5, -0.45, 0.3], [0.1, 0.1, 0.3]),
-        swinging(iiwa_dnn.Box)([-0.4, -0.5, 0.4], [0.1, 0.05, 0.15], turn, **path),
+        swinging(iiwa_dnn.Box)([-0.4, -0.5, 0.4], [0.1, 0.05, 0.15], turn, velocity=velocity),
         iiwa_dnn.HalfSpace([0.0, 0.0, 1.0], -0.15),
     ]
 
@@ -142,11 +137,10 @@ def _coal(obstacle: Any) -> tuple[coal.CollisionGeometry, pin.SE3]:
         a = np.array(obstacle.a)
         b = np.array(obstacle.b)
         turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), b - a).matrix()
-        length = float(np.linalg.norm(b - a))
-        return coal.Capsule(obstacle.radius, length), pin.SE3(turn, 0.5 * (a + b))
+        shape = coal.Capsule(obstacle.radius, float(np.linalg.norm(b - a)))
+        return shape, pin.SE3(turn, 0.5 * (a + b))
     if isinstance(obstacle, iiwa_dnn.Box):
         turn = np.eye(3) if obstacle.rotation is None else np.array(obstacle.rotation)
         size = 2.0 * np.array(obstacle.half_extents)
         return coal.Box(*size), pin.SE3(turn, np.array(obstacle.center))
-    normal = np.array(obstacle.normal)
-    return coal.Halfspace(normal, obstacle.offset), pin.SE3.Identity()
+    return coal.Halfspace(np.array(obstacle.normal), obstacle.offset), pin.SE3.Identity()

@@ -12,19 +12,12 @@ ROUNDING = 8 * np.finfo(float).eps
 
 
 class Breach(NamedTuple):
-    """A limit that is broken.
+    """A limit that is broken."""
 
-    Attributes:
-        quantity: ``position``, ``velocity``, ``acceleration`` or ``jerk``.
-        step: Number of the sample.
-        joint: Number of the joint, from 0.
-        excess: Amount beyond the limit, in its unit.
-    """
-
-    quantity: str
+    quantity: str  # position, velocity, acceleration or jerk
     step: int
     joint: int
-    excess: float
+    excess: float  # in the limit's unit
 
 
 def breaches(
@@ -37,17 +30,9 @@ def breaches(
     jerk: ArrayLike = np.inf,
     at_rest: bool = True,
 ) -> list[Breach]:
-    """Return the worst breach of each limit by more than rounding.
+    """Return the worst breach of each limit, one number or (n,), by more than rounding.
 
-    Args:
-        q: Joint positions [rad], (N, n), dt apart.
-        dt: Time between two samples [s].
-        lower: Lower position limits [rad], one number or (n,).
-        upper: Upper position limits [rad], likewise.
-        velocity: Velocity limits [rad/s], likewise.
-        acceleration: Acceleration limits [rad/s^2], likewise.
-        jerk: Jerk limits [rad/s^3], likewise.
-        at_rest: Whether the joints stood before the first sample.
+    Joint positions q are (N, n) [rad], dt [s] apart; `at_rest` if the joints stood before.
     """
     found = []
     size = 1.0 + float(np.abs(q).max())

@@ -66,14 +66,11 @@ def test_an_obstacle_that_is_not_kept_away_from_is_found() -> None:
 
 
 def test_the_judge_leaves_no_sample_out_that_is_too_near() -> None:
-    robot = WHOLE
-    start = START
-    turn = np.zeros(7)
-    turn[0] = -1.2
-    on_the_way = iiwa_dnn.Configuration(robot, start + 0.5 * turn).position
+    turn = -1.2 * np.eye(7)[0]
+    on_the_way = iiwa_dnn.Configuration(WHOLE, START + 0.5 * turn).position
     avoidance = iiwa_dnn.CollisionAvoidance([Sphere(on_the_way, 0.08)], self_collision=False)
-    path = start + np.linspace(0.0, 1.0, 300)[:, np.newaxis] * turn
-    judge = Judge(robot, avoidance)
+    path = START + np.linspace(0.0, 1.0, 300)[:, np.newaxis] * turn
+    judge = Judge(WHOLE, avoidance)
     doubled = np.vstack([path, 0.5 * (path[1:] + path[:-1])])
     distances = np.array([judge.distance(q, 0.0) for q in doubled])
     too_near = (distances < avoidance.distance - SLACK).sum()
@@ -86,9 +83,7 @@ def test_the_judge_leaves_no_sample_out_that_is_too_near() -> None:
 def test_an_arm_between_walls_is_in_a_trap_and_one_beside_a_wall_is_not() -> None:
     at = CASE.start.position[2]
     free = iiwa_dnn.CollisionAvoidance([HalfSpace([0.0, 0.0, 1.0], at - 0.4)])
-    start = START
-    moved = start + [0.3, 0.1, 0.0, 0.0, 0.0, 0.0, 0.0]
-    path = start + np.linspace(0.0, 1.0, 50)[:, np.newaxis] * (moved - start)
+    path = START + np.linspace(0.0, 1.0, 50)[:, np.newaxis] * [0.3, 0.1, 0.0, 0.0, 0.0, 0.0, 0.0]
     assert hostile.name_stop(CASE._replace(avoidance=free), path) == "minima"
     frozen = CASE._replace(robot=ROBOT.with_limits(velocity=1e-4), dt=0.02)
     assert hostile.name_stop(frozen, path) == "traps"

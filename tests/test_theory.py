@@ -31,7 +31,7 @@ from iiwa_dnn import (
     simulate,
 )
 from iiwa_dnn.networks.primal_dual import SHARE
-from iiwa_dnn.results.metrics import orientation_error, position_error
+from iiwa_dnn.results.metrics import position_error
 from iiwa_dnn.studies.paper import MAX_ERROR
 
 Array = NDArray[np.float64]
@@ -226,27 +226,6 @@ def test_a_backward_euler_step_minimises_a_strongly_convex_function(step: float)
         best = minimize(function, x, method="BFGS", options={"gtol": 1e-9})
         assert function(new[:4]) <= best.fun + 1e-9
         np.testing.assert_allclose(new[:4], best.x, atol=1e-4)
-
-
-def test_eulers_error_is_the_joint_acceleration_half_a_step_late_and_fed_back() -> None:
-    turns = Rotation.from_rotvec([[0, 0, 0], [-0.25, -0.16, 0.18], [0.05, -0.24, -0.04]])
-    poses = (turns * Rotation.from_matrix(paper_start().rotation)).as_quat()[:, [3, 0, 1, 2]]
-    points = paper_start().position + [[0, 0, 0], [0.03, 0, 0.02], [0, 0.02, 0]]
-    path = iiwa_dnn.Waypoints([0.0, 1.2, 2.4], points, "clamped", poses).anchored(paper_start())
-    dt = 1e-3
-    record = run(path, dt=dt, duration=2.4)
-    largest = orientation_error(record).max()
-    errors = [np.zeros(3)]
-    most = 0.0
-    for k in range(1, len(record.dq)):
-        jacobian = Configuration(paper_robot(), record.q[k]).jacobian[3:]
-        added = 0.5 * dt * jacobian @ (record.dq[k] - record.dq[k - 1])
-        errors.append((1.0 - DELTA * dt) * errors[-1] + added)
-        most = max(most, float(np.linalg.norm(added)))
-    assert largest == pytest.approx(np.linalg.norm(errors, axis=1).max(), rel=0.02)
-    assert largest < most / (DELTA * dt)
-    ahead = DoubleIndicator(orientation="so3", home=PAPER_Q0, tracking="next")
-    assert orientation_error(run(path, ahead, dt=dt, duration=2.4)).max() < 1e-3 * largest
 
 
 def test_the_mean_square_that_noise_leaves() -> None:
