@@ -16,8 +16,10 @@ def test_cholesky_is_numpys_and_refuses_what_is_not_definite() -> None:
         np.testing.assert_allclose(out, np.linalg.solve(matrix, rhs), rtol=1e-8, atol=1e-11)
         dense.times(matrix, rhs, out)
         assert [dense.row_dot(matrix, j, rhs) for j in range(n)] == out.tolist()
+        assert dense.is_convex(matrix, np.full((n, n), np.nan))
         matrix[-1, -1] = -1.0
         assert not dense.cholesky_factor(matrix.copy())
+        assert not dense.is_convex(matrix, np.full((n, n), np.nan))
 
 
 def test_extreme_eigenvalues_are_numpys() -> None:
