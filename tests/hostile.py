@@ -158,10 +158,10 @@ def is_clear(case: Case, t: float) -> bool:
 def places_of(case: Case) -> list[Vector]:
     """Return the middles of the obstacles [m]."""
     return [
-        obstacle.offset * np.array(obstacle.normal)
-        if isinstance(obstacle, iiwa_dnn.HalfSpace)
-        else obstacle.box.center
-        for obstacle in case.avoidance.obstacles
+        each.offset * np.array(each.normal)
+        if isinstance(each, iiwa_dnn.HalfSpace)
+        else each.box.center
+        for each in case.avoidance.obstacles
     ]
 
 
@@ -253,6 +253,7 @@ def wishes(case: Case, seed: int) -> Iterator[dict[str, Any]]:
         steps = int(random.choice([0.02, 0.1, 0.4, 3.0]) / case.dt) + 1
         wish = random.choice([0.1, 1.0, 10.0]) * robot.dq_max * random.standard_normal(n)
         noise = robot.dq_max * random.standard_normal((steps, n))
+        drifting = wish + 0.1 * np.cumsum(noise, axis=0)
         lost = np.where(random.random((steps, n)) < 0.02, np.nan, wish)
         goal = posture(robot, random, 0.2)
         ways = (*(place - tip for place in places), tip, random.standard_normal(3))
@@ -262,9 +263,7 @@ def wishes(case: Case, seed: int) -> Iterator[dict[str, Any]]:
             repeat({"dq": wish}, steps),
             ({"dq": each} for each in noise),
             ({"dq": wish * (-1.0) ** k} for k in range(steps)),
-            (
-                {"dq": each} for each in wish + 0.1 * np.cumsum(noise, axis=0)
-            ),  # a policy that drifts
+            ({"dq": each} for each in drifting),
             ({"position": goal} if k == 0 else {} for k in range(steps)),  # a chunk, then silence
             repeat({"position": goal}, steps),
             repeat({"twist": twist}, steps),
@@ -282,7 +281,7 @@ def scheme_of(case: Case) -> iiwa_dnn.Scheme:
         limits.append(iiwa_dnn.AccelerationLimits())
     if np.isfinite(case.robot.dddq_max).any():
         limits.append(iiwa_dnn.JerkLimits())
-    return iiwa_dnn.DoubleIndicator(orientation=case.orientation, extra_limits=tuple(limits))
+    return iiwa_dnn.DoubleIndicator(orientation=case.orientation, extra_limits=limits)
 
 
 def by_steps(step: Callable[[Vector, float, Any], tuple[Vector, bool]], dt: float) -> Take:
@@ -390,11 +389,10 @@ def judged(case: Case, driver: Driver) -> Verdict:
         paths.append(path)
         ok.extend(promised)
         left = driver.left(q) if len(ok) > case.steps else np.inf
-    robot = case.robot
-    limits = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, robot.dddq_max)
     driven = np.concatenate(paths)
-    found = Judge(robot, case.avoidance).verdict(driven, dt, ok)
-    return Verdict(driven, left, breaches(driven, dt, *limits), found.broken, found.least)
+    found = Judge(case.robot, case.avoidance).verdict(driven, dt, ok)
+    broken = breaches(driven, dt, *case.robot.limits)
+    return Verdict(driven, left, broken, found.broken, found.least)
 
 
 def way_back(path: Matrix) -> list[Vector]:
@@ -440,7 +438,7 @@ def name_stop(case: Case, path: Matrix) -> str:
 
 
 def main(driven: str, steps: int, seed: int, exported: bool) -> int:
-    """Drive until so many steps are done; print what was broken, and the times of a step."""
+    """Drive until so many steps are done; print what was broken."""
     make = {"controller": controller, "shield": shield}[driven]
     counts: dict[str, Counter[str]] = {"still": Counter(), "moving": Counter()}
     least = np.inf
@@ -460,10 +458,9 @@ def main(driven: str, steps: int, seed: int, exported: bool) -> int:
         counts["moving" if case.moving else "still"].update(found)
         least = min(least, verdict.least)
         done += taken
-        broken = any(found[rule] for rule in RULES)
-        print("BROKEN" * broken, f"seed {seed}, {case.dt:.2g} s:", dict(found), *verdict.limits[:2])
-        if broken or seed % 25 == 0:
-            print(f"{done:,} steps", flush=True)
+        broken = "BROKEN" * any(found[rule] for rule in RULES)
+        words = (broken, f"seed {seed}, {case.dt:.2g} s:", dict(found), *verdict.limits[:2])
+        print(*words, flush=True)
     for kind, count in counts.items():
         print(f"{driven}, obstacles {kind}: {dict(count)}")
     print(f"least distance from a still obstacle {least:.7f} m, promised {DISTANCE} m")

@@ -50,9 +50,8 @@ def test_hostile_motion_breaks_no_promise(driven, seed: int) -> None:
 def test_a_limit_that_is_looser_by_a_hundredth_is_found(quantity: str, looser: dict) -> None:
     case = CASE._replace(robot=ROBOT.with_limits(**looser))
     path = hostile.judged(case, hostile.shield(case, 6)).path
-    robot = ROBOT
-    kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, robot.dddq_max)
-    assert quantity in [breach.quantity for breach in breaches(path, case.dt, *kinds)]
+    found = breaches(path, case.dt, *ROBOT.limits)
+    assert quantity in [breach.quantity for breach in found]
 
 
 def test_an_obstacle_that_is_not_kept_away_from_is_found() -> None:

@@ -32,8 +32,7 @@ class Arm(gymnasium.Env):
 
 
 def check(path: list[np.ndarray], dt: float, clipped: int) -> None:
-    kinds = (ROBOT.q_lower, ROBOT.q_upper, ROBOT.dq_max, ROBOT.ddq_max, ROBOT.dddq_max)
-    assert breaches(np.array(path), dt, *kinds) == []
+    assert breaches(np.array(path), dt, *ROBOT.limits) == []
     assert clipped > 0
     assert np.ptp(path, axis=0).min() > 0.1  # and they move
 
