@@ -159,29 +159,17 @@ def whole_numbers(rng: np.random.Generator) -> QP:
     n = int(rng.integers(1, 4))
     m = int(rng.integers(0, 4))
     p = int(rng.integers(0, 2))
-    numbers = rng.integers(-2, 3, (2 * n + m + p + 2, n)).astype(float)
-    choices = rng.integers(0, 2, (4, max(n, m)))
-    root = numbers[:n]
-    A = numbers[n : n + p]
-    G = numbers[n + p : n + p + m]
-    x = numbers[-1]
-    P = root @ root.T + np.eye(n) * choices[3, 0]
-    return QP(
-        P, numbers[-2], G, G @ x + choices[0, :m], A, A @ x, x - choices[1, :n], x + choices[2, :n]
-    )
+    q, x, *rows = rng.integers(-2, 3, (2 + n + m + p, n)).astype(float)
+    root, G, A = np.split(np.reshape(rows, (-1, n)), [n, n + m])
+    slack, below, above, convex = rng.integers(0, 2, (4, max(n, m)))
+    P = root @ root.T + np.eye(n) * convex[0]
+    return QP(P, q, G, G @ x + slack[:m], A, A @ x, x - below[:n], x + above[:n])
 
 
 def small(rng: np.random.Generator) -> QP:
     """A program of 2 or 3 variables with three inequality rows and bounds."""
     n = int(rng.integers(2, 4))
-    numbers = rng.standard_normal((n + 6, n))
-    root = numbers[:n]
-    size = np.abs(numbers[-2])
-    return QP(
-        root @ root.T,
-        3.0 * numbers[-1],
-        numbers[n : n + 3],
-        numbers[-3:, 0] + 1.0,
-        lb=-size,
-        ub=size,
-    )
+    root, G = np.split(rng.standard_normal((n + 3, n)), [n])
+    q, size = rng.standard_normal((2, n))
+    h = rng.standard_normal(3) + 1.0
+    return QP(root @ root.T, 3.0 * q, G, h, lb=-np.abs(size), ub=np.abs(size))

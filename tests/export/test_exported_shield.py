@@ -22,7 +22,7 @@ BALL = Sphere([0.36, 0.16, 0.64], 0.05)
 def test_the_c_of_a_shield_gives_its_commands(
     robot: Robot, obstacles: list[Sphere] | None, apart: float, tmp_path: Path
 ) -> None:
-    """Wishes that are held, jump, fall silent for longer than the timeout, and are no numbers."""
+    """Wishes are held, jump, fall silent for longer than the timeout, are no numbers; then halt."""
     shield = Shield(robot, DT, obstacles, timeout=0.02)
     export.c99(shield, tmp_path)
     exported = export.load(tmp_path)
@@ -43,6 +43,10 @@ def test_the_c_of_a_shield_gives_its_commands(
         q = q + DT * command.dq
         if k == 700:
             q = q + 0.05  # further than the tracking error
+        if k == 1000:
+            shield.halt()
+            exported.shield_halt()
+    assert not found.dq.any()
 
 
 def test_the_example_asks_the_shield(tmp_path: Path) -> None:
@@ -51,17 +55,3 @@ def test_the_example_asks_the_shield(tmp_path: Path) -> None:
     turned = float(run(tmp_path / "example").split()[2]) - START[0]
     assert turned == pytest.approx(0.1, abs=2e-3)  # 0.1 rad/s for 1 s, less the time to start
     assert "wish" in (tmp_path / "README.md").read_text(encoding="utf-8")
-
-
-def test_a_halt_in_c_lasts(tmp_path: Path) -> None:
-    shield = Shield(SMOOTH, DT)
-    export.c99(shield, tmp_path)
-    exported = export.load(tmp_path)
-    q = START
-    for _ in range(100):
-        q = q + DT * exported.shield_step(q, np.full(7, 0.2)).dq
-    exported.shield_halt()
-    for _ in range(200):
-        dq = exported.shield_step(q, np.full(7, 0.2)).dq
-        q = q + DT * dq
-    assert not dq.any()

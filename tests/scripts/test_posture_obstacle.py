@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from helpers_kinematics import Array, finite_difference
-from iiwa_dnn import Circle, Configuration, Step
+from iiwa_dnn import Configuration, Step
 
 SCRIPT = Path(__file__).parents[2] / "scripts" / "posture_obstacle.py"
 study = SimpleNamespace(**runpy.run_path(str(SCRIPT)))
@@ -84,21 +84,6 @@ def test_rows_of_avoidance_remember_the_approach_at_the_outer_distance() -> None
             approach.append(h.max() / max(scale, 1e-9))
     np.testing.assert_allclose(approach, approach[0], rtol=1e-9)
     assert approach[0] > 0.0
-
-
-def test_the_network_takes_the_velocity_nearest_to_the_last_one() -> None:
-    """Without a cost the run is that of dq += pinv(J) (r' - J dq), written in numpy alone."""
-    dt, steps = 2e-3, 1500
-    record = study.run("UOA-UPF", dt, dt * steps)
-    circle = Circle(0.12, 10.0).anchored(Configuration(ARM, study.START))
-    q, dq = np.array(study.START), np.zeros(6)
-    for k in range(steps):
-        J = Configuration(ARM, q).jacobian[:3]
-        dq = dq + np.linalg.pinv(J) @ (circle.at(k * dt).linear_velocity - J @ dq)
-        q = q + dt * dq
-    np.testing.assert_allclose(record.q[-1], q, atol=1e-3)
-    shortest = np.linalg.pinv(J) @ (J @ dq)
-    assert np.linalg.norm(dq - shortest) > 0.05  # the velocity of least norm is another one
 
 
 @pytest.mark.filterwarnings("ignore:in continuous mode the rows")  # as the authors run it
