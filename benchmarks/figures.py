@@ -13,7 +13,6 @@ STUDIES = {
 """Commands whose reports are quoted, by their titles."""
 
 JUDGES = {
-    "Random runs": ("tests/random_runs.py", "--runs", "{runs}"),
     "Hostile targets of controllers": ("tests/hostile.py", "controller", "{steps}"),
     "Hostile wishes of shields": ("tests/hostile.py", "shield", "{steps}"),
     "Controllers in C": ("tests/hostile.py", "controller", "{steps}", "--exported"),
@@ -31,7 +30,7 @@ def report(steps: int) -> int:
             failed |= run("-m", "iiwa_dnn", *words, "--out", str(out), "-q").returncode
             print(f"\n## {title}\n\n{(out / 'report.md').read_text(encoding='utf-8')}", flush=True)
     for title, words in JUDGES.items():
-        done = run(*(word.format(steps=10 * steps, runs=steps // 100) for word in words))
+        done = run(*(word.format(steps=10 * steps) for word in words))
         failed |= done.returncode
         print(f"\n## {title}\n", *done.stdout.splitlines()[-8:], sep="\n", flush=True)
     return int(failed != 0)

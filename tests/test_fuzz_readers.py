@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import traceback
-import zipfile
 from collections import Counter
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from helpers_records import make_record
 from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.references import Waypoints
-from iiwa_dnn.results.metrics import compute_metrics
-from iiwa_dnn.results.record import Record
-from iiwa_dnn.results.report import summary
 from iiwa_dnn.robot import load_robot
 
 CSV = b"t,x,y,z\n0,0,0,0\n0.5,0.1,-0.05,0\n1,0.2,0,1e-3\n2.5,0.1,0.1,0\n"
@@ -42,7 +36,7 @@ TOKENS = [
 ]  # fmt: skip
 
 Rng = np.random.Generator
-CASES = 900
+CASES = 300
 
 
 def token(rng: Rng) -> bytes:
@@ -77,69 +71,18 @@ def text_case(content: bytes, rng: Rng) -> bytes:
     return content[: marks[i] + 1] + token(rng) + content[marks[i + 1] :]
 
 
-def repacked(content: bytes, rng: Rng) -> bytes:
-    """An archive whose check sums are right and one of whose members is not, or is not there."""
-    with np.load(io.BytesIO(content)) as archive:
-        arrays = dict(archive)
-    victim = str(rng.choice(list(arrays)))
-    array = arrays.pop(victim)
-    kind = int(rng.integers(4))
-    target = io.BytesIO()
-    if kind > 1:
-        arrays[victim] = other_array(array, rng)
-    np.savez(target, **arrays)
-    if kind == 1:  # the head: type, order, shape
-        file = io.BytesIO()
-        np.save(file, array)
-        data = file.getvalue()
-        with zipfile.ZipFile(target, "a") as new:
-            new.writestr(f"{victim}.npy", mutated(data[:128], rng) + data[128:])
-    return target.getvalue()
-
-
-def other_array(array: np.ndarray, rng: Rng) -> np.ndarray:
-    """The same array with other values, type or shape; settings that break off."""
-    if array.dtype.kind == "U":  # whole or lost: nobody edits the settings of a record
-        return np.array(str(array)[: int(rng.integers(len(str(array))))])
-    wrong = array.astype(np.float64)
-    wrong.flat[: 1 if wrong.size else 0] = rng.choice([np.nan, np.inf, -np.inf, 1e308, -1.0])
-    others = (
-        wrong,
-        array[..., :-1] if array.ndim else array,
-        array.astype(rng.choice(["U5", "c16", "f2", "i1", "?", "S3"])),
-        np.array([{"pickled": True}], dtype=object),
-        array[np.newaxis],
-        np.append(array, array),
-    )
-    return others[int(rng.integers(len(others)))]
-
-
-def read_record(path: Path) -> None:
-    record = Record.load(path)
-    assert summary(compute_metrics(record))
-    assert "\n" not in repr(record)
-
-
-READERS = {
-    "urdf": (load_robot, text_case),
-    "csv": (Waypoints.from_csv, text_case),
-    "npz": (read_record, repacked),
-}
+READERS = {"urdf": (load_robot, URDF), "csv": (Waypoints.from_csv, CSV)}
 
 
 # What a reader warns of, a number too large for example, is no error of its own.
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("kind", READERS)
 def test_damaged_files_are_read_or_refused_and_nothing_else(kind: str, tmp_path: Path) -> None:
-    happened = {"action": [2, 0, 3], "fraction": [0.5, 1.0, 1.0], "row_multiplier": np.eye(3, 2)}
-    rows = [{"part": "Obstacle", "row": 1}, {"part": "Obstacle", "row": 2}]
-    make_record(steps=3, **happened, settings={"rows": rows}).save(tmp_path / "record.npz")
-    seed = {"urdf": URDF, "csv": CSV, "npz": (tmp_path / "record.npz").read_bytes()}[kind]
-    read, damage = READERS[kind]
+    read, whole = READERS[kind]
     outcomes: Counter[str] = Counter()
-    for number in range(CASES // len(READERS)):
+    for number in range(CASES):
         path = tmp_path / f"case.{kind}"  # there to look at, should the process itself crash
-        path.write_bytes(damage(seed, np.random.default_rng([number, 7])))
+        path.write_bytes(text_case(whole, np.random.default_rng([number, 7])))
         try:
             read(path)
             outcomes["read"] += 1
