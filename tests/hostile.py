@@ -14,21 +14,19 @@ among obstacles that stand still.
 """
 
 import argparse
-import ctypes
-import subprocess
 import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from itertools import repeat
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import iiwa_dnn
 from iiwa_dnn import Configuration, Target
+from iiwa_dnn.export import ExportedController, c99, load
 from iiwa_dnn.qp import Matrix, Vector
 from judge_distances import Judge, swinging
 from judge_limits import Breach, breaches
@@ -43,9 +41,6 @@ DISTANCE = 0.02
 HOSTILE = 6.0
 LONGER = 200
 """Time for hostile wishes [s], and its factor for exported steps."""
-
-CHUNK = 50
-"""Steps that are taken at once."""
 
 BACK = 20.0
 ARRIVED = 1e-3
@@ -76,18 +71,14 @@ class Case(NamedTuple):
         return Configuration(self.robot, self.robot.start_posture())
 
 
-Take = Callable[[Vector, float, list[Any]], tuple[Matrix, list[bool]]]
-"""Follow a wish a step from joint positions q (n,) [rad] and a time [s].
-
-Returns the positions after each step, (k, n), and whether the step promises that distances hold if
-obstacles move.
-"""
-
-
 class Driver(NamedTuple):
-    """Steps of an arm, its hostile wishes, the wish for the start, and the way left to it."""
+    """Steps of an arm, its hostile wishes, the wish for the start, and the way left to it.
 
-    take: Take
+    A step takes joint positions [rad], a time [s] and a wish. It returns a command [rad/s], and
+    whether it promises that distances hold if obstacles move.
+    """
+
+    step: Callable[[Vector, float, Any], tuple[Vector, bool]]
     wishes: Iterator[Any]
     home: Any
     left: Callable[[Vector], float]  # of joint positions, [m] or [rad]
@@ -284,112 +275,70 @@ def scheme_of(case: Case) -> iiwa_dnn.Scheme:
     return iiwa_dnn.DoubleIndicator(orientation=case.orientation, extra_limits=limits)
 
 
-def by_steps(step: Callable[[Vector, float, Any], tuple[Vector, bool]], dt: float) -> Take:
-    """Follow wishes by steps that return a command [rad/s], and whether distances hold."""
-
-    def take(q: Vector, t: float, wishes: list[Any]) -> tuple[Matrix, list[bool]]:
-        path = np.empty((len(wishes), q.size))
-        promised = []
-        for k, wish in enumerate(wishes):
-            dq, ok = step(q, t + k * dt, wish)
-            q = q + dt * dq
-            path[k] = q
-            promised.append(ok)
-        return path, promised
-
-    return take
-
-
-def in_c(made: Any, read: Callable[[Vector, list[Any]], tuple[Any, Matrix]]) -> Take:
-    """Follow wishes by the C of a controller or a shield, in a loop in C.
-
-    `read` returns the kinds of wishes, (k,), and their numbers, (k, w).
-    """
-    loop = Path(__file__).with_name("hostile_loop.c")
+def in_c(made: Any) -> ExportedController:
+    """Compile the exported C of a controller or a shield."""
     with tempfile.TemporaryDirectory() as folder:
-        iiwa_dnn.export.c99(made, folder)
-        words = ["cc", "-std=c99", "-O2", "-shared", "-fPIC", "-I", folder]
-        words += ["-DSHIELD"] * isinstance(made, iiwa_dnn.Shield)
-        words += [f"{folder}/controller.c", str(loop), "-lm", "-o", f"{folder}/loop.so"]
-        subprocess.run(words, check=True)
-        library = ctypes.CDLL(f"{folder}/loop.so")
-    library.begin()
-
-    def take(q: Vector, t: float, wishes: list[Any]) -> tuple[Matrix, list[bool]]:
-        kinds, numbers = read(q, wishes)
-        q = q.copy()
-        path = np.empty((len(wishes), q.size))
-        at = [ctypes.c_void_p(array.ctypes.data) for array in (q, numbers, kinds, path)]
-        library.take(len(wishes), at[0], at[1], numbers.shape[1], at[2], at[3])
-        return path, [False] * len(wishes)
-
-    return take
+        return load(c99(made, folder))
 
 
 def controller(case: Case, seed: int, exported: bool = False) -> Driver:
     """Return a controller among hostile targets."""
     start = case.start
     made = iiwa_dnn.Controller(case.robot, scheme_of(case), dt=case.dt, policy=case.policy)
+    compiled = in_c(made) if exported else None
 
     def step(q: Vector, t: float, wish: Target) -> tuple[Vector, bool]:
+        if compiled:
+            return compiled.step(q, wish.data).dq, False
         command = made.step(q, t, wish)
         return command.dq, command.ok
-
-    def read(q: Vector, wishes: list[Target]) -> tuple[Any, Matrix]:
-        return np.zeros(len(wishes), np.int32), np.array([wish.data for wish in wishes])
 
     def left(q: Vector) -> float:
         return float(np.linalg.norm(Configuration(case.robot, q).position - start.position))
 
-    home = Target(start.position, start.rotation)
-    take = in_c(made, read) if exported else by_steps(step, case.dt)
-    return Driver(take, targets(case, seed), home, left)
+    return Driver(step, targets(case, seed), Target(start.position, start.rotation), left)
 
 
 def shield(case: Case, seed: int, exported: bool = False) -> Driver:
     """Return a shield among hostile wishes; its C takes joint velocities alone."""
     start = case.start.q
     made = iiwa_dnn.Shield(case.robot, case.dt, case.avoidance.obstacles, DISTANCE)
+    compiled = in_c(made) if exported else None
 
     def step(q: Vector, t: float, wish: dict[str, Any]) -> tuple[Vector, bool]:
-        return made.step(q, **wish).dq, False
-
-    def read(q: Vector, wishes: list[dict[str, Any]]) -> tuple[Any, Matrix]:
-        if any("twist" in wish for wish in wishes):
+        if not compiled:
+            return made.step(q, **wish).dq, False
+        dq = wish.get("dq")
+        if "position" in wish:
+            dq = (wish["position"] - q) / case.dt
+        elif "twist" in wish:
             J = Configuration(case.robot, q).jacobian
-            inverse = J.T @ np.linalg.inv(J @ J.T + 4e-4 * np.eye(6))
-        kinds = np.zeros(len(wishes), np.int32)
-        numbers = np.zeros((len(wishes), q.size))
-        for k, wish in enumerate(wishes):
-            for name, value in wish.items():
-                kinds[k] = 2 if name == "position" else 1
-                numbers[k] = inverse @ value if name == "twist" else value
-        return kinds, numbers
+            dq = J.T @ np.linalg.solve(J @ J.T + 4e-4 * np.eye(6), wish["twist"])
+        return compiled.shield_step(q, dq).dq, False
 
     def left(q: Vector) -> float:
         return float(np.abs(q - start).max())
 
-    take = in_c(made, read) if exported else by_steps(step, case.dt)
-    return Driver(take, wishes(case, seed), {"position": start}, left)
+    return Driver(step, wishes(case, seed), {"position": start}, left)
 
 
 def judged(case: Case, driver: Driver) -> Verdict:
     """Drive an arm by hostile wishes, ask it back, and judge its path."""
     dt = case.dt
     q = case.start.q
-    paths = [q[np.newaxis]]
+    path = [q]
     ok: list[bool] = []
     left = np.inf
     while len(ok) < case.steps + int(BACK / dt) and left > ARRIVED:
-        asked = [driver.home] * CHUNK
-        if len(ok) < case.steps:
-            asked = [next(driver.wishes) for _ in range(CHUNK)]
-        path, promised = driver.take(q, len(ok) * dt, asked)
-        q = path[-1]
-        paths.append(path)
-        ok.extend(promised)
-        left = driver.left(q) if len(ok) > case.steps else np.inf
-    driven = np.concatenate(paths)
+        is_hostile = len(ok) < case.steps
+        wish = next(driver.wishes) if is_hostile else driver.home
+        dq, promised = driver.step(q, len(ok) * dt, wish)
+        q = q + dt * dq
+        path.append(q)
+        ok.append(promised)
+        if not is_hostile:
+            left = driver.left(q)
+    driven = np.array(path)
     found = Judge(case.robot, case.avoidance).verdict(driven, dt, ok)
     broken = breaches(driven, dt, *case.robot.limits)
     return Verdict(driven, left, broken, found.broken, found.least)
