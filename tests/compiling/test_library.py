@@ -15,6 +15,8 @@ import iiwa_dnn
 from helpers_kinematics import PAPER_Q0
 from helpers_physics import run_python
 from helpers_simulation import heart, paper_robot
+from iiwa_dnn.control.policies import Action
+from iiwa_dnn.export.folder import run
 from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.references.base import enter_path
 from iiwa_dnn.references.shapes import heart_path
@@ -60,12 +62,7 @@ class Own(iiwa_dnn.Limit):
 def _commands(limit: iiwa_dnn.Limit, steps: int = 20) -> np.ndarray:
     scheme = iiwa_dnn.DoubleIndicator(extra_limits=[limit])
     controller = iiwa_dnn.Controller(paper_robot(), scheme, heart(), dt=1e-3)
-    q = np.array(PAPER_Q0)
-    found = []
-    for k in range(steps):
-        found.append(controller.step(q, 1e-3 * k).dq)
-        q = q + 1e-3 * found[-1]
-    return np.array(found)
+    return run(controller, np.array(PAPER_Q0), steps)[:, -8:-1]
 
 
 class Numpy(iiwa_dnn.Limit):
@@ -126,34 +123,15 @@ def test_a_path_is_entered_from_python_and_by_two_threads() -> None:
 
 
 RUNS = """
-import numpy as np
-import iiwa_dnn
+import sys; sys.path.insert(0, "tests")
+from export_settings import SETTINGS
 from iiwa_dnn.compiling.library import INTERPRETED
-from iiwa_dnn.studies import paper
-
+from iiwa_dnn.control.policies import Action
+from iiwa_dnn.export.folder import run
 assert INTERPRETED == FLAG
-robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
-slow = robot.with_limits(velocity=0.1 * robot.dq_max)
-ball = iiwa_dnn.CollisionAvoidance([iiwa_dnn.Sphere((0.5, 0.2, 0.6), 0.05)])
-moving = [iiwa_dnn.AccelerationLimits(10.0), ball]
-runs = [
-    (robot, [], {}),
-    (slow, [], {"policy": "slow"}),
-    (slow, [], {"policy": "relax"}),
-    (robot, [iiwa_dnn.AccelerationLimits(1.0), iiwa_dnn.JerkLimits(50.0)], {}),
-    (robot, moving, {"policy": "relax"}),
-    (robot, [], {"mode": "continuous"}),
-]
-for arm, limits, options in runs:
-    conf = iiwa_dnn.Configuration(arm, paper.START)
-    heart = iiwa_dnn.Heart(period=2.0).anchored(conf)
-    scheme = iiwa_dnn.DoubleIndicator(extra_limits=limits)
-    controller = iiwa_dnn.Controller(arm, scheme, heart, dt=1e-2, **options)
-    q = np.array(paper.START)
-    for k in range(500):
-        command = controller.step(q, 1e-2 * k)
-        q = q + 1e-2 * command.dq
-        print(command.action.name, *[x.hex() for x in command.dq.tolist()])
+for name, make in SETTINGS.items():
+    for row in run(*make(), 720):
+        print(name, *row.tolist())
 """
 
 
@@ -165,4 +143,5 @@ def test_whole_steps_have_the_same_bits_interpreted() -> None:
         assert done.returncode == 0, done.stderr
         results.append(done.stdout.splitlines())
     assert results[0] == results[1]
-    assert {line.split()[0] for line in results[0]} >= {"NONE", "SLOW", "RELAX"}
+    actions = {float(line.split()[-1]) for line in results[0]}
+    assert actions == {Action.NONE, Action.SLOW, Action.RELAX, Action.STOP}

@@ -12,6 +12,7 @@ import pytest
 
 from helpers_browser import needs_browser, open_browser, requested
 from iiwa_dnn import Configuration
+from iiwa_dnn.export.folder import run
 
 FOLDER = Path(__file__).parents[2] / "docs" / "browser"
 
@@ -26,8 +27,7 @@ def browser(tmp_path: Path) -> Iterator[Any]:
 @needs_browser
 def test_the_page_gives_the_commands_of_python_and_a_hand_leads_it(browser: Any) -> None:
     controller, q = runpy.run_path(str(FOLDER / "make_page.py"))["heart_controller"]()
-    for k in range(1000):
-        q = q + controller.dt * controller.step(q, k * controller.dt).dq
+    q = run(controller, q, 1001)[-1, 1:8]
     joints, tip = browser.execute_script("run(1000); return [Array.from(q), skeleton(q).pop()]")
     np.testing.assert_allclose(joints, q, rtol=0, atol=1e-12)
     np.testing.assert_allclose(tip, Configuration(controller.robot, q).position, atol=1e-12)
