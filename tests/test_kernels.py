@@ -1,4 +1,4 @@
-"""Compiled pieces that stand for well-known ones, against closed forms and scipy."""
+"""A compiled piece that stands for a well-known one, against scipy."""
 
 import numpy as np
 import pinocchio as pin
@@ -6,15 +6,7 @@ import pytest
 import scipy.linalg
 
 from helpers_simulation import block_map
-from iiwa_dnn.references.rotations import rotation_log
 from iiwa_dnn.schemes.tasks import project_on_range
-
-
-def test_rotation_log_of_a_half_turn() -> None:
-    for axis in np.eye(3):
-        result = np.empty(3)
-        rotation_log(2.0 * np.outer(axis, axis) - np.eye(3), result)
-        np.testing.assert_allclose(np.abs(result), np.pi * axis, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("tilt", [0.0, 1e-12, 1e-7, 1e-3, 1.0, 2.0, np.pi - 1e-3, np.pi])
