@@ -106,12 +106,21 @@ def exact_solution(qp: QP, face: Face, most: int = 400) -> list[Fraction] | None
     """
     program = whole(qp)
     waiting = deque([face, frozenset()])
-    seen = {face, frozenset()}
+    seen = set(waiting)
     while waiting and len(seen) <= most:
         face = waiting.popleft()
-        moves = _moves(program, face)
-        if isinstance(moves, tuple):
-            return moves[0]
+        found = at_face(program, face)
+        moves = [face - {j} for j in sorted(face)]
+        if found is not None:
+            x, multipliers = found
+            signs = zip(sorted(face), multipliers, strict=True)
+            negative = frozenset(j for j, value in signs if value < 0)
+            violated = [j for j in range(len(program.d)) if j not in face and breaks(program, j, x)]
+            if not negative and not violated:
+                return x
+            moves = [face - negative | set(violated)] if violated else []
+            moves += [face - {j} for j in sorted(negative)] + [face | {j} for j in violated]
+            moves += [face - {k} | {j} for j in violated for k in sorted(face)]
         for move in moves:
             if move not in seen:
                 seen.add(move)
@@ -119,25 +128,11 @@ def exact_solution(qp: QP, face: Face, most: int = 400) -> list[Fraction] | None
     return None
 
 
-def _moves(program: WholeProgram, face: Face) -> list[Face] | tuple[list[Fraction]]:
-    """List the faces beside one, or return its point if that is the solution."""
-    found = at_face(program, face)
-    if found is None:
-        return [face - {j} for j in sorted(face)]
-    x, multipliers = found
-    negative = [j for j, value in zip(sorted(face), multipliers, strict=True) if value < 0]
-    violated = []
-    for j, (row, limit) in enumerate(zip(program.C, program.d, strict=True)):
-        if j not in face and limit is not None:
-            reached = sum((c * v for c, v in zip(row, x, strict=True) if c), Fraction(0))
-            violated += [j] * (reached > limit)
-    if not negative and not violated:
-        return (x,)
-    moves = [face - {j} for j in negative] + [face | {j} for j in violated]
-    if violated:
-        moves += [face - {k} | {j} for j in violated for k in sorted(face)]
-        moves.insert(0, (face - set(negative)) | set(violated))
-    return moves
+def breaks(program: WholeProgram, j: int, x: list[Fraction]) -> bool:
+    """Test whether a point (n,) breaks constraint j."""
+    limit = program.d[j]
+    reached = sum((c * v for c, v in zip(program.C[j], x, strict=True) if c), Fraction(0))
+    return limit is not None and reached > limit
 
 
 def face_of(qp: QP, active: np.ndarray) -> Face:

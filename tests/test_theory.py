@@ -55,24 +55,20 @@ def euler(network: Network, qp: QP, state: ArrayLike, step: float, count: int) -
         yield state
 
 
-def strong_qp(rng: np.random.Generator, active: int) -> QP:
-    """A program with P above I/2, active bounds and dependent rows."""
-    qp, _ = known_qp(rng, 5, 3, active, dependent=True)
-    root = rng.standard_normal((5, 5))
-    return QP(0.501 * np.eye(5) + root @ root.T, qp.q, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)
-
-
 @pytest.mark.parametrize("active", [0, 2, 5])
 def test_trajectories_never_come_apart(active: int) -> None:
     rng = np.random.default_rng(active)
     worst = -np.inf
     for _ in range(300):
-        qp = strong_qp(rng, active)
-        size = ProjectionNetwork().state_size(qp)
+        qp, _ = known_qp(rng, 5, 3, active, dependent=True)
+        root = rng.standard_normal((5, 5))
+        P = 0.501 * np.eye(5) + root @ root.T  # above I/2
+        qp = QP(P, qp.q, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)
+        size = UNPROJECTED.state_size(qp)
         # Near each other as well as far apart, and multipliers of either sign.
         one = 3.0 * rng.standard_normal(size)
         step = 10.0 ** rng.uniform(-3, 1) * rng.standard_normal(size)
-        approach = step @ (network_rates(qp, one + step, False) - network_rates(qp, one, False))
+        approach = step @ (UNPROJECTED.rates(qp, one + step) - UNPROJECTED.rates(qp, one))
         bound = -step[:5] @ (qp.P - 0.5 * np.eye(5)) @ step[:5]
         worst = max(worst, (approach - bound) / (step @ step))
     assert worst < 1e-10
@@ -83,7 +79,7 @@ def test_below_a_half_they_may() -> None:
     qp = QP([[0.05]], [0.0], lb=[-1.0], ub=[0.0])
     step = np.array([1.0, -0.5, 0.5])
     rest = np.array([-0.5, 0.0, 0.0])
-    approach = step @ (network_rates(qp, rest + step, False) - network_rates(qp, rest, False))
+    approach = step @ (UNPROJECTED.rates(qp, rest + step) - UNPROJECTED.rates(qp, rest))
     assert approach > 0.4
 
 
@@ -174,7 +170,7 @@ def test_without_cost_the_flow_circles() -> None:
     qp = QP(np.zeros((4, 4)), np.zeros(4), A=rng.standard_normal((4, 4)), b=np.zeros(4))
     for state in rng.standard_normal((20, ProjectionNetwork().state_size(qp))):
         state[8:] = 0.0  # the multipliers of bounds that are not there
-        rates = network_rates(qp, state, False)
+        rates = UNPROJECTED.rates(qp, state)
         assert state @ rates == pytest.approx(0.0, abs=1e-12), "at constant distance"
         assert np.linalg.norm(rates) > 0.1
 

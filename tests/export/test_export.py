@@ -136,7 +136,9 @@ def test_clang_has_no_warning_either(heart: Path) -> None:
     run("clang", *WARNINGS, "-fsyntax-only", *(heart / name for name in names))
 
 
-def test_the_code_is_plain_c(heart: Path) -> None:
+def test_the_code_is_plain_c_and_its_memory_is_stated(
+    heart: Path, exported: ExportedController
+) -> None:
     text = (heart / "controller.c").read_text(encoding="utf-8")
     code = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     included = {"math", "stdbool", "stddef", "stdint", "string"}
@@ -148,6 +150,10 @@ def test_the_code_is_plain_c(heart: Path) -> None:
         " * iiwa_dnn/schemes/limits.py: joint_limits */",
     ):
         assert words in text
+    assert exported.size <= 16_000
+    readme = (heart / "README.md").read_text(encoding="utf-8")
+    assert f"`struct controller` | {exported.size} bytes" in readme
+    assert "@" not in readme
 
 
 CORTEX = ("-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard", "-mthumb")
@@ -168,13 +174,6 @@ def test_size_without_global_state(
     text, data, bss = map(int, run(f"{prefix}size", made).splitlines()[1].split()[:3])
     assert text <= most  # with the relaxed programs, each of a size of its own
     assert data == bss == 0
-
-
-def test_stated_memory(heart: Path, exported: ExportedController) -> None:
-    assert exported.size <= 16_000
-    readme = (heart / "README.md").read_text(encoding="utf-8")
-    assert f"`struct controller` | {exported.size} bytes" in readme
-    assert "@" not in readme
 
 
 def test_inputs_that_are_no_numbers_change_nothing(exported: ExportedController) -> None:
