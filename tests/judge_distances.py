@@ -15,9 +15,6 @@ from iiwa_dnn.robot.collision import coal_geometry, collision_model
 SLACK = 1e-6
 """Distance that coal's own tolerance may cost [m]."""
 
-AHEAD = 200
-"""Samples for which it is looked whether a distance has to be computed again."""
-
 
 class Verdict(NamedTuple):
     """Least distance of a path from still obstacles [m], and samples that broke the promise."""
@@ -37,7 +34,6 @@ class Judge:
         model = collision_model(robot)
         pairs = model.pairs(robot) if avoidance.self_collision else ()
         self._geometry = geometry = coal_geometry(robot, model, pairs)
-        self._reach = reach_of(robot, geometry)
         self._first = geometry.ngeoms
         self._rest = []
         for number, obstacle in enumerate(self._obstacles):
@@ -63,49 +59,21 @@ class Judge:
     def verdict(self, path: Matrix, dt: float, ok: Any = ()) -> Verdict:
         """Judge a path (k + 1, n) [rad], at its samples, dt [s] apart, and half-way between.
 
-        Between two distances that are computed, others are left out where none of the arm's points
-        has gone so far, nor an obstacle, that the distance can be below the promised one. Below it,
-        a moving obstacle has broken no promise if the step said so (`ok`, (k,)) and the arm itself
-        did not come nearer.
+        A moving obstacle that is too near has broken no promise if the step said so (`ok`, (k,))
+        and the arm itself did not come nearer.
         """
-        moving = any(obstacle.speed for obstacle in self._obstacles)
-        fastest = max((obstacle.speed for obstacle in self._obstacles), default=0.0)
         doubled = np.empty((2 * len(path) - 1, path.shape[1]))
         doubled[::2] = path
         doubled[1::2] = 0.5 * (path[1:] + path[:-1])
         clock = 0.5 * dt * np.arange(len(doubled))
-        allowed = self._promised - SLACK
-        least = np.inf
+        distances = np.array([self.distance(*each) for each in zip(doubled, clock, strict=True)])
+        moving = any(obstacle.speed for obstacle in self._obstacles)
         broken = 0
-        i = 0
-        while i < len(doubled):
-            distance = self.distance(doubled[i], clock[i])
-            if not moving:
-                least = min(least, distance)
-            if distance < allowed:
-                excused = moving and i > 0 and not ok[(i - 1) // 2]
-                still = excused and self.distance(doubled[i - 1], clock[i])
-                broken += not excused or distance < still - SLACK
-            ahead = slice(i + 1, i + 1 + AHEAD)
-            gone = np.abs(doubled[ahead] - doubled[i]) @ self._reach
-            gone += fastest * (clock[ahead] - clock[i])
-            near = np.flatnonzero(gone > max(distance - allowed, 0.0))
-            i += 1 + (int(near[0]) if near.size else len(gone))
-        return Verdict(least, broken)
-
-
-def reach_of(robot: iiwa_dnn.Robot, geometry: pin.GeometryModel) -> Vector:
-    """Bound the distance of a robot's points from the axes of the joints that move them, (n,)."""
-    reach = np.zeros(robot.model.njoints)
-    for body in geometry.geometryObjects:
-        joint = body.parentJoint
-        body.geometry.computeLocalAABB()
-        far = float(np.linalg.norm(body.placement.translation)) + body.geometry.aabb_radius
-        while joint:
-            reach[joint] = max(reach[joint], far)
-            far += float(np.linalg.norm(robot.model.jointPlacements[joint].translation))
-            joint = robot.model.parents[joint]
-    return reach[1:]
+        for i in np.flatnonzero(distances < self._promised - SLACK):
+            excused = moving and i > 0 and not ok[(i - 1) // 2]
+            still = excused and self.distance(doubled[i - 1], clock[i])
+            broken += not excused or distances[i] < still - SLACK
+        return Verdict(np.inf if moving else float(distances.min()), broken)
 
 
 def swinging(kind: type[Any], rate: float = 1.0, until: float = np.inf) -> type[Any]:
