@@ -6,14 +6,24 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from benchmarks.kinds import cases
 from benchmarks.report import show
+from iiwa_dnn import Controller
 from iiwa_dnn.compiling.build import run_compiler
 from iiwa_dnn.export import c99, load
-from tests.export_settings import SETTINGS
 
 FAST = ("-std=c99", "-O3", "-march=native")
 SMALL = ("-std=c99", "-Os", "-fno-asynchronous-unwind-tables")
 """Without tables for unwinding the stack, which no function in C needs."""
+
+NAMES = (
+    "the heart",
+    "a limit active",
+    "acceleration and jerk limits",
+    "21 pairs of collisions",
+    "no solution, `slow`",
+)
+"""Kinds of steps (`benchmarks.kinds`) whose controllers are exported."""
 
 ROUNDS = 5
 """Times that the steps are timed; the quietest round counts."""
@@ -51,14 +61,15 @@ def text_size(folder: Path, place: Path) -> int:
 def compared(steps: int) -> Iterator[dict[str, Any]]:
     """Measure each controller in closed loop."""
     driver = Path(__file__).parent / "loops" / "exported_loop.c"
-    for name, make in SETTINGS.items():
+    for name in NAMES:
+        case = cases()[name]
+        controller = Controller(case.robot, case.scheme, case.reference, policy=case.policy)
         with tempfile.TemporaryDirectory() as place:
-            made = make()
-            folder = c99(made[0], Path(place) / "c", made[1])
+            folder = c99(controller, Path(place) / "c", case.start)
             row = {"name": name, "size": load(folder).size}
             row["text"] = text_size(folder, Path(place))
             program = compiled(folder, Path(place) / "loop", FAST, driver, folder / "controller.c")
-            quietest = min(run(program, steps, *made[1].tolist()) for _ in range(ROUNDS))
+            quietest = min(run(program, steps, *case.start) for _ in range(ROUNDS))
             yield row | dict(zip(("median", "p99", "p999"), quietest, strict=True))
 
 

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import iiwa_dnn
+from benchmarks.loop import BALLS, DISTANCE, DT, RADII
 from benchmarks.report import show
 from hostile import streams
 from iiwa_dnn import AccelerationLimits, MovingTarget, Reference, Robot, Scheme, Sphere, Target
@@ -21,9 +22,7 @@ from iiwa_dnn.control.policies import Action, Policy
 from iiwa_dnn.schemes import PoseTask
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
-from tests.export_settings import BALLS, DISTANCE, RADII
 
-DT = 1e-3
 SLOW = 0.02  # velocity limit [rad/s]
 EVERY = 33  # steps between two poses of a moving target
 

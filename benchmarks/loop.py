@@ -23,13 +23,17 @@ from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.robot.collision import collision_model
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
-from tests.export_settings import BALLS, DISTANCE, RADII
 
 CHUNK = 250
 """Steps that one takes before it is the next one's turn."""
 
 DT = 1e-3
 """Control period [s]."""
+
+BALLS = ([0.36, 0.16, 0.64], [0.7, 0.0, 0.3], [-0.3, 0.5, 0.6])
+RADII = (0.05, 0.1, 0.1)
+DISTANCE = 0.03
+"""Balls beside the path, their radii, and the distance to keep [m]."""
 
 Taken = dict[str, list[Any]]
 """Times ``us`` [us] and joint positions ``q`` [rad] of a loop's steps."""
