@@ -41,14 +41,14 @@ clean:  ## remove .venv, caches and what was built; runs/ stays
 	rm -rf $(VENV) iiwa_dnn/_kernels.* build dist site jupyter_execute htmlcov .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
 	find iiwa_dnn tests scripts benchmarks -name __pycache__ -prune -exec rm -rf {} +
 
-# A stamp comes last, so that a set-up cut short is done again; named extras are installed anew.
+# A stamp comes last, so that a set-up cut short is done again; named extras are not all of them.
 $(PLAIN): pyproject.toml constraints.txt
 	@$(call install,.,0.7 GB on disk)
 	@touch $@
 
 $(FULL): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRAS)),force)
 	@$(call install,.[$(EXTRAS)],2.1 GB on disk with all extras)
-	@touch $(PLAIN) $@
+	@touch $(PLAIN) $(if $(filter command,$(origin EXTRAS)),,$@)
 
 # Beside the package, what Debian leaves out of its own Python is asked for by name.
 define install

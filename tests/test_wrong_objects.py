@@ -63,6 +63,13 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
     (lambda: paper_robot().frame_id(None), "no frame 'None'"),
     (lambda: d.compute_metrics({}), "record: must be an iiwa_dnn.Record"),
     (lambda: d.Record.load(3), "3: "),
+    (
+        lambda: d.prove(d.QP(EYE, PAPER_Q0[:3]), [1.0, 1.0, 1.0]),
+        "solution: must be an object with x",
+    ),
+    (lambda: d.CrossCheck().check(d.QP(EYE, PAPER_Q0[:3]), EYE[:2, 0]), "answer: has shape (2,)"),
+    (lambda: d.DNNSolver(d.Network()).solve(d.QP(EYE, PAPER_Q0[:3])), "Network: has neither"),
+    (lambda: d.DoubleIndicator(extra_limits=d.TipSpeedLimit(1.0)), "extra_limits: must be a list"),
     (lambda: drive(Builder()), "scheme: Builder overrides build_qp"),
     (lambda: drive(d.Scheme([Distant()], [d.PositionTask()])), "no target of frame 'x'"),
 ]

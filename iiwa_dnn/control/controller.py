@@ -167,6 +167,7 @@ class Controller:
             self._state.past = before
             if isinstance(error, TypeError | InvalidInputError):
                 checks.finite("t", t)
+                checks.finite_array("q", q, (self.robot.dof,))
             raise
 
     def compute(self, q: Vector, t: float, target: Mapping[str, Target] | None = None) -> Command:
@@ -201,18 +202,15 @@ class Controller:
         state = self._state
         if step is None or not state.begun:
             step = self._prepare(q, t, target is None)
-        if dt is None:
-            dt = self.dt
+        dt = self.dt if dt is None else dt
         if dt != step.dt:
             step.set_period(checks.positive("dt", dt))
         layout = step.layout
         program = step.program
-        is_plain = type(q) is np.ndarray and q.ndim == 1
-        joints: Any = q if is_plain else checks.finite_array("q", q, (layout.dof,))
-        try:
-            program.kinematics.update(joints)
-        except (TypeError, ValueError):  # another length, or no numbers
-            return self._compute(checks.finite_array("q", q, (layout.dof,)), t, target, dt)
+        joints: Any = q
+        if type(q) is not np.ndarray or q.ndim != 1 or q.size != layout.dof:
+            joints = checks.finite_array("q", q, (layout.dof,))
+        program.kinematics.update(joints)
         row = np.empty(layout.width)
         past = state.past
         samples = step.samples and target is None

@@ -15,7 +15,7 @@ from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.collision import unwatched_links
 from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.limits import largest_gain
+from iiwa_dnn.schemes.limits import TipSpeedLimit, largest_gain
 from iiwa_dnn.schemes.program import StepProgram
 from iiwa_dnn.schemes.tasks import GainTask
 
@@ -65,6 +65,8 @@ def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> 
         yield f"the start posture {problem}"
     yield from _doubts_of_tasks(program, dt)
     limits = program.scheme.limits
+    if program.rate_limits is None and any(isinstance(limit, TipSpeedLimit) for limit in limits):
+        yield "TipSpeedLimit holds beside AccelerationLimits alone: a command may be above it"
     lagging = [type(limit).__name__ for limit in limits if limit.row_count(robot)]
     if mode == "continuous" and lagging:
         yield (

@@ -10,6 +10,7 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import entry
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Triple, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import point_of_state
@@ -111,6 +112,10 @@ class Network:
             rate: Its rate of change [1/rho], field by field, zero where a field is infinite; None
                 or without effect in a network for programs that stand still.
         """
+        if self.compiled_rates is None:
+            raise InvalidInputError(
+                type(self).__name__, "has neither flow nor compiled_rates", self
+            )
         address = enter_rates.address(type(self).compiled_rates)
         constants = self.constants(qp.sizes)
         views = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, qp.lb, qp.ub)

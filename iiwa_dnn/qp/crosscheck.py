@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import point_of, prove_point
 
@@ -134,7 +134,10 @@ class CrossCheck:
             answer: The answer to be judged: x (n,), or `Solution.point` (2 n + m + p,), whose
                 multipliers a proof begins with.
         """
-        return self.check_block(qp.data[np.newaxis], qp.sizes, np.asarray(answer)[np.newaxis])
+        n, m, p = qp.sizes
+        size = n if np.size(answer) == n else 2 * n + m + p
+        point = check_size("answer", np.asarray(answer), size)
+        return self.check_block(qp.data[np.newaxis], qp.sizes, point[np.newaxis])
 
     def check_block(self, programs: Matrix, sizes: Sizes, answers: Matrix) -> Agreement:
         """Ask every reference for the solutions of N programs of one shape and compare.

@@ -38,6 +38,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from iiwa_dnn import checks
 from iiwa_dnn.qp.certificates import infeasibility_radius
 from iiwa_dnn.qp.layout import IntVector, Matrix, Vector, check_size
 from iiwa_dnn.qp.program import QP
@@ -124,6 +125,7 @@ def point_of(solution: Any, qp: QP) -> Vector:
     Raises:
         InvalidInputError: The answer has a part of another size than the program's.
     """
+    checks.offers("solution", solution, "x")
     n, m, p = qp.sizes
     parts = []
     for name, size in (("x", n), ("y", p), ("z", m), ("z_box", n)):

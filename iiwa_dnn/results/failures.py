@@ -99,11 +99,8 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
     counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items())
     pose = "no bound: a singular pose, a path out of reach or tasks against each other"
     blocking = ", ".join(map(describe, incidents["blocking"][:3])) or pose
-    advice = ""
     too_quick = any(limit.get("limit") in KINDS[1:] for limit in incidents["blocking"][:1])
-    if too_quick and "slowed" in done and incidents["path_time_s"]:
-        pace = _show(metrics["duration_s"] / incidents["path_time_s"])
-        advice = f"; give the path {pace} times the time (--period, --stretch) or more"
+    advice = "; more time for the path (--period, --stretch) may help" * too_quick
     yield (
         f"{counted(sum(done.values()))} without a solution ({counts}), the first at "
         f"{_at(incidents['first'])}; most often in the way: {blocking}{advice}"

@@ -85,6 +85,8 @@ class DoubleIndicator(Scheme):
         if self.ahead:
             tasks = [replace(task, gain=np.inf) for task in tasks]
         energy = KineticEnergy(weight=self.weight, kinetic=self.kinetic)
+        if isinstance(self.extra_limits, Limit):
+            raise InvalidInputError("extra_limits", "must be a list of limits", self.extra_limits)
         limits = [JointLimits(gain=self.limit_gain), *self.extra_limits]
         self._compose([energy, cyclic], tasks, limits)
 

@@ -55,8 +55,12 @@ def test_a_network_that_lags_says_that_it_keeps_bounds_alone() -> None:
     avoidance = d.CollisionAvoidance([ball], self_collision=False)
     scheme = d.DoubleIndicator(home=PAPER_Q0, extra_limits=(avoidance,))
     controller = d.Controller(paper_robot(), scheme, mode="continuous")
+    near = near_target(np.array(PAPER_Q0), 0, size=2e-3)
     with pytest.warns(UserWarning, match="the rows of CollisionAvoidance hold where"):
-        controller.step(PAPER_Q0, 0.0, near_target(np.array(PAPER_Q0), 0, size=2e-3))
+        controller.step(PAPER_Q0, 0.0, near)
+    alone = d.DoubleIndicator(home=PAPER_Q0, extra_limits=(d.TipSpeedLimit(1.0),))
+    with pytest.warns(UserWarning, match="TipSpeedLimit holds beside AccelerationLimits alone"):
+        d.Controller(paper_robot(), alone).step(PAPER_Q0, 0.0, near)
 
 
 @pytest.mark.parametrize(("orientation", "said"), [("so3", 1), ("block", 1), ("none", 0)])

@@ -261,8 +261,8 @@ def test_the_policies_are_named_with_their_steps():
     half = slowed([0.4] * 8 + [1.0] * 2, blocking=blocking)  # 5.2 of 10 periods
     limits = "joint 1 upper velocity limit, joint 2 upper velocity limit, "
     limits += "joint 3 upper velocity limit"
-    pace = "give the path 1.92 times the time (--period, --stretch) or more"
-    assert failures(half)[1].endswith(f"in the way: {limits}; {pace}")
+    advice = "more time for the path (--period, --stretch) may help"
+    assert failures(half)[1].endswith(f"in the way: {limits}; {advice}")
     out_of_reach = slowed([0.4] * 8 + [1.0] * 2, blocking=np.minimum(blocking, 1))
     assert failures(out_of_reach)[1].endswith("joint 3 upper position limit")
     lag = make_record(action=action, settings={"mode": "continuous"})
