@@ -6,6 +6,8 @@ import ctypes
 import re
 import shutil
 from pathlib import Path
+from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -103,20 +105,31 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
     assert taken <= 0.6 * scratch
 
 
-def test_the_folder_passes_its_own_test_which_can_fail(heart: Path, tmp_path: Path) -> None:
-    """The program ends at undefined behaviour."""
-    program = tmp_path / "test_controller"
+SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+ON_ARM = needs("aarch64-linux-gnu-gcc", "qemu-aarch64")
+
+
+@pytest.mark.parametrize(
+    ("compiler", "flags", "runner"),
+    [
+        ("gcc", SANITIZERS, ()),  # ends at undefined behaviour
+        pytest.param("aarch64-linux-gnu-gcc", ("-static",), ("qemu-aarch64",), marks=ON_ARM),
+    ],
+)
+def test_the_folder_passes_its_own_test_which_can_fail(
+    heart: Path, compiler: str, flags: tuple[str, ...], runner: tuple[str, ...], tmp_path: Path
+) -> None:
+    program = (*runner, tmp_path / "test_controller")
     sources = [heart / "test_controller.c", heart / "controller.c"]
-    sanitizers = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-DROUNDS=2")
-    run("gcc", *WARNINGS, "-O0", *sanitizers, "-o", program, *sources, "-lm")
-    said = run(program, heart / "vectors.csv")
+    run(compiler, *WARNINGS, "-O0", "-DROUNDS=1", *flags, "-o", program[-1], *sources, "-lm")
+    said = run(*program, heart / "vectors.csv")
     assert re.match(r"500 steps: largest difference of a command \S+ of the .*, 0 actions", said)
     lines = (heart / "vectors.csv").read_text(encoding="utf-8").splitlines()
     cells = lines[-1].split(",")
     cells[-2] = repr(float(cells[-2]) + 1e-6)
     (tmp_path / "vectors.csv").write_text("\n".join([*lines[:-1], ",".join(cells), ""]))
     with pytest.raises(AssertionError, match=r"largest difference of a command 3\.2e-07"):
-        run(program, tmp_path / "vectors.csv")
+        run(*program, tmp_path / "vectors.csv")
 
 
 def test_make_and_the_example_run_as_the_readme_says(heart: Path, tmp_path: Path) -> None:
@@ -189,48 +202,29 @@ def test_inputs_that_are_no_numbers_change_nothing(exported: ExportedController)
         np.testing.assert_array_equal(exported.step(row[1:8], row[8:26]).dq, before)
 
 
-@needs("aarch64-linux-gnu-gcc", "qemu-aarch64")
-def test_an_arm_processor_computes_the_same(heart: Path, tmp_path: Path) -> None:
-    program = tmp_path / "test_controller"
-    sources = [heart / "test_controller.c", heart / "controller.c"]
-    flags = (*WARNINGS, "-O0", "-static", "-DROUNDS=1")
-    run("aarch64-linux-gnu-gcc", *flags, "-o", program, *sources, "-lm")
-    assert "0 actions differ" in run("qemu-aarch64", program, heart / "vectors.csv")
-
-
-class _Closing(iiwa_dnn.JointLimits):
-    def refresh(self, step: iiwa_dnn.Step, constants: np.ndarray) -> None:
-        constants *= 0.99
-
-
-def _among(*limits: iiwa_dnn.Limit) -> Controller:
-    return drawing(with_limits(*limits))[0]
-
-
 class _Local(iiwa_dnn.Limit):
     kernel = staticmethod(lambda step, constants, G, h, lb, ub: None)
 
 
-MOVING = iiwa_dnn.Sphere((0.0, 0.0, 2.0), 0.1, velocity=(0.1, 0.0, 0.0))
+AVOIDANCE = iiwa_dnn.CollisionAvoidance([iiwa_dnn.Sphere((0, 0, 2), 0.1, velocity=(0.1, 0, 0))])
+DUAL = iiwa_dnn.PrimalDualNetwork()
 UNSTATED = iiwa_dnn.Scheme([iiwa_dnn.Manipulability()], DoubleIndicator().tasks)
 
 
 @pytest.mark.parametrize(
-    ("make", "words"),
+    ("options", "words"),
     [
-        (lambda: drawing(UNSTATED)[0], "Manipulability changes or answers in Python"),
-        (lambda: _among(_Closing()), "_Closing changes"),
-        (lambda: _among(iiwa_dnn.CollisionAvoidance([MOVING])), "CollisionAvoidance changes"),
-        (
-            lambda: drawing(solver=iiwa_dnn.DNNSolver(iiwa_dnn.PrimalDualNetwork()))[0],
-            "PrimalDualNetwork changes",
-        ),
-        (lambda: _among(_Local()), "lambda.* cannot be exported"),
+        ({"scheme": UNSTATED}, "Manipulability changes or answers in Python"),
+        ({"scheme": with_limits(AVOIDANCE)}, "CollisionAvoidance changes"),
+        ({"solver": iiwa_dnn.DNNSolver(DUAL)}, "PrimalDualNetwork changes"),
+        ({"scheme": with_limits(_Local())}, "lambda.* cannot be exported"),
     ],
 )
-def test_what_is_not_compiled_is_refused_by_name(make, words: str, tmp_path: Path) -> None:
+def test_what_is_not_compiled_is_refused_by_name(
+    options: dict[str, Any], words: str, tmp_path: Path
+) -> None:
     with pytest.raises(InvalidInputError, match=words):
-        c99(make(), tmp_path / "none")
+        c99(drawing(**options)[0], tmp_path / "none")
     assert not (tmp_path / "none").exists()
 
 
@@ -273,10 +267,6 @@ def test_without_a_reference_the_vectors_follow_a_figure(tmp_path: Path) -> None
     assert np.ptp(rows[:, 8]) > 1e-3
 
 
-def _no_compiler() -> list[str]:
-    raise LookupError("apt-get install gcc")
-
-
 def test_errors_of_loading(
     heart: Path, exported: ExportedController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -285,7 +275,7 @@ def test_errors_of_loading(
     (tmp_path / "controller.c").write_text("int broken(", encoding="utf-8")
     with pytest.raises(FileError, match="does not compile"):
         load(tmp_path)
-    monkeypatch.setattr(build, "compiler", _no_compiler)
+    monkeypatch.setattr(build, "compiler", Mock(side_effect=LookupError("apt-get install gcc")))
     with pytest.raises(FileError, match="apt-get install gcc"):
         load(heart)
     with pytest.raises(InvalidInputError, match="q"):
