@@ -73,6 +73,20 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
     assert max(ratios) <= (1.0 if jerk == np.inf else 1.125)
 
 
+@pytest.mark.parametrize("cubic", [False, True])
+def test_the_way_along_a_motion_is_the_sum_of_its_velocities(cubic: bool) -> None:
+    random = np.random.default_rng(4)
+    for _ in range(300):
+        M = float(random.integers(1, 40))
+        x, before = random.standard_normal(2)
+        b = stopping.bend_of(x, before, M) if cubic else 0.0
+        motion = stopping.Motion(np.array([x]), np.array([b]), M, cubic)
+        velocities = [stopping.velocity_at(x, b, u, cubic) for u in np.arange(M) / M]
+        ways = np.append(0.0, np.cumsum(velocities)) * 1e-3
+        assert stopping.least_way(motion, x, b, 1e-3) == pytest.approx(ways.min(), abs=1e-12)
+        assert stopping.way_along(motion, x, b, M, 1e-3) == pytest.approx(ways[-1], abs=1e-12)
+
+
 START = d.Configuration(ROBOT, ROBOT.start_posture())
 
 

@@ -48,27 +48,21 @@ def test_advance_moves_by_the_time_given_and_says_how_far_it_is() -> None:
     assert gaps[-1] < 1e-3 < gaps[0]
 
 
-def test_a_state_that_is_not_a_number_is_reported_and_forgotten() -> None:
-    good, x = known_qp(np.random.default_rng(10), 4, 1, 1)
-    bad = d.QP(good.P, np.full(4, np.nan), A=good.A, b=good.b, lb=good.lb, ub=good.ub)
-    solver = d.DNNSolver()
-    assert solver.solve(bad).status is d.Status.NOT_FINITE
-    assert solver.advance(bad, 1e-4).status is d.Status.NOT_FINITE
-    after = solver.solve(good)
-    assert after.found
-    assert np.abs(after.x - x).max() < 1e-6
-
-
-def test_a_program_without_a_solution_does_not_spoil_the_next() -> None:
+def test_a_program_without_an_answer_does_not_spoil_the_next() -> None:
     good, x = known_qp(np.random.default_rng(11), 4, 2, 1)
+    bounds = {"lb": good.lb, "ub": good.ub}
     rows = np.vstack([good.A[:1], good.A[:1]])
-    bad = d.QP(good.P, good.q, A=rows, b=[0.0, 1.0], lb=good.lb, ub=good.ub)
+    infeasible = d.QP(good.P, good.q, A=rows, b=[0.0, 1.0], **bounds)
+    spoilt = d.QP(good.P, np.full(4, np.nan), A=good.A, b=good.b, **bounds)
     solver = d.DNNSolver()
-    for _ in range(3):
-        assert solver.solve(bad).status is d.Status.PRIMAL_INFEASIBLE
+    bad = [(infeasible, d.Status.PRIMAL_INFEASIBLE), (spoilt, d.Status.NOT_FINITE)]
+    for qp, status in 3 * bad:
+        assert solver.solve(qp).status is status
         after = solver.solve(good)
         assert after.found
         assert np.abs(after.x - x).max() < 1e-6
+    assert solver.advance(spoilt, 1e-4).status is d.Status.NOT_FINITE
+    assert solver.solve(good).found
 
 
 def test_settings_are_frozen_and_checked_and_reach_the_compiled_answer() -> None:

@@ -138,6 +138,11 @@ def test_a_vertex_of_a_linear_program_is_proven_by_its_multipliers() -> None:
     assert (proof.reason, proof.bound < 1e-9) == ("", True)
 
 
+def test_where_products_underflow_the_bound_says_so() -> None:
+    assert prove(QP([[1e-308]], [-1e-308]), answer([1.0])).bound > 1e10
+    assert prove(QP([[1e-200]], [-1e-200]), answer([1.0])).bound < 1e-14
+
+
 def test_a_limit_that_the_answer_names_wrongly_is_released() -> None:
     # x = 1 is free; the multipliers hold it at the row, or at one of the bounds.
     qp = QP(np.eye(1), [-1.0], G=[[1.0]], h=[2.0], lb=[0.0], ub=[3.0])
