@@ -194,4 +194,5 @@ def test_the_codes_in_a_record_stay_what_they_are() -> None:
     codes = {action.name.lower(): int(action) for action in Action}
     assert codes == {"none": 0, "slow": 2, "relax": 3, "stop": 4, "euler": 5}
     assert {code: name for name, code in codes.items() if code} == ACTIONS
-    assert [kind.name for kind in ProgramKind] == ["OWN", "SCALED", "SOFTENED", "HELD", "STOPPED"]
+    kinds = {kind.name: int(kind) for kind in ProgramKind}
+    assert kinds == {"OWN": 0, "SCALED": 1, "SOFTENED": 2, "HELD": 3, "STOPPED": 4}
