@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
 
 Array = NDArray[np.float64]
 
@@ -32,23 +33,19 @@ IIWA7_INERTIALS = [
 PAPER_Q0 = (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0)
 
 
-def dh_pose(q: ArrayLike, alpha: tuple[int, ...] = IIWA7_ALPHA) -> tuple[Array, Array]:
+def dh_pose(q: ArrayLike) -> tuple[Array, Array]:
     """Position [m] and rotation of the iiwa 7's flange at q (..., 7), by the standard DH formula.
 
     Each joint adds Rot_z(q) Trans_z(d) Rot_x(alpha).
     """
     q = np.asarray(q, dtype=np.float64)
-    position = np.zeros((*q.shape[:-1], 3))
-    rotation = np.broadcast_to(np.eye(3), (*q.shape[:-1], 3, 3))
-    for i in range(7):
-        c, s = np.cos(q[..., i]), np.sin(q[..., i])
-        # A quarter turn's cosine and sine are exact here, which np.cos(np.pi / 2) is not.
-        ca, sa = (1.0, 0.0) if alpha[i] == 0 else (0.0, float(alpha[i]))
-        zero, one = np.zeros_like(c), np.ones_like(c)
-        rows = ([c, -s * ca, s * sa], [s, c * ca, -c * sa], [zero, sa * one, ca * one])
-        step = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-        position = position + IIWA7_D[i] * rotation[..., :, 2]
-        rotation = rotation @ step
+    position = np.zeros(3)
+    rotation = np.eye(3)
+    for d, sine, angle in zip(IIWA7_D, IIWA7_ALPHA, np.moveaxis(q, -1, 0), strict=True):
+        cosine = 1 - abs(sine)
+        quarter = np.array([[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]])
+        position = position + d * rotation[..., 2]
+        rotation = rotation @ Rotation.from_euler("z", angle).as_matrix() @ quarter
     return position, rotation
 
 
