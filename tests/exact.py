@@ -9,50 +9,53 @@ from __future__ import annotations
 
 from collections import deque
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from iiwa_dnn.qp.program import QP
 
-Rows = list[list[int]]
 Face = frozenset[int]
 """Active constraints by their numbers: row j of G is j, the bounds follow, upper ones first."""
 
 
 class WholeProgram(NamedTuple):
-    """A program times a power of two: min 1/2 x^T P x + q^T x with A x = b, C x <= d."""
+    """A program times a power of two, of Python's whole numbers.
 
-    P: Rows  # twice its symmetric part, (n, n)
-    q: list[int]  # twice, (n,)
-    Ab: Rows  # equality rows and bounds that are equal, [A | b], (p, n + 1)
-    C: Rows  # inequality rows, then upper and lower bounds, (m + 2 n, n)
-    d: list[int | None]  # None where there is no limit
+    min 1/2 x^T P x + q^T x with A x = b, C x <= d
+    """
+
+    P: Any  # twice its symmetric part, (n, n)
+    q: Any  # twice, (n,)
+    A: Any  # equality rows and bounds that are equal, (p, n)
+    b: Any
+    C: Any  # inequality rows, then upper and lower bounds, (m + 2 n, n)
+    d: Any  # inf where there is no limit
 
 
 def whole(qp: QP) -> WholeProgram:
     """Convert a program of finite coefficients."""
     one = max(float(v).as_integer_ratio()[1] for v in qp.data[np.isfinite(qp.data)])
 
-    def numbers(matrix: ArrayLike) -> Rows:
-        return [[int(Fraction(v) * one) for v in row] for row in np.atleast_2d(matrix).tolist()]
+    def number(value: float) -> float:
+        return int(Fraction(value) * one) if np.isfinite(value) else value
 
+    numbers = np.vectorize(number, otypes=[object])
     eye = np.eye(qp.q.size)
     equal = qp.lb == qp.ub
-    limits = np.concatenate([qp.h, qp.ub, -qp.lb])
     P = numbers(qp.P)
     return WholeProgram(
-        [[v + P[k][i] for k, v in enumerate(row)] for i, row in enumerate(P)],
-        [2 * v for v in numbers(qp.q)[0]],
-        numbers(np.column_stack([np.vstack([qp.A, eye[equal]]), [*qp.b, *qp.ub[equal]]])),
+        P + P.T,
+        2 * numbers(qp.q),
+        numbers(np.vstack([qp.A, eye[equal]])),
+        numbers(np.concatenate([qp.b, qp.ub[equal]])),
         numbers(np.vstack([qp.G, eye, -eye])),
-        [None if v == np.inf else numbers(v)[0][0] for v in limits],
+        numbers(np.concatenate([qp.h, qp.ub, -qp.lb])),
     )
 
 
-def solve(table: Rows, determined: int) -> list[Fraction] | None:
-    """Solve a system [rows | right-hand side] exactly.
+def solve(table: Any, determined: int) -> Any:
+    """Solve a system [rows | right-hand side] of whole numbers exactly.
 
     None if rows contradict each other, or one of the first unknowns, so many, can be chosen; of the
     others that can, each is zero. E. H. Bareiss, "Sylvester's identity and multistep
@@ -60,46 +63,37 @@ def solve(table: Rows, determined: int) -> list[Fraction] | None:
     """
     pivots: list[int] = []
     before = 1
-    for k in range(len(table[0]) - 1):
+    for k in range(table.shape[1] - 1):
         place = len(pivots)
-        pivot = next((i for i in range(place, len(table)) if table[i][k]), None)
-        if pivot is None:
-            if k < determined:
-                return None
-            continue
-        table[place], table[pivot] = table[pivot], table[place]
-        pivots.append(k)
-        top = table[place]
-        head = top[k]
-        for i, row in enumerate(table):
-            factor = row[k]
-            if i != place and (factor or head != before):
-                table[i] = [
-                    (head * v - factor * w) // before for v, w in zip(row, top, strict=True)
-                ]
-        before = head
-    if any(row[-1] for row in table[len(pivots) :]):
+        rows = place + np.flatnonzero(table[place:, k])
+        if rows.size:
+            table[[place, rows[0]]] = table[[rows[0], place]]
+            top = table[place].copy()
+            table = (top[k] * table - np.outer(table[:, k], top)) // before
+            table[place] = top
+            before = top[k]
+            pivots.append(k)
+        elif k < determined:
+            return None
+    if table[len(pivots) :, -1].any():
         return None
-    found = [Fraction(0)] * (len(table[0]) - 1)
-    for k, row in zip(pivots, table, strict=False):
-        found[k] = Fraction(row[-1], before)
+    found = np.full(table.shape[1] - 1, Fraction(0))
+    found[pivots] = [Fraction(value, before) for value in table[: len(pivots), -1]]
     return found
 
 
-def at_face(program: WholeProgram, face: Face) -> tuple[list[Fraction], list[Fraction]] | None:
-    """Solve the KKT system of a face: x and the multipliers of its constraints, or None."""
-    n = len(program.q)
-    below = program.Ab + [[*program.C[j], program.d[j] or 0] for j in sorted(face)]
-    none = [0] * len(below)
-    table = [[*program.P[i], *(row[i] for row in below), -program.q[i]] for i in range(n)] + [
-        [*row[:-1], *none, row[-1]] for row in below
-    ]
-    found = solve(table, n)
-    return None if found is None else (found[:n], found[n + len(program.Ab) :])
+def at_face(program: WholeProgram, face: Face) -> Any:
+    """Solve the KKT system of a face: x and all multipliers, its own last, or None."""
+    order = sorted(face)
+    rows = np.vstack([program.A, program.C[order]])
+    none = np.zeros((len(rows), len(rows)), dtype=int)
+    right = np.concatenate([-program.q, program.b, program.d[order]])
+    table = np.column_stack([np.block([[program.P, rows.T], [rows, none]]), right])
+    return solve(table, program.q.size)
 
 
-def exact_solution(qp: QP, face: Face, most: int = 400) -> list[Fraction] | None:
-    """Find the exact solution of a convex program, beginning at a face of its constraints.
+def exact_solution(qp: QP, face: Face, most: int = 400) -> Any:
+    """Find the exact solution (n,) of a convex program, beginning at a face of its constraints.
 
     Faces are left by the constraints that their point violates and by those whose multiplier is
     negative, breadth first; None if no face among so many has a point whose KKT conditions hold.
@@ -112,27 +106,21 @@ def exact_solution(qp: QP, face: Face, most: int = 400) -> list[Fraction] | None
         found = at_face(program, face)
         moves = [face - {j} for j in sorted(face)]
         if found is not None:
-            x, multipliers = found
-            signs = zip(sorted(face), multipliers, strict=True)
-            negative = frozenset(j for j, value in signs if value < 0)
-            violated = [j for j in range(len(program.d)) if j not in face and breaks(program, j, x)]
+            x = found[: qp.q.size]
+            signs = zip(sorted(face), found[len(found) - len(face) :], strict=True)
+            negative = frozenset(j for j, multiplier in signs if multiplier < 0)
+            violated = set(np.flatnonzero(program.C @ x > program.d).tolist()) - face
             if not negative and not violated:
                 return x
-            moves = [face - negative | set(violated)] if violated else []
-            moves += [face - {j} for j in sorted(negative)] + [face | {j} for j in violated]
-            moves += [face - {k} | {j} for j in violated for k in sorted(face)]
+            moves = [face - negative | violated] if violated else []
+            moves += [face - {j} for j in sorted(negative)]
+            moves += [face | {j} for j in sorted(violated)]
+            moves += [face - {k} | {j} for j in sorted(violated) for k in sorted(face)]
         for move in moves:
             if move not in seen:
                 seen.add(move)
                 waiting.append(move)
     return None
-
-
-def breaks(program: WholeProgram, j: int, x: list[Fraction]) -> bool:
-    """Test whether a point (n,) breaks constraint j."""
-    limit = program.d[j]
-    reached = sum((c * v for c, v in zip(program.C[j], x, strict=True) if c), Fraction(0))
-    return limit is not None and reached > limit
 
 
 def face_of(qp: QP, active: np.ndarray) -> Face:
@@ -144,9 +132,9 @@ def face_of(qp: QP, active: np.ndarray) -> Face:
     return frozenset(rows + upper + lower)
 
 
-def distance(x: np.ndarray, exact: list[Fraction]) -> Fraction:
+def distance(x: np.ndarray, exact: Any) -> Fraction:
     """Compute the largest distance of the entries of a point (n,) from the exact ones."""
-    return max(abs(Fraction(float(v)) - w) for v, w in zip(x, exact, strict=True))
+    return max(abs(Fraction(v) - w) for v, w in zip(x, exact, strict=True))
 
 
 def whole_numbers(rng: np.random.Generator) -> QP:
