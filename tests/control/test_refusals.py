@@ -24,7 +24,6 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("policy", lambda: controller(policy="raise")),
     ("scheme", lambda: Controller(paper_robot(), object())),  # type: ignore[arg-type]
     ("dt", lambda: controller(dt=0.0)),
-    ("dt", lambda: controller(dt=np.nan)),
     ("reference", lambda: Controller(paper_robot(), DoubleIndicator()).step(PAPER_Q0, 0.0)),
     ("dt", lambda: controller().step(PAPER_Q0, 0.0, dt=0.0)),
     ("measurement", lambda: NoiseModel(measurement=0.0)),
@@ -54,7 +53,6 @@ READINGS: dict[str, Any] = {
     "complex": np.array(PAPER_Q0) + 0j,
     "masked": np.ma.masked_array(PAPER_Q0, mask=[True, False, False, False, False, False, False]),
     "short": np.array(PAPER_Q0)[:6],
-    "column": np.zeros((7, 1)),
     "nan": np.full(7, np.nan),
     "text": ["a"] * 7,
 }

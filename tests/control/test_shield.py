@@ -82,7 +82,6 @@ def test_a_clipped_command_is_the_nearest_one_by_another_solver(robot: d.Robot) 
         (np.array([0.3, -0.2, 0.1, 0.4, -0.3, 0.2, 0.1]), 0.0, 1e-9),
         (np.full(7, 0.5), 0.2, 3.0 * 500.0 * DT**2),
     ],
-    ids=["held", "swinging"],
 )
 def test_a_wish_that_jumps_is_reached_and_not_passed(wish, swing, most) -> None:
     shield = d.Shield(SMOOTH, DT)

@@ -44,7 +44,6 @@ def test_sparse_and_single_row_problems_are_taken() -> None:
         lambda a: np.array(a, dtype=np.int8),
         lambda a: (a.setflags(write=False), a)[1],
     ],
-    ids=["columns", "lists", "slices", "swapped", "single", "integers", "read-only"],
 )
 def test_arrays_of_every_kind_make_the_same_program(kind: Callable[[np.ndarray], object]) -> None:
     rng = np.random.default_rng(0)

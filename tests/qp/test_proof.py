@@ -152,6 +152,14 @@ def test_a_limit_that_the_answer_names_wrongly_is_released() -> None:
         assert not proof.active.any()
 
 
+@pytest.mark.parametrize("scale", [1e-8, 1e8])
+def test_rows_in_another_unit_than_the_cost_are_no_obstacle(scale: float) -> None:
+    a = np.array([1.0, 2.0, 3.0])
+    A = scale * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0]])
+    proof = prove(QP(np.outer(a, a), -6.0 * a, A=A, b=A.sum(axis=1)), answer([1.0, 1.0, 1.0]))
+    assert (proof.reason, proof.bound < 1e-10) == ("", True)
+
+
 def test_a_cost_that_lacks_less_than_rounding_to_be_convex_is_not_proven() -> None:
     assert Fraction(2.7) * Fraction(0.3) < Fraction(0.9) ** 2
     P = [[2.7, 0.9, 0.0], [0.9, 0.3, 0.0], [0.0, 0.0, 0.0]]

@@ -74,12 +74,7 @@ def test_hostile_choices_break_no_limit(speed, acceleration, jerk, dt, seed) -> 
 
 @pytest.mark.parametrize(
     ("limits", "dt"),
-    [
-        ((1.71, 8.65, INF), 1e-3),
-        ((2.175, 15.0, INF), 1e-2),
-        ((2.0, 300.0, INF), 2e-2),
-        ((2.0, 15.0, 500.0), 1e-2),
-    ],
+    [((1.71, 8.65, INF), 1e-3), ((2.0, 300.0, INF), 2e-2), ((2.0, 15.0, 500.0), 1e-2)],
 )
 @pytest.mark.parametrize("start", [-1.6, 1.6])
 def test_outside_a_position_limit_the_velocity_limit_holds(limits, dt, start) -> None:
