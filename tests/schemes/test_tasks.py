@@ -11,7 +11,15 @@ from scipy.spatial.transform import Rotation
 
 import iiwa_dnn as d
 from helpers_kinematics import Array, finite_difference
-from helpers_simulation import block_vector, near_target, orientation_rows, paper_robot, rows_of
+from helpers_simulation import (
+    block_map,
+    block_vector,
+    near_target,
+    orientation_rows,
+    paper_robot,
+    rows_of,
+)
+from iiwa_dnn.schemes.tasks import project_on_range
 
 ROBOT = paper_robot()
 START = d.Configuration(ROBOT, [-1.2, -0.6, 0.3, 1.4, 0.2, -0.9, 0.4])
@@ -101,6 +109,18 @@ def test_block_right_hand_side_is_projected_so_that_all_rows_can_be_fulfilled() 
         A, b = orientation_rows("block", conf, target, 3.0)
         basis = scipy.linalg.orth(A, rcond=1e-9)  # the four contradict each other off the path
         assert_allclose(b, basis @ (basis.T @ (rate + 3.0 * error)), rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 1e-12, 1e-7, 1e-3, 1.0, 2.0, np.pi - 1e-3, np.pi])
+def test_projection_on_the_range_of_the_blocks_rows_is_scipys(tilt: float) -> None:
+    rng = np.random.default_rng(0)
+    for yaw, spin in rng.uniform(-np.pi, np.pi, (50, 2)):
+        rotation = Rotation.from_euler("ZYZ", [yaw, tilt, spin]).as_matrix()
+        vector = rng.standard_normal(4)
+        basis = scipy.linalg.orth(block_map(rotation), rcond=1e-9)
+        expected = basis @ (basis.T @ vector)
+        project_on_range(np.append(rotation.T, np.zeros(3)), vector)
+        assert_allclose(vector, expected, rtol=0, atol=1e-8)
 
 
 @pytest.mark.parametrize("angle", [1e-9, 0.5, 2.0, 3.1])
