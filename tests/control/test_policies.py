@@ -153,10 +153,7 @@ def test_limits_that_contradict_each_other_stop_the_arm(policy: Policy) -> None:
     assert command.blocking[-1] == 1
 
 
-@pytest.mark.parametrize(
-    ("row", "kind"),
-    [(0.2, ProgramKind.SCALED), (0.04, ProgramKind.SOFTENED)],
-)
+@pytest.mark.parametrize(("row", "kind"), [(0.2, ProgramKind.SCALED), (0.04, ProgramKind.SOFTENED)])
 def test_slow_softens_where_the_joints_race_for_next_to_nothing(row, kind) -> None:
     qp = d.QP(np.eye(1), np.zeros(1), A=[[row]], b=[1.5 * row], lb=[-1.0], ub=[1.0])
     command = decide(qp, "slow")
