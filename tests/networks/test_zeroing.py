@@ -5,7 +5,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from helpers_kinematics import finite_difference
-from helpers_moving import MovingProgram
 from helpers_qp import known_qp
 from iiwa_dnn import QP, DNNSolver, ExplicitEuler, NoSolutionError
 from iiwa_dnn.networks import ZeroingNetwork
@@ -28,6 +27,16 @@ FORMULAS = [EULER, TAYLOR3, FIFD, TAYLOR4, TAYLOR5]
 # Equality rows only: E is linear in the state, and the theorems hold entry by entry.
 LINEAR = QP(np.diag([1.0, 2.0, 4.0]), [1.0, -1.0, 0.5], A=[[1.0, 1.0, 1.0]], b=[0.5])
 MATRIX = np.block([[LINEAR.P, LINEAR.A.T], [LINEAR.A, np.zeros((1, 1))]])
+
+
+class MovingProgram:
+    """Equality rows only: P, q, A and b are sinusoids of the time."""
+
+    def at(self, t: float) -> QP:
+        P = np.diag([2.0 + 0.5 * np.sin(t), 3.0, 2.0 + 0.5 * np.cos(2 * t)])
+        q = [np.sin(t), np.cos(3 * t), np.sin(2 * t + 1)]
+        A = [[1.0, np.cos(t), np.sin(t)]]
+        return QP(P, q, A=A, b=[0.5 * np.cos(2 * t)])
 
 
 def error_of(qp: QP, state: np.ndarray) -> np.ndarray:
