@@ -12,31 +12,23 @@ import pytest
 
 import iiwa_dnn
 from helpers_kinematics import PAPER_Q0
-from helpers_simulation import paper_robot, run
-from iiwa_dnn import Record, Robot
+from helpers_simulation import run
+from iiwa_dnn import Record
 from iiwa_dnn.simulation import Disturbances
-from iiwa_dnn.simulation.plants.torque_control import TorqueGains
 
 ROOT = Path(__file__).parents[1]
 START = np.array(PAPER_Q0)
-papers_robot = paper_robot
 
 
-def heart_in_physics(
-    robot: Robot,
-    timestep: float = 2.5e-4,
-    disturbances: Disturbances | None = None,
-    gains: TorqueGains | None = None,
-    **options: object,
-) -> Record:
+def heart_in_physics(disturbances: Disturbances | None = None, **options: object) -> Record:
     """The paper's heart in physics, by default without a cross-check."""
-    plant = iiwa_dnn.MujocoPlant(disturbances, gains, timestep=timestep)
-    return run(robot=robot, plant=plant, **{"duration": None} | options)
+    plant = iiwa_dnn.MujocoPlant(disturbances, timestep=2.5e-4)
+    return run(plant=plant, **{"duration": None} | options)
 
 
-def heart_without_physics(robot: Robot, steps: int = 500) -> Record:
+def heart_without_physics(steps: int = 500) -> Record:
     """The paper's heart, quickly: for tests of what is drawn."""
-    return run(robot=robot, dt=10.0 / steps, duration=10.0)
+    return run(dt=10.0 / steps, duration=10.0)
 
 
 def distance(record: Record) -> np.ndarray:

@@ -21,8 +21,9 @@ import pytest
 import iiwa_dnn
 from helpers_browser import needs_browser, open_browser, picture, requested, wait_for
 from helpers_commands import call
-from helpers_physics import ROOT, START, heart_without_physics, papers_robot
+from helpers_physics import ROOT, START, heart_without_physics
 from helpers_records import make_record
+from helpers_simulation import paper_robot
 from iiwa_dnn import IiwaDnnError, InvalidInputError, Record, load_robot
 from iiwa_dnn.app.replay import Replay, robot_of
 
@@ -35,7 +36,7 @@ from selenium.webdriver.common.keys import Keys
 @pytest.fixture(scope="module")
 def slowed() -> Record:
     """A heart, slowed in its middle, beside a ball that falls and a box."""
-    robot = papers_robot().with_limits(velocity=0.1 * papers_robot().dq_max)
+    robot = paper_robot().with_limits(velocity=0.1 * paper_robot().dq_max)
     obstacles = [
         iiwa_dnn.Sphere([0.5, -0.45, 0.35], 0.05, velocity=[0.0, 0.0, -0.05]),
         iiwa_dnn.HalfSpace([0.0, 0.0, 1.0], -0.2),
@@ -50,7 +51,7 @@ def slowed() -> Record:
 @pytest.fixture(scope="module")
 def replay(slowed: Record) -> Iterator[Replay]:
     """The page, kept moving as the command does it."""
-    page = Replay(papers_robot(), slowed, port=0)
+    page = Replay(paper_robot(), slowed, port=0)
     # Slow without a graphics card: at each loading, ten seconds to prepare the reflections alone.
     page.server.scene.configure_default_lights(cast_shadow=False)
     page.server.scene.configure_environment_map(hdri=None)
@@ -183,7 +184,7 @@ def test_on_a_phone_the_arm_stands_above_the_controls(browser: Any, replay: Repl
 
 
 def test_obstacles_stand_where_they_are_and_slowed_stretches_are_marked(slowed: Record) -> None:
-    page = Replay(papers_robot(), slowed, port=0)
+    page = Replay(paper_robot(), slowed, port=0)
     try:
         drawn = dict(page.obstacles)
         assert [type(obstacle).__name__ for obstacle in drawn] == ["Sphere", "Box"]
@@ -205,7 +206,7 @@ def test_obstacles_stand_where_they_are_and_slowed_stretches_are_marked(slowed: 
 
 
 def test_the_command_opens_the_page_of_a_folder_until_ctrl_c(tmp_path: Path) -> None:
-    heart_without_physics(papers_robot(), 100).save(tmp_path / "record.npz")
+    heart_without_physics(100).save(tmp_path / "record.npz")
     command = [sys.executable, "-m", "iiwa_dnn", "view", str(tmp_path), "--port", "0"]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
@@ -244,7 +245,7 @@ def test_the_robot_is_the_one_of_the_settings_or_the_record(tmp_path: Path) -> N
 
 
 def test_bad_input_is_one_line_and_2(tmp_path, capsys, monkeypatch) -> None:
-    heart_without_physics(papers_robot(), 100).save(tmp_path / "record.npz")
+    heart_without_physics(100).save(tmp_path / "record.npz")
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         bad = {

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from helpers_physics import heart_without_physics, needs_opengl, papers_robot
+from helpers_physics import heart_without_physics, needs_opengl
+from helpers_simulation import paper_robot
 from iiwa_dnn import FileError
 
 pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
@@ -17,12 +18,12 @@ from iiwa_dnn.results import pictures  # noqa: E402 - only where there is someth
 
 @pytest.fixture(scope="module")
 def robot():
-    return papers_robot()
+    return paper_robot()
 
 
 @pytest.fixture(scope="module")
-def record(robot):
-    return heart_without_physics(robot)
+def record():
+    return heart_without_physics()
 
 
 def red(image: np.ndarray) -> np.ndarray:

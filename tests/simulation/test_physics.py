@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from helpers_kinematics import dh_pose
-from helpers_physics import distance, heart_in_physics, papers_robot
+from helpers_physics import distance, heart_in_physics
 from iiwa_dnn import Record, failures
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
 from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
@@ -15,18 +15,13 @@ TORQUE_LIMITS = np.array([176.0, 176.0, 110.0, 110.0, 110.0, 40.0, 40.0])  # the
 
 
 @pytest.fixture(scope="module")
-def robot():
-    return papers_robot()
+def nominal() -> Record:
+    return heart_in_physics()
 
 
 @pytest.fixture(scope="module")
-def nominal(robot) -> Record:
-    return heart_in_physics(robot)
-
-
-@pytest.fixture(scope="module")
-def disturbed(robot) -> Record:
-    return heart_in_physics(robot, disturbances=Disturbances.typical(), duration=5.0, seed=1)
+def disturbed() -> Record:
+    return heart_in_physics(Disturbances.typical(), duration=5.0, seed=1)
 
 
 def limits_are_kept(record: Record) -> bool:
@@ -62,11 +57,11 @@ def test_all_disturbances_but_the_push(disturbed):
     assert disturbed.settings["physics"]["disturbances"]["delay"] == 1
 
 
-def test_back_within_a_second_after_the_push(robot, disturbed):
+def test_back_within_a_second_after_the_push(disturbed):
     force = (10.0, 10.0, -10.0)
     push = Push(force, start=0.4, duration=0.2)
     disturbances = Disturbances.typical(push)
-    record = heart_in_physics(robot, disturbances=disturbances, duration=2.0, seed=1)
+    record = heart_in_physics(disturbances, duration=2.0, seed=1)
     error, t = distance(record), record.t
     assert error[t >= push.start + push.duration + 1.0].max() < 1e-3
     # Pushed, and not only disturbed.
@@ -78,7 +73,7 @@ def test_back_within_a_second_after_the_push(robot, disturbed):
     assert limits_are_kept(record)
 
 
-def test_a_state_that_is_not_a_number_ends_the_run(robot, monkeypatch):
+def test_a_state_that_is_not_a_number_ends_the_run(monkeypatch):
     step = MujocoPlant._step
 
     def break_once(plant, torque):
@@ -87,7 +82,7 @@ def test_a_state_that_is_not_a_number_ends_the_run(robot, monkeypatch):
         step(plant, torque)
 
     monkeypatch.setattr(MujocoPlant, "_step", break_once)
-    record = heart_in_physics(robot, duration=1.0)
+    record = heart_in_physics(duration=1.0)
     assert record.settings["status"] == "stopped at step 100 (t = 0.1 s): the physics diverged"
     assert record.steps == 101
     assert np.isfinite(record.q).all()
