@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +15,7 @@ from scipy.spatial.transform import Rotation
 import iiwa_dnn
 from helpers_kinematics import PAPER_Q0
 from helpers_qp import bounds_as_rows, known_qp, network_rates
-from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start
+from helpers_simulation import heart, paper_robot, paper_start, run
 from iiwa_dnn import (
     QP,
     Configuration,
@@ -26,9 +25,7 @@ from iiwa_dnn import (
     Network,
     OneLayerNetwork,
     ProjectionNetwork,
-    Record,
     Status,
-    simulate,
 )
 from iiwa_dnn.networks.primal_dual import SHARE
 from iiwa_dnn.results.metrics import position_error
@@ -39,11 +36,6 @@ RHO, DELTA = 9e-5, 10.2
 SO3 = DoubleIndicator(orientation="so3", home=PAPER_Q0)
 UNPROJECTED = ProjectionNetwork(primal_projection=False)
 PAGE = (Path(__file__).parents[1] / "docs" / "theory.md").read_text(encoding="utf-8")
-
-
-def run(path: iiwa_dnn.Reference, scheme: iiwa_dnn.Scheme = SO3, **options: Any) -> Record:
-    """A run of the paper's arm from its start, without a check."""
-    return simulate(paper_robot(), scheme, path, PAPER_Q0, check=UNCHECKED, **options)
 
 
 def euler(network: Network, qp: QP, state: ArrayLike, step: float, count: int) -> Iterator[Array]:
@@ -178,8 +170,8 @@ def test_without_cost_the_flow_circles() -> None:
 @pytest.mark.parametrize("weight", [0.2, 0.9])
 def test_the_lag_of_a_continuous_run_follows_from_a_settled_one(weight: float) -> None:
     scheme, duration = DoubleIndicator(weight, orientation="so3", home=PAPER_Q0), 0.6
-    lagging = run(heart(), scheme, mode="continuous", duration=duration)
-    settled = run(heart(), scheme, dt=5e-3, duration=duration, motion="midpoint")
+    lagging = run(scheme, dt=1e-4, mode="continuous", duration=duration)
+    settled = run(scheme, dt=5e-3, duration=duration, motion="midpoint")
     y = []
     for q, t in zip(settled.q, settled.t, strict=True):
         qp = scheme.build_qp(Configuration(paper_robot(), q), heart().at(t))
@@ -228,7 +220,7 @@ def test_the_mean_square_that_noise_leaves() -> None:
     sigma, dt = 0.01, 4e-3
     target = iiwa_dnn.Circle(radius=1e-9, period=10.0).anchored(paper_start())  # at rest
     errors = [
-        position_error(run(target, dt=dt, duration=8.0, noise=sigma, seed=seed))[125:]
+        position_error(run(SO3, target, dt=dt, duration=8.0, noise=sigma, seed=seed))[125:]
         for seed in range(4)
     ]
     square = np.sum(paper_start().jacobian[:3] ** 2)
@@ -255,7 +247,8 @@ def test_the_lag_is_the_delay_times_the_joints_acceleration_over_the_gain(window
     Ten samples are late by four and a half steps, Euler's method by half a step of its own.
     """
     dt = 1e-3
-    record = run(Straight().anchored(paper_start()), dt=dt, filter_window=window)
+    path = Straight().anchored(paper_start())
+    record = run(SO3, path, duration=2.0, filter_window=window)
     assert record.settings["reference"] == {"name": "straight"}  # which is no dataclass
     acceleration = np.gradient(record.dq, dt, axis=0)
     delay = 0.5 * window * dt

@@ -11,14 +11,7 @@ from scipy.spatial.transform import Rotation
 
 import iiwa_dnn as d
 from helpers_kinematics import Array, finite_difference
-from helpers_simulation import (
-    block_map,
-    block_vector,
-    near_target,
-    orientation_rows,
-    paper_robot,
-    rows_of,
-)
+from helpers_simulation import block_map, block_vector, near_target, paper_robot, rows_of
 from iiwa_dnn.schemes.tasks import project_on_range
 
 ROBOT = paper_robot()
@@ -106,9 +99,9 @@ def test_block_right_hand_side_is_projected_so_that_all_rows_can_be_fulfilled() 
 
         rate = finite_difference(turned, [0.0])[:, 0]
         error = block_vector(target.rotation - conf.rotation)
-        A, b = orientation_rows("block", conf, target, 3.0)
-        basis = scipy.linalg.orth(A, rcond=1e-9)  # the four contradict each other off the path
-        assert_allclose(b, basis @ (basis.T @ (rate + 3.0 * error)), rtol=0, atol=1e-9)
+        qp = rows_of(d.OrientationTask(gain=3.0, form="block"), conf, target)
+        basis = scipy.linalg.orth(qp.A, rcond=1e-9)  # the four contradict each other off the path
+        assert_allclose(qp.b, basis @ (basis.T @ (rate + 3.0 * error)), rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("tilt", [0.0, 1e-12, 1e-7, 1e-3, 1.0, 2.0, np.pi - 1e-3, np.pi])
