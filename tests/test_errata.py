@@ -11,6 +11,7 @@ import qpsolvers
 from numpy.typing import NDArray
 from scipy.stats import kendalltau
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, dh_pose, finite_difference, rotation_angle
 from helpers_qp import bounds_as_rows
 from helpers_simulation import (
@@ -22,25 +23,15 @@ from helpers_simulation import (
     rows_of,
     run,
 )
-from iiwa_dnn import (
-    QP,
-    Configuration,
-    DoubleIndicator,
-    ExplicitEuler,
-    Heart,
-    JointLimits,
-    ProjectionNetwork,
-    solve_problem,
-)
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.statistics import trend
 
 Array = NDArray[np.float64]
 
 
-def program(weight: float = 0.2, orientation: str = "so3", t: float = 1.0) -> QP:
+def program(weight: float = 0.2, orientation: str = "so3", t: float = 1.0) -> d.QP:
     """The program at the paper's start, its target somewhat along the heart."""
-    scheme = DoubleIndicator(weight, orientation=orientation, home=PAPER_Q0)
+    scheme = d.DoubleIndicator(weight, orientation=orientation, home=PAPER_Q0)
     return scheme.build_qp(paper_start(), heart().at(t))
 
 
@@ -75,11 +66,11 @@ def test_chi_wants_minus_the_lower_bound() -> None:
 
 def test_the_inequalities_of_the_kkt_conditions_are_complementary() -> None:
     # A velocity limit just below what the fastest joint would do without: its bound is active.
-    scheme = DoubleIndicator(orientation="none", home=PAPER_Q0)
-    free = np.abs(solve_problem(scheme.build_qp(paper_start(), heart().at(0.3))).x).max()
-    conf = Configuration(paper_robot().with_limits(velocity=0.9 * free), PAPER_Q0)
+    scheme = d.DoubleIndicator(orientation="none", home=PAPER_Q0)
+    free = np.abs(d.solve_problem(scheme.build_qp(paper_start(), heart().at(0.3))).x).max()
+    conf = d.Configuration(paper_robot().with_limits(velocity=0.9 * free), PAPER_Q0)
     qp = scheme.build_qp(conf, heart().at(0.3))
-    solution = solve_problem(qp)
+    solution = d.solve_problem(qp)
     omega, chi = bounds_as_rows(qp)
     slack = omega @ solution.x - chi
     mu = np.concatenate([np.maximum(solution.z_box, 0.0), np.maximum(-solution.z_box, 0.0)])
@@ -125,8 +116,8 @@ def test_the_block_weakens_the_program() -> None:
 
 def test_the_blocks_multipliers_are_not_unique() -> None:
     qp = program(orientation="block", t=0.0)
-    network = ProjectionNetwork()
-    solution = solve_problem(qp)
+    network = d.ProjectionNetwork()
+    solution = d.solve_problem(qp)
     null = np.linalg.svd(qp.A.T)[2][-1]
     for shift in (0.0, 1.0, -5.0):
         state = np.zeros(network.state_size(qp))
@@ -139,13 +130,13 @@ def test_the_blocks_multipliers_are_not_unique() -> None:
 
 def test_the_blocks_rows_contradict_each_other_once_the_tool_lags() -> None:
     q = np.array(PAPER_Q0) + 1e-3 * np.array([1, -1, 1, 1, -1, 1, 1])
-    conf, target = Configuration(paper_robot(), q), heart().at(0.0)
+    conf, target = d.Configuration(paper_robot(), q), heart().at(0.0)
 
     def contradiction(rows: Array, rhs: Array) -> float:
         left = rhs - rows @ np.linalg.lstsq(rows, rhs, rcond=1e-9)[0]
         return float(np.abs(left).max())
 
-    qp = DoubleIndicator(orientation="block", home=PAPER_Q0).build_qp(conf, target)
+    qp = d.DoubleIndicator(orientation="block", home=PAPER_Q0).build_qp(conf, target)
     printed = 10.2 * (block_vector(target.rotation) - block_vector(conf.rotation))
     assert contradiction(qp.A[3:], printed) > 1e-6
     # Corrected, the rows agree, and what they ask for is the printed one at first order.
@@ -154,10 +145,10 @@ def test_the_blocks_rows_contradict_each_other_once_the_tool_lags() -> None:
 
 
 def test_with_identity_the_weight_acts_through_the_linear_term_alone() -> None:
-    away = Configuration(paper_robot(), np.array(PAPER_Q0) + 0.05)
+    away = d.Configuration(paper_robot(), np.array(PAPER_Q0) + 0.05)
 
-    def programs(conf: Configuration, kinetic: str = "identity") -> list[QP]:
-        schemes = [DoubleIndicator(w, home=PAPER_Q0, kinetic=kinetic) for w in paper.WEIGHTS]
+    def programs(conf: d.Configuration, kinetic: str = "identity") -> list[d.QP]:
+        schemes = [d.DoubleIndicator(w, home=PAPER_Q0, kinetic=kinetic) for w in paper.WEIGHTS]
         return [scheme.build_qp(conf, heart().at(1.0)) for scheme in schemes]
 
     def answers(*given: Any) -> list[Array]:
@@ -182,15 +173,15 @@ def test_what_the_paper_calls_xi_and_nu_are_four_things() -> None:
     base = program(weight=0.2)
     # xi the weight leaves Xi the rows alone; nu the gain leaves nu the multipliers' rows alone.
     np.testing.assert_array_equal(program(weight=0.7).A, base.A)
-    conf = Configuration(paper_robot(), np.array(PAPER_Q0) + 0.01)
+    conf = d.Configuration(paper_robot(), np.array(PAPER_Q0) + 0.01)
     weak, strong = (
-        DoubleIndicator(orientation_gain=gain, home=PAPER_Q0).build_qp(conf, heart().at(0.0))
+        d.DoubleIndicator(orientation_gain=gain, home=PAPER_Q0).build_qp(conf, heart().at(0.0))
         for gain in (1.0, 10.0)
     )
     np.testing.assert_array_equal(weak.A, strong.A)
     np.testing.assert_allclose(strong.b[3:], 10.0 * weak.b[3:], rtol=1e-12)
-    assert solve_problem(weak).y.shape == (6,), "nu the multipliers: one for each row"
-    assert {"weight", "orientation_gain"} <= set(DoubleIndicator().settings())
+    assert d.solve_problem(weak).y.shape == (6,), "nu the multipliers: one for each row"
+    assert {"weight", "orientation_gain"} <= set(d.DoubleIndicator().settings())
 
 
 def test_the_text_and_the_tables_disagree() -> None:
@@ -213,7 +204,7 @@ def test_a_run_without_noise_has_one_error() -> None:
 
 def test_the_kinetic_index_fits_a_heart_only_if_multiplied_by_dt() -> None:
     def index_and_width(scale: float) -> tuple[float, float]:
-        path = Heart(scale=scale).anchored(paper_start())
+        path = d.Heart(scale=scale).anchored(paper_start())
         record = run(reference=path, dt=1e-2, duration=10.0, motion="midpoint")
         return float(record.kinetic_index.max()), float(np.ptp(record.position_desired[:, 0]))
 
@@ -233,7 +224,7 @@ def test_outside_a_limit_the_printed_bounds_cross() -> None:
     lower = np.maximum(-robot.dq_max, 20.0 * (robot.q_lower - q))
     upper = np.minimum(robot.dq_max, 20.0 * (robot.q_upper - q))
     assert lower[3] > upper[3], "no velocity is allowed"
-    qp = rows_of(JointLimits(gain=20.0), Configuration(robot, q))
+    qp = rows_of(d.JointLimits(gain=20.0), d.Configuration(robot, q))
     assert (qp.lb <= qp.ub).all()
     assert qp.lb[3] == qp.ub[3] == -robot.dq_max[3], "back as fast as it may"
 
@@ -247,8 +238,8 @@ def test_the_hearts_parenthesis_closes_after_the_fourth_cosine() -> None:
         return a * inner - math.cos(4 * phase) - 5 * a
 
     assert abs(printed(0.0)) > 0.99, "a metre away from the start"
-    assert Heart(scale=a).at(0.0).position[1] == pytest.approx(0.0, abs=1e-15)
-    drawn = Heart(scale=a).sample(np.linspace(0.0, 10.0, 1001)).position
+    assert d.Heart(scale=a).at(0.0).position[1] == pytest.approx(0.0, abs=1e-15)
+    drawn = d.Heart(scale=a).sample(np.linspace(0.0, 10.0, 1001)).position
     assert np.ptp(drawn[:, 1]) < 0.11
 
 
@@ -265,7 +256,7 @@ def test_the_error_does_not_fall_with_the_weight_as_steadily_as_the_text_says() 
 
 def test_one_euler_step_in_a_control_step_is_unstable() -> None:
     qp = program(orientation="block", t=0.0)
-    network = ProjectionNetwork()
+    network = d.ProjectionNetwork()
     control_step = paper.DT / network.rho
     assert control_step == pytest.approx(1.11, abs=2e-3)
     largest = np.linalg.norm(qp.A, 2)
@@ -277,6 +268,6 @@ def test_one_euler_step_in_a_control_step_is_unstable() -> None:
     state = np.zeros(network.state_size(qp))
     state[:7] = 1e-3
     for _ in range(1000):
-        ExplicitEuler(substeps=1).advance(network, qp, state, control_step)
+        d.ExplicitEuler(substeps=1).advance(network, qp, state, control_step)
     assert np.isfinite(state).all()
     assert np.abs(network.rates(qp, state)).max() > 0.1

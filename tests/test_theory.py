@@ -5,40 +5,30 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-import iiwa_dnn
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_qp import bounds_as_rows, known_qp, network_rates
 from helpers_simulation import heart, paper_robot, paper_start, run
-from iiwa_dnn import (
-    QP,
-    Configuration,
-    DNNSolver,
-    DoubleIndicator,
-    ExplicitEuler,
-    Network,
-    OneLayerNetwork,
-    ProjectionNetwork,
-    Status,
-)
 from iiwa_dnn.networks.primal_dual import SHARE
 from iiwa_dnn.results.metrics import position_error
 from iiwa_dnn.studies.paper import MAX_ERROR
 
 Array = NDArray[np.float64]
 RHO, DELTA = 9e-5, 10.2
-SO3 = DoubleIndicator(orientation="so3", home=PAPER_Q0)
-UNPROJECTED = ProjectionNetwork(primal_projection=False)
+SO3 = d.DoubleIndicator(orientation="so3", home=PAPER_Q0)
+UNPROJECTED = d.ProjectionNetwork(primal_projection=False)
 PAGE = (Path(__file__).parents[1] / "docs" / "theory.md").read_text(encoding="utf-8")
 
 
-def euler(network: Network, qp: QP, state: ArrayLike, step: float, count: int) -> Iterator[Array]:
+def euler(network: d.Network, qp: d.QP, state: Any, step: float, count: int) -> Iterator[Array]:
     """The states after so many steps of Euler's method."""
     state = np.array(state, dtype=float)
     rates = network.flow(qp).rates
@@ -55,7 +45,7 @@ def test_trajectories_never_come_apart(active: int) -> None:
         qp, _ = known_qp(rng, 5, 3, active, dependent=True)
         root = rng.standard_normal((5, 5))
         P = 0.501 * np.eye(5) + root @ root.T  # above I/2
-        qp = QP(P, qp.q, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)
+        qp = d.QP(P, qp.q, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)
         size = UNPROJECTED.state_size(qp)
         # Near each other as well as far apart, and multipliers of either sign.
         one = 3.0 * rng.standard_normal(size)
@@ -68,14 +58,14 @@ def test_trajectories_never_come_apart(active: int) -> None:
 
 def test_below_a_half_they_may() -> None:
     # One variable, one bound: P = 0.05 and the worst slope that the proof allows for.
-    qp = QP([[0.05]], [0.0], lb=[-1.0], ub=[0.0])
+    qp = d.QP([[0.05]], [0.0], lb=[-1.0], ub=[0.0])
     step = np.array([1.0, -0.5, 0.5])
     rest = np.array([-0.5, 0.0, 0.0])
     approach = step @ (UNPROJECTED.rates(qp, rest + step) - UNPROJECTED.rates(qp, rest))
     assert approach > 0.4
 
 
-def variational(qp: QP) -> tuple[Array, Array]:
+def variational(qp: d.QP) -> tuple[Array, Array]:
     """H and c of T(u) = H u + c for u = [x, y, z, u, l], the bounds as rows."""
     n = qp.q.size
     rows = np.vstack([qp.A, qp.G, np.eye(n), -np.eye(n)])
@@ -84,19 +74,17 @@ def variational(qp: QP) -> tuple[Array, Array]:
     return np.block([[qp.P, rows.T], [-rows, none]]), constant
 
 
-def equilibrium(qp: QP) -> Array:
+def equilibrium(qp: d.QP) -> Array:
     """The KKT point as a state of the paper's network."""
-    found = DNNSolver(tol=1e-12).solve(qp)
+    found = d.DNNSolver(tol=1e-12).solve(qp)
     upper, lower = np.maximum(found.z_box, 0.0), np.maximum(-found.z_box, 0.0)
     return np.concatenate([found.x, found.y, found.z, upper, lower])
 
 
 @pytest.mark.parametrize("dependent", [False, True], ids=["independent", "dependent"])
-@pytest.mark.parametrize(
-    "network", [ProjectionNetwork(), OneLayerNetwork(corrected=False)], ids=["paper", "one-layer"]
-)
+@pytest.mark.parametrize("network", [d.ProjectionNetwork(), d.OneLayerNetwork(corrected=False)])
 def test_with_the_primal_projection_there_is_a_lyapunov_function(
-    network: Network, dependent: bool
+    network: d.Network, dependent: bool
 ) -> None:
     """rho dV/dt <= -|x - r_x|_P^2 - |x - x*|_P^2 and V >= |u - u*|^2 / 2, anywhere in K."""
     rng = np.random.default_rng(3)
@@ -105,14 +93,14 @@ def test_with_the_primal_projection_there_is_a_lyapunov_function(
         size = network.state_size(qp)  # the one-layer network has no multipliers of bounds
         H, constant = (array[..., :size] for array in variational(qp))
         H = H[:size]
-        if isinstance(network, OneLayerNetwork):
+        if isinstance(network, d.OneLayerNetwork):
             alpha = SHARE / np.linalg.norm(H, 2)
             H, constant = alpha * H, alpha * constant
         rest = equilibrium(qp)[:size]
         lower = np.concatenate([qp.lb, np.full(3, -np.inf), np.zeros(size - 8)])
         upper = np.concatenate([qp.ub, np.full(size - 5, np.inf)])
 
-        def distance(u: Array, qp: QP = qp, H: Array = H, c: Array = constant,
+        def distance(u: Array, qp: d.QP = qp, H: Array = H, c: Array = constant,
                      rest: Array = rest) -> float:  # fmt: skip
             moved = network.rates(qp, u)  # r - u
             gap = -(H @ u + c) @ moved - 0.5 * moved @ moved
@@ -134,8 +122,8 @@ def test_with_the_primal_projection_there_is_a_lyapunov_function(
 @pytest.mark.parametrize("far", [10.0, 100.0, 200.0])
 def test_settling_takes_as_long_as_the_multiplier_is_far_away(far: float) -> None:
     """P = A = 1, |x| <= 1: no exponential rate holds from everywhere, it would be log D."""
-    qp = QP([[1.0]], [0.0], A=[[1.0]], b=[0.0], lb=[-1.0], ub=[1.0])
-    states = euler(ProjectionNetwork(), qp, [0.0, -far, 0.0, 0.0], 0.01, round(100 * (far + 40)))
+    qp = d.QP([[1.0]], [0.0], A=[[1.0]], b=[0.0], lb=[-1.0], ub=[1.0])
+    states = euler(d.ProjectionNetwork(), qp, [0.0, -far, 0.0, 0.0], 0.01, round(100 * (far + 40)))
     away = [np.linalg.norm(state) > 1e-6 for state in states]
     assert 0.01 * np.flatnonzero(away)[-1] == pytest.approx(far + 28.0, abs=1.0)
 
@@ -159,8 +147,8 @@ def test_on_so3_a_gain_below_one_over_the_period_turns_the_error(gain: float) ->
 
 def test_without_cost_the_flow_circles() -> None:
     rng = np.random.default_rng(0)
-    qp = QP(np.zeros((4, 4)), np.zeros(4), A=rng.standard_normal((4, 4)), b=np.zeros(4))
-    for state in rng.standard_normal((20, ProjectionNetwork().state_size(qp))):
+    qp = d.QP(np.zeros((4, 4)), np.zeros(4), A=rng.standard_normal((4, 4)), b=np.zeros(4))
+    for state in rng.standard_normal((20, d.ProjectionNetwork().state_size(qp))):
         state[8:] = 0.0  # the multipliers of bounds that are not there
         rates = UNPROJECTED.rates(qp, state)
         assert state @ rates == pytest.approx(0.0, abs=1e-12), "at constant distance"
@@ -169,13 +157,13 @@ def test_without_cost_the_flow_circles() -> None:
 
 @pytest.mark.parametrize("weight", [0.2, 0.9])
 def test_the_lag_of_a_continuous_run_follows_from_a_settled_one(weight: float) -> None:
-    scheme, duration = DoubleIndicator(weight, orientation="so3", home=PAPER_Q0), 0.6
+    scheme, duration = d.DoubleIndicator(weight, orientation="so3", home=PAPER_Q0), 0.6
     lagging = run(scheme, dt=1e-4, mode="continuous", duration=duration)
     settled = run(scheme, dt=5e-3, duration=duration, motion="midpoint")
     y = []
     for q, t in zip(settled.q, settled.t, strict=True):
-        qp = scheme.build_qp(Configuration(paper_robot(), q), heart().at(t))
-        y.append(DNNSolver().solve(qp).y[:3])
+        qp = scheme.build_qp(d.Configuration(paper_robot(), q), heart().at(t))
+        y.append(d.DNNSolver().solve(qp).y[:3])
     expected = np.zeros((len(y), 3))
     for k, rate in enumerate(np.gradient(y, settled.t, axis=0)[1:]):
         still = RHO * rate / DELTA
@@ -190,12 +178,12 @@ def test_a_backward_euler_step_minimises_a_strongly_convex_function(step: float)
     rng = np.random.default_rng(7)
     for _ in range(5):
         qp, _ = known_qp(rng, 4, 2, 2)
-        qp = QP(np.zeros((4, 4)), qp.q, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)  # even so
+        qp = d.QP(np.zeros((4, 4)), qp.q, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)  # even so
         state = rng.standard_normal(UNPROJECTED.state_size(qp))
         x, y, mu = state[:4], state[4:6], state[6:]
         omega, chi = bounds_as_rows(qp)
 
-        def function(new: Array, qp: QP = qp, x: Array = x, y: Array = y, mu: Array = mu,
+        def function(new: Array, qp: d.QP = qp, x: Array = x, y: Array = y, mu: Array = mu,
                      omega: Array = omega, chi: Array = chi) -> float:  # fmt: skip
             w = omega @ new - chi
             slope = mu / (1.0 + step)  # up to -slope, where the other one of phi begins
@@ -208,7 +196,7 @@ def test_a_backward_euler_step_minimises_a_strongly_convex_function(step: float)
             sag = 0.5 * (function(a) + function(b)) - function(0.5 * (a + b))
             assert sag >= np.sum((a - b) ** 2) / (8.0 * step) - 1e-9
         new = state.copy()
-        iiwa_dnn.ImplicitEuler(step=step).advance(UNPROJECTED, qp, new, step)
+        d.ImplicitEuler(step=step).advance(UNPROJECTED, qp, new, step)
         residual = new - state - step * network_rates(qp, new, False)
         assert np.abs(residual).max() < 1e-7 * max(1.0, step)
         best = minimize(function, x, method="BFGS", options={"gtol": 1e-9})
@@ -218,7 +206,7 @@ def test_a_backward_euler_step_minimises_a_strongly_convex_function(step: float)
 
 def test_the_mean_square_that_noise_leaves() -> None:
     sigma, dt = 0.01, 4e-3
-    target = iiwa_dnn.Circle(radius=1e-9, period=10.0).anchored(paper_start())  # at rest
+    target = d.Circle(radius=1e-9, period=10.0).anchored(paper_start())  # at rest
     errors = [
         position_error(run(SO3, target, dt=dt, duration=8.0, noise=sigma, seed=seed))[125:]
         for seed in range(4)
@@ -229,7 +217,7 @@ def test_the_mean_square_that_noise_leaves() -> None:
     assert np.mean(np.concatenate(errors) ** 2) == pytest.approx(expected, rel=0.2)
 
 
-class Straight(iiwa_dnn.Reference):
+class Straight(d.Reference):
     """A straight line at constant velocity."""
 
     name = "straight"
@@ -253,7 +241,7 @@ def test_the_lag_is_the_delay_times_the_joints_acceleration_over_the_gain(window
     acceleration = np.gradient(record.dq, dt, axis=0)
     delay = 0.5 * window * dt
     for k in range(1000, record.steps, 250):
-        moved = Configuration(paper_robot(), record.q[k]).jacobian[:3] @ acceleration[k]
+        moved = d.Configuration(paper_robot(), record.q[k]).jacobian[:3] @ acceleration[k]
         error = np.linalg.norm(position_error(record)[k])
         assert error == pytest.approx(delay * np.linalg.norm(moved) / DELTA, rel=0.05)
 
@@ -262,7 +250,7 @@ def test_the_lag_is_the_delay_times_the_joints_acceleration_over_the_gain(window
 def test_across_active_sets_a_step_within_the_linear_bound_may_grow(
     step: float, settles: bool
 ) -> None:
-    qp = QP([[1.0]], [-10.0], lb=[-1.0], ub=[1.0])
+    qp = d.QP([[1.0]], [-10.0], lb=[-1.0], ub=[1.0])
     *_, state = euler(UNPROJECTED, qp, np.zeros(UNPROJECTED.state_size(qp)), step, 1000)
     assert bool(abs(state[0] - 1.0) < 1e-9) is settles
     assert settles or np.abs(state).max() > 1e20
@@ -270,22 +258,22 @@ def test_across_active_sets_a_step_within_the_linear_bound_may_grow(
 
 def test_a_state_that_is_no_number_ends_what_is_advanced() -> None:
     """Its point is clipped to the bounds, and once went on as an answer of the continuous mode."""
-    qp = QP([[1.0]], [-10.0], lb=[-1.0], ub=[1.0])
-    network = ProjectionNetwork(rho=1e-3, primal_projection=False)
-    solvers = [DNNSolver(network, follower=ExplicitEuler(substeps=1)) for _ in range(2)]
+    qp = d.QP([[1.0]], [-10.0], lb=[-1.0], ub=[1.0])
+    network = d.ProjectionNetwork(rho=1e-3, primal_projection=False)
+    solvers = [d.DNNSolver(network, follower=d.ExplicitEuler(substeps=1)) for _ in range(2)]
     # The same within a control step: a posture far away, which the joints cannot reach at once.
-    costs = [iiwa_dnn.KineticEnergy(), iiwa_dnn.CyclicMotion(home=(0.0,) * 7)]
-    free = iiwa_dnn.Scheme(costs, [], [iiwa_dnn.JointLimits()])
+    costs = [d.KineticEnergy(), d.CyclicMotion(home=(0.0,) * 7)]
+    free = d.Scheme(costs, [], [d.JointLimits()])
     options = {"dt": 1e-2, "mode": "continuous", "solver": solvers[1]}
-    controller = iiwa_dnn.Controller(paper_robot(), free, **options)
-    target = iiwa_dnn.Target(paper_start().position, paper_start().rotation)
+    controller = d.Controller(paper_robot(), free, **options)
+    target = d.Target(paper_start().position, paper_start().rotation)
     for advance in (
         lambda k: solvers[0].advance(qp, 1e-2),
         lambda k: controller.step(PAPER_Q0, 1e-2 * k, target).solution,
     ):
         statuses = [advance(k).status for k in range(600)]
-        assert statuses[0] is Status.ADVANCED
-        assert Status.NOT_FINITE in statuses
+        assert statuses[0] is d.Status.ADVANCED
+        assert d.Status.NOT_FINITE in statuses
 
 
 def test_the_prediction_is_as_far_from_the_papers_first_row_as_is_said() -> None:
@@ -296,8 +284,8 @@ def test_the_prediction_is_as_far_from_the_papers_first_row_as_is_said() -> None
 
 def test_a_multiplier_that_is_not_active_limits_the_step_too() -> None:
     """P = 0.1 alone would allow 2 / 0.1: a passive multiplier, at rate one, grows from 2 on."""
-    qp = QP([[0.1]], [0.0], lb=[-1.0], ub=[1.0])
-    network = ProjectionNetwork()
+    qp = d.QP([[0.1]], [0.0], lb=[-1.0], ub=[1.0])
+    network = d.ProjectionNetwork()
     start = np.array([0.0, 0.01, 0.0])
     assert network.stable_step(qp, start) == 2.0
     for step, grows in ((1.9, False), (2.1, True)):
@@ -310,7 +298,7 @@ def test_a_clipped_joint_takes_its_column_out_and_an_active_multiplier_adds_a_ro
     rng = np.random.default_rng(0)
     A = rng.standard_normal((2, 4))
     ends = {"lb": -np.ones(4), "ub": np.ones(4)}
-    qp = QP(np.eye(4), [-10.0, 0.0, 0.0, 0.0], A=A, b=np.zeros(2), **ends)
+    qp = d.QP(np.eye(4), [-10.0, 0.0, 0.0, 0.0], A=A, b=np.zeros(2), **ends)
     rest = equilibrium(qp)
     assert np.flatnonzero(rest[6:]).tolist() == [0]  # the first joint, at its upper bound
     rest[6:] *= 0.5  # the projection carries the other half
@@ -321,7 +309,7 @@ def test_a_clipped_joint_takes_its_column_out_and_an_active_multiplier_adds_a_ro
         return np.linalg.eigvals(matrix)
 
     for project, rows in ((True, A[:, 1:]), (False, np.vstack([A, np.eye(4)[:1]]))):
-        network = ProjectionNetwork(primal_projection=project)
+        network = d.ProjectionNetwork(primal_projection=project)
         found = np.linalg.eigvals(network.flow(qp).derivative(rest))
         expected = eigenvalues(rows)
         for value in expected:
