@@ -24,13 +24,10 @@ class LossyTracker(CommConstraintTracker):
     """Counts the cycles, and loses the commands of some."""
 
     random = random.Random(0)  # of all connections: each has other losses
-
-    def __init__(self, **options):
-        super().__init__(**options)
-        self.remaining = 0
-        self.is_lost = False
-        self.is_silent = False
-        self.heard = False
+    remaining = 0
+    is_lost = False
+    is_silent = False
+    heard = False
 
     def command_received(self, command_message_id):
         if self.remaining == 0 and self.consecutive_lost == 0 and self.random.random() < LOSSES:

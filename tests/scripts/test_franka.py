@@ -23,14 +23,10 @@ from helpers_physics import ROOT, run_python
 
 FOLDER = ROOT / "build" / "franka-sim"
 PYTHON = FOLDER / "bin" / "python"
-SERVER = (
-    *(PYTHON, ROOT / "tests" / "franka_lockstep.py", "--no-gripper"),
-    *("--enforce-motion-limits", "--enforce-comm-constraints"),
-)
-PACKAGES = (
-    *("franka-sim==1.1.7", "mujoco==3.2.7", "numpy==1.26.4"),
-    *("absl-py", "etils", "glfw", "pyopengl"),  # MuJoCo's own
-)
+SERVER = (PYTHON, ROOT / "tests" / "franka_lockstep.py", "--no-gripper")
+CHECKS = ("--enforce-motion-limits", "--enforce-comm-constraints")
+PACKAGES = ("franka-sim==1.1.7", "mujoco==3.2.7", "numpy==1.26.4")
+MUJOCOS_OWN = ("absl-py", "etils", "glfw", "pyopengl")
 
 # The server's velocity servo is explicit at 1 kHz: with less inertia it is not stable.
 MODEL = """
@@ -57,7 +53,7 @@ def make_environment() -> None:
     run = partial(subprocess.run, check=True)
     run([sys.executable, "-m", "venv", "--without-pip", FOLDER])
     pip = [sys.executable, "-m", "pip", "--python", PYTHON, "--disable-pip-version-check"]
-    run([*pip, "install", "-q", "--no-deps", *PACKAGES])
+    run([*pip, "install", "-q", "--no-deps", *PACKAGES, *MUJOCOS_OWN])
     run([PYTHON, "-c", MODEL, str(iiwa_dnn.load_robot("fr3").path), FOLDER / "fr3.xml"])
 
 
@@ -75,7 +71,7 @@ def server() -> Iterator[subprocess.Popen[bytes]]:
         options = {"env": {**os.environ, "FR3_MJCF": str(FOLDER / "fr3.xml")}, "stdout": log}
         # Killed where its parent was: PR_SET_PDEATHSIG.
         die = partial(ctypes.CDLL(None).prctl, 1, signal.SIGKILL)
-        process = subprocess.Popen(SERVER, stderr=log, preexec_fn=die, **options)
+        process = subprocess.Popen([*SERVER, *CHECKS], stderr=log, preexec_fn=die, **options)
         try:
             with socket.socket() as link:
                 while link.connect_ex(("127.0.0.1", 1337)):
