@@ -346,6 +346,11 @@ def judged(case: Case, driver: Driver) -> Verdict:
 
 def way_back(path: Matrix) -> list[Vector]:
     """Return postures `TURN` apart from the end of a path (k, n) [rad] to its start, no loops."""
+    thin = [path[0]]
+    for q in path:
+        if np.abs(q - thin[-1]).max() > 0.5 * TURN:
+            thin.append(q)
+    path = np.array([*thin, path[-1]])
     here = len(path) - 1
     postures = []
     while here > 0:
