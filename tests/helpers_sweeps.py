@@ -30,10 +30,5 @@ def cells(log: Path, count: int, **others: Any) -> list[dict[str, Any]]:
 def main() -> None:
     """A sweep in a process of its own, so that a test can kill it."""
     folder, log, count, sleep, workers = sys.argv[1:]
-    sweep(
-        draw,
-        cells(Path(log), int(count), sleep=float(sleep)),
-        Path(folder),
-        workers=int(workers),
-        quiet=True,
-    )
+    settings = cells(Path(log), int(count), sleep=float(sleep))
+    sweep(draw, settings, Path(folder), workers=int(workers), quiet=True)
