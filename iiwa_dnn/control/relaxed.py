@@ -23,8 +23,8 @@ The **softened program** moves the task into the cost, with the weights W of its
     G x \le h', \quad lb \le x \le ub ,
 
 damped by :math:`\lambda` towards a slow drift :math:`v_0` along -q. Its task rows are zero, so that
-the sizes stay. A row that asks for motion, h < 0, asks for :math:`h' = \tau h` with the largest
-feasible :math:`\tau \le 1`, found as s is.
+the sizes stay. A scheme without task rows keeps its cost. A row that asks for motion, h < 0, asks
+for :math:`h' = \tau h` with the largest feasible :math:`\tau \le 1`, found as s is.
 
 Rows of joints that follow others have the weight 0: they are limits, and both programs keep them.
 
@@ -149,12 +149,11 @@ def settled(
     Returns:
         Whether the point is the program's solution.
     """
-    settings = yielding.settings
     for _ in range(2):
-        systems, time, primal, dual, gap = settle(qp, 0, settings, state, point)
+        systems, time, primal, dual, gap = settle(qp, 0, yielding.settings, state, point)
         figures[0] += systems
         figures[1] = time
-        if within(primal, dual, gap, settings[TOLERANCE]):
+        if within(primal, dual, gap, yielding.settings[TOLERANCE]):
             return True
         state[:] = 0.0
     return False
@@ -185,14 +184,17 @@ def largest_factor(
     wider = qp_views(data, n + 1, qp.h.size, qp.b.size)
     _copy_cost(qp, wider)
     _copy_limits(qp, wider)
-    longest = largest_entry(qp.b)
-    if retreats or longest == 0.0:
+    # In this unit the factor's column is near one, though a retreat may be of a nanometre.
+    longest = 0.0 if retreats else largest_entry(qp.b)
+    for j in range(qp.h.size):
+        longest = max(longest, -qp.h[j]) if retreats else longest
+    if longest == 0.0:
         longest = 1.0
     wider.q[n] = -1.0
     wider.ub[n] = longest
     for j in range(qp.h.size):
         if retreats and qp.h[j] < 0.0:
-            wider.G[j, n] = -qp.h[j]
+            wider.G[j, n] = -qp.h[j] / longest
             wider.h[j] = 0.0
     for j in range(qp.b.size):
         if yielding.weights[j] == 0.0:
@@ -211,8 +213,7 @@ def largest_factor(
 def _copy_cost(qp: QPViews, other: QPViews) -> None:
     """Write w times the cost into a program that has more variables."""
     n = qp.q.size
-    largest = max(largest_entry(qp.q), largest_entry(qp.P.reshape(n * n)))
-    weight = PENALTY / max(largest, PENALTY)
+    weight = PENALTY / max(max(largest_entry(qp.q), largest_entry(qp.P.reshape(n * n))), PENALTY)
     for i in range(n):
         other.q[i] = weight * qp.q[i]
         for k in range(n):
@@ -252,7 +253,7 @@ def soften_task(qp: QPViews, weights: Vector, retreat: float) -> None:
     n = qp.q.size
     shrink = FASTEST / max(FASTEST, largest_entry(qp.b))
     drift = DRIFT / max(largest_entry(qp.q), 1.0)
-    for i in range(n):
+    for i in range(n if qp.b.size else 0):  # without a task the cost is what is asked for
         qp.q[i] *= DAMPING * DAMPING * drift
         for k in range(n):
             qp.P[i, k] *= BLEND

@@ -143,6 +143,16 @@ def test_an_arm_that_is_pressed_into_a_corner_leaves_it() -> None:
     assert np.abs(path[-1] - corner).max() > 0.1
 
 
+def test_a_pinch_of_two_joints_leaves_the_others_free() -> None:
+    # Two links asked for retreats of nanometres that contradict each other.
+    robot = d.load_robot("panda").with_limits(jerk=np.inf)
+    q = np.array([0.5101309, 0.90004666, 2.0541013, -2.8338797, -1.4594971, 0.828962, 0.42747])
+    ends = [0.164259087, -0.005569339, 0.305072028], [0.489386502, -0.263747799, -0.012197345]
+    shield = d.Shield(robot, 0.0128, [d.Capsule(*ends, 0.05)])
+    path, _ = drive(shield, 50, q, dq=np.array([-1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0]))
+    assert (np.abs(path[-1] - q)[2:] > 0.5).all()
+
+
 @pytest.mark.parametrize(
     ("wish", "reason"),
     [
