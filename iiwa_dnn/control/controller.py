@@ -33,7 +33,6 @@ from iiwa_dnn.control.state import (
 )
 from iiwa_dnn.control.step import INVALID, ControlStep, take_step
 from iiwa_dnn.control.yielding import BRAKE, guard_step
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Reference, Target
@@ -165,7 +164,7 @@ class Controller:
                 return command
         except BaseException as error:  # interrupted before anybody got the command
             self._state.past = before
-            if isinstance(error, TypeError | InvalidInputError):
+            if isinstance(error, TypeError | ValueError):
                 checks.finite("t", t)
                 checks.finite_array("q", q, (self.robot.dof,))
             raise
@@ -207,9 +206,8 @@ class Controller:
             step.set_period(checks.positive("dt", dt))
         layout = step.layout
         program = step.program
-        joints: Any = q
-        if type(q) is not np.ndarray or q.ndim != 1 or q.size != layout.dof:
-            joints = checks.finite_array("q", q, (layout.dof,))
+        is_array = type(q) is np.ndarray  # Pinocchio refuses another size, `step` names it
+        joints: Any = q if is_array else checks.finite_array("q", q, (layout.dof,))
         program.kinematics.update(joints)
         row = np.empty(layout.width)
         past = state.past

@@ -184,12 +184,7 @@ def largest_factor(
     wider = qp_views(data, n + 1, qp.h.size, qp.b.size)
     _copy_cost(qp, wider)
     _copy_limits(qp, wider)
-    # In this unit the factor's column is near one, though a retreat may be of a nanometre.
-    longest = 0.0 if retreats else largest_entry(qp.b)
-    for j in range(qp.h.size):
-        longest = max(longest, -qp.h[j]) if retreats else longest
-    if longest == 0.0:
-        longest = 1.0
+    longest = _longest_asked(qp, retreats)
     wider.q[n] = -1.0
     wider.ub[n] = longest
     for j in range(qp.h.size):
@@ -207,6 +202,18 @@ def largest_factor(
         return -1.0
     factor: float = max(point[n] / longest, 0.0)
     return 1.0 if factor >= FEASIBLE else ALMOST * factor
+
+
+@compiled
+def _longest_asked(qp: QPViews, retreats: bool) -> float:
+    """Return the largest task velocity, or retreat, that a program asks for; 1 if there is none.
+
+    In this unit the factor's column is near one, though a retreat may be of a nanometre.
+    """
+    longest = 0.0 if retreats else largest_entry(qp.b)
+    for j in range(qp.h.size):
+        longest = max(longest, -qp.h[j]) if retreats else longest
+    return longest if longest > 0.0 else 1.0
 
 
 @compiled
