@@ -2,7 +2,7 @@
 
 import subprocess
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -38,12 +38,6 @@ _COLUMNS = {
 }
 
 
-def compiled(folder: Path, output: Path, flags: Sequence[str], *sources: Path) -> Path:
-    """Compile C files beside a controller's header."""
-    run_compiler([*flags, f"-I{folder}"], sources, output)
-    return output
-
-
 def run(program: Path, *numbers: float) -> list[float]:
     """Return the numbers that a program prints."""
     words = [str(program), *map(repr, numbers)]
@@ -53,7 +47,8 @@ def run(program: Path, *numbers: float) -> list[float]:
 
 def text_size(folder: Path, place: Path) -> int:
     """Return the size of a controller's code [bytes], optimized for size."""
-    file = compiled(folder, place / "controller.o", (*SMALL, "-c"), folder / "controller.c")
+    file = place / "controller.o"
+    run_compiler([*SMALL, "-c"], [folder / "controller.c"], file)
     said = subprocess.run(["size", file], check=True, capture_output=True, text=True).stdout
     return int(said.splitlines()[1].split()[0])
 
@@ -68,7 +63,8 @@ def compared(steps: int) -> Iterator[dict[str, Any]]:
             folder = c99(controller, Path(place) / "c", case.start)
             row = {"name": name, "size": load(folder).size}
             row["text"] = text_size(folder, Path(place))
-            program = compiled(folder, Path(place) / "loop", FAST, driver, folder / "controller.c")
+            program = Path(place) / "loop"
+            run_compiler([*FAST, f"-I{folder}"], [driver, folder / "controller.c"], program)
             quietest = min(run(program, steps, *case.start) for _ in range(ROUNDS))
             yield row | dict(zip(("median", "p99", "p999"), quietest, strict=True))
 

@@ -192,14 +192,6 @@ def test_a_moving_program_leaves_no_error_where_another_network_lags() -> None:
     assert lag > 100.0 * ours
 
 
-def test_a_program_of_another_shape_begins_anew() -> None:
-    solver = TrackingSolver(ZeroingNetwork())
-    program = MovingProgram()
-    solver.advance(program.at(0.0), 0.1)
-    other = QP(np.eye(2), [1.0, 1.0])
-    assert solver.advance(other, 0.1).iterations == 0
-
-
 def test_a_singular_program_is_told() -> None:
     network, singular = ZeroingNetwork(), QP(np.zeros((2, 2)), [1.0, 1.0])
     with pytest.raises(NoSolutionError, match="is singular"):
