@@ -126,15 +126,11 @@ def times(case: Case, steps: int) -> tuple[np.ndarray, float]:
 
 def rows(steps: int) -> Iterator[dict[str, Any]]:
     """Measure each kind."""
-    for name, case in cases().items():
-        yield row(name, *times(case, steps))
-
-
-def row(name: str, taken: np.ndarray, yielded: float) -> dict[str, Any]:
-    """Return a row of the table."""
     names = ("median", "p99", "p999", "longest")
-    values = np.percentile(taken, [50.0, 99.0, 99.9, 100.0])
-    return {"name": name, "yielding": 100.0 * yielded, **dict(zip(names, values, strict=True))}
+    for name, case in cases().items():
+        taken, yielded = times(case, steps)
+        found = dict(zip(names, np.percentile(taken, [50.0, 99.0, 99.9, 100.0]), strict=True))
+        yield {"name": name, "yielding": 100.0 * yielded, **found}
 
 
 def report(steps: int) -> None:
