@@ -96,8 +96,8 @@ def paper(
         early += [values["status"] for values in results if values["status"] != "completed"]
     head = {
         **made({package: version(package) for package in sweeps.PACKAGES}),
-        "runs": f"{scope.duration:g} s each at {scope.dt:g} s (the paper's: 10 s; drift of less "
-        "than a whole heart does not compare)",
+        "runs": f"{scope.duration:g} s each (the paper's: 10 s) at {scope.dt:g} s; the drift of "
+        "less than a whole heart does not compare",
         "seeds": str(scope.seeds),
         "ended early": "; ".join(early) or "none",
     }
