@@ -11,6 +11,7 @@ from benchmarks.report import show
 from iiwa_dnn import Controller
 from iiwa_dnn.compiling.build import run_compiler
 from iiwa_dnn.export import c99, load
+from iiwa_dnn.studies import paper
 
 FAST = ("-std=c99", "-O3", "-march=native")
 SMALL = ("-std=c99", "-Os", "-fno-asynchronous-unwind-tables")
@@ -60,12 +61,12 @@ def compared(steps: int) -> Iterator[dict[str, Any]]:
         case = cases()[name]
         controller = Controller(case.robot, case.scheme, case.reference, policy=case.policy)
         with tempfile.TemporaryDirectory() as place:
-            folder = c99(controller, Path(place) / "c", case.start)
+            folder = c99(controller, Path(place) / "c", paper.START)
             row = {"name": name, "size": load(folder).size}
             row["text"] = text_size(folder, Path(place))
             program = Path(place) / "loop"
             run_compiler([*FAST, f"-I{folder}"], [driver, folder / "controller.c"], program)
-            quietest = min(run(program, steps, *case.start) for _ in range(ROUNDS))
+            quietest = min(run(program, steps, *paper.START) for _ in range(ROUNDS))
             yield row | dict(zip(("median", "p99", "p999"), quietest, strict=True))
 
 

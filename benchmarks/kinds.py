@@ -7,7 +7,7 @@ too slow for the heart.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,7 +36,6 @@ class Case(NamedTuple):
     reference: Reference | None = None
     targets: Targets = lambda k: None
     policy: Policy = "slow"
-    start: tuple[float, ...] = tuple(paper.START)
 
 
 def stream(robot: Robot, kind: str) -> Targets:
@@ -99,6 +98,7 @@ def cases() -> dict[str, Case]:
 _COLUMNS = {
     "step": "{name}",
     "yielding %": "{yielding:.1f}",
+    "most systems": "{systems}",
     "median µs": "{median:.1f}",
     "p99 µs": "{p99:.1f}",
     "p99.9 µs": "{p999:.1f}",
@@ -106,14 +106,15 @@ _COLUMNS = {
 }
 
 
-def times(case: Case, steps: int) -> tuple[np.ndarray, float]:
-    """Return the times of steps [us], (steps,), and the share of them that had to yield."""
-    robot, built, reference, targets, policy, start = case
+def measure(case: Case, steps: int) -> dict[str, Any]:
+    """Take steps; return percentiles of their times [us], linear systems, and how many yielded."""
+    robot, built, reference, targets, policy = case
     controller = iiwa_dnn.Controller(robot, built, reference, dt=DT, policy=policy)
-    q = np.array(start)
+    q = np.array(paper.START)
     controller.warm_up(q)
     taken = np.empty(steps)
     yielded = 0
+    systems = 0
     for k in range(steps):
         target = targets(k)
         began = time.perf_counter_ns()
@@ -121,18 +122,13 @@ def times(case: Case, steps: int) -> tuple[np.ndarray, float]:
         taken[k] = time.perf_counter_ns() - began
         q = q + DT * command.dq
         yielded += command.action is not Action.NONE
-    return 1e-3 * taken, yielded / steps
-
-
-def rows(steps: int) -> Iterator[dict[str, Any]]:
-    """Measure each kind."""
-    names = ("median", "p99", "p999", "longest")
-    for name, case in cases().items():
-        taken, yielded = times(case, steps)
-        found = dict(zip(names, np.percentile(taken, [50.0, 99.0, 99.9, 100.0]), strict=True))
-        yield {"name": name, "yielding": 100.0 * yielded, **found}
+        systems = max(systems, command.solution.iterations)
+    times = 1e-3 * np.percentile(taken, [50.0, 99.0, 99.9, 100.0])
+    found = dict(zip(("median", "p99", "p999", "longest"), times, strict=True))
+    return {"yielding": 100.0 * yielded / steps, "systems": systems, **found}
 
 
 def report(steps: int) -> None:
     """Print the table."""
-    show(f"A step of every kind, {steps} of each", _COLUMNS, rows(steps))
+    rows = ({"name": name} | measure(case, steps) for name, case in cases().items())
+    show(f"A step of every kind, {steps} of each", _COLUMNS, rows)

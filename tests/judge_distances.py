@@ -72,7 +72,7 @@ class Judge:
         for i in np.flatnonzero(distances < self._promised - SLACK):
             excused = moving and i > 0 and not ok[(i - 1) // 2]
             still = excused and self.distance(doubled[i - 1], clock[i])
-            broken += not excused or distances[i] < still - SLACK
+            broken += bool(not excused or distances[i] < still - SLACK)
         return Verdict(np.inf if moving else float(distances.min()), broken)
 
 

@@ -27,11 +27,3 @@ def test_an_error_survives_another_process(
     assert type(other) is type(error)
     assert str(other) == str(error)
     assert vars(other) == vars(error)
-
-
-def test_a_list_of_names_shows_that_more_were_left_out() -> None:
-    names = [f"joint_{k}" for k in range(13)]
-    assert str(d.NotFoundError("frame", "tool0", names)).endswith(", joint_11, ...")
-    assert str(d.NotFoundError("frame", "tool0", names[:12])).endswith(", joint_11")
-    assert str(d.NotFoundError("frame", "joint_", names)).startswith("no frame 'joint_'; did you")
-    assert "..." not in str(d.NotFoundError("frame", "joint_", names))

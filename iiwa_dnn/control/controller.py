@@ -33,6 +33,7 @@ from iiwa_dnn.control.state import (
 )
 from iiwa_dnn.control.step import INVALID, ControlStep, take_step
 from iiwa_dnn.control.yielding import BRAKE, guard_step
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Reference, Target
@@ -44,7 +45,7 @@ from iiwa_dnn.schemes.step import TARGET_SIZE
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
 
-_NOTHING = np.zeros(0)
+_FLOAT = np.dtype(np.float64)
 
 _ACTIONS = {int(action): action for action in Action}
 
@@ -164,9 +165,8 @@ class Controller:
                 return command
         except BaseException as error:  # interrupted before anybody got the command
             self._state.past = before
-            if isinstance(error, TypeError | ValueError):
+            if isinstance(error, TypeError | InvalidInputError):
                 checks.finite("t", t)
-                checks.finite_array("q", q, (self.robot.dof,))
             raise
 
     def compute(self, q: Vector, t: float, target: Mapping[str, Target] | None = None) -> Command:
@@ -206,8 +206,7 @@ class Controller:
             step.set_period(checks.positive("dt", dt))
         layout = step.layout
         program = step.program
-        is_array = type(q) is np.ndarray  # Pinocchio refuses another size, `step` names it
-        joints: Any = q if is_array else checks.finite_array("q", q, (layout.dof,))
+        joints: Any = q if _is_plain(q, layout.dof) else checks.finite_array("q", q, (layout.dof,))
         program.kinematics.update(joints)
         row = np.empty(layout.width)
         past = state.past
@@ -219,7 +218,7 @@ class Controller:
         past[Q] = joints
         following = np.empty(past.shape)
         state.next = following  # a halt from here on counts for the next step
-        network = self.solver.state_for(layout.sizes) if step.has_network else _NOTHING
+        network = self.solver.state_for(layout.sizes) if step.has_network else step.relaxed[:0]
         action = take_step(row, step.plan, past, following, network, step.relaxed, t, samples)
         if action == INVALID:
             checks.finite_array("q", past[Q], (layout.dof,))
@@ -377,6 +376,12 @@ class Controller:
         program.kinematics.update(q)
         program.write(data, targets, past, self.dt, t)
         return QP.from_data(data, program.sizes)
+
+
+def _is_plain(q: ArrayLike, dof: int) -> bool:
+    """Tell whether joint positions are an array as compiled code takes it."""
+    # Of bytes in another order Pinocchio makes other numbers, without a word.
+    return type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == (dof,)
 
 
 # A change of one of them is checked, and what is derived from them is made anew.

@@ -23,7 +23,7 @@ The **softened program** moves the task into the cost, with the weights W of its
     G x \le h', \quad lb \le x \le ub ,
 
 damped by :math:`\lambda` towards a slow drift :math:`v_0` along -q. Its task rows are zero, so that
-the sizes stay. A scheme without task rows keeps its cost. A row that asks for motion, h < 0, asks
+the sizes stay. A scheme without a task keeps its cost. A row that asks for motion, h < 0, asks
 for :math:`h' = \tau h` with the largest feasible :math:`\tau \le 1`, found as s is.
 
 Rows of joints that follow others have the weight 0: they are limits, and both programs keep them.
@@ -260,7 +260,7 @@ def soften_task(qp: QPViews, weights: Vector, retreat: float) -> None:
     n = qp.q.size
     shrink = FASTEST / max(FASTEST, largest_entry(qp.b))
     drift = DRIFT / max(largest_entry(qp.q), 1.0)
-    for i in range(n if qp.b.size else 0):  # without a task the cost is what is asked for
+    for i in range(n if largest_entry(weights) > 0.0 else 0):  # else the cost is what is asked for
         qp.q[i] *= DAMPING * DAMPING * drift
         for k in range(n):
             qp.P[i, k] *= BLEND

@@ -68,6 +68,13 @@ def test_joint_positions_that_are_none_are_refused(q: Any, begun: bool) -> None:
         loop.step(q, 1e-3)
 
 
+def test_joint_positions_of_other_types_are_the_numbers_that_they_hold() -> None:
+    q = np.array(PAPER_Q0, "f4")
+    expected = controller().step(q.astype(float), 0.0).dq
+    for other in (q, q.astype(">f8"), q.astype("g")):
+        np.testing.assert_array_equal(controller().step(other, 0.0).dq, expected)
+
+
 @pytest.mark.parametrize("t", [np.nan, "a", None])
 def test_a_time_that_is_no_number_is_refused_and_nothing_is_lost(t: Any) -> None:
     loop = controller()
