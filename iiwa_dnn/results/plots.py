@@ -179,18 +179,18 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     bounds = np.array([limits(record, "q_lower", -np.inf) if name == "q" else -upper, upper])
     colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, record.dof))
     names = short_names(record.settings)
+    labels = [symbol.format(name) if name.isdigit() else name for name in names]
     for joint, curve in enumerate(getattr(record, name).T):
-        label = symbol.format(names[joint]) if names[joint].isdigit() else names[joint]
         dashes = _DASHES[joint % len(_DASHES)]
-        t = record.t[: len(curve)]
-        _draw_curve(axes, t, curve, color=colors[joint], linestyle=dashes, label=label)
+        style = {"color": colors[joint], "linestyle": dashes, "label": labels[joint]}
+        _draw_curve(axes, record.t[: len(curve)], curve, **style)
     low, high = axes.get_ylim()
     margin = 0.15 * (high - low)  # a limit farther off would only flatten the curves
-    near = np.argwhere((low - margin <= bounds) & (bounds <= high + margin))
-    for (i, joint), label in zip(near, ["limit", *["_"] * len(near)], strict=False):
-        color = colors[joint] if np.ptp(bounds[i]) else "0.0"
+    for i, joint in np.argwhere((low - margin <= bounds) & (bounds <= high + margin)):
+        own = f"limit of {labels[joint]}" if np.ptp(bounds[i]) else "limit"
         line = axes.axhline(bounds[i, joint], linewidth=0.8, linestyle=(0, (8, 3)))
-        line.set(color=color, label=label)
+        line.set_color(colors[joint] if np.ptp(bounds[i]) else "0.0")
+        line.set_label("_" if own in axes.get_legend_handles_labels()[1] else own)
     label_time(axes, record, quantity, columns=4 if max(map(len, names)) < 8 else 2)
 
 
