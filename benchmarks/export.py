@@ -13,7 +13,7 @@ from iiwa_dnn.compiling.build import run_compiler
 from iiwa_dnn.export import c99, load
 from iiwa_dnn.studies import paper
 
-FAST = ("-std=c99", "-O3", "-march=native")
+FAST = ("-std=c99", "-O2")
 SMALL = ("-std=c99", "-Os", "-fno-asynchronous-unwind-tables")
 """Without tables for unwinding the stack, which no function in C needs."""
 

@@ -92,7 +92,8 @@ class RowLayout:
         ends: Columns at which the parts of `RowViews` end, (10,).
         width: Length of a row.
         columns: Columns by the names of `RowViews`.
-        dof: Number of joints.
+        shape: Shape of joint positions, (dof,).
+        dq: Columns of the command.
         names: Names of the limits, `LimitNames`; None where nobody asks for them.
     """
 
@@ -102,7 +103,7 @@ class RowLayout:
         """Lay out rows for programs of these sizes, and a number of tracked frames."""
         self.names: Any = names
         self.sizes = sizes
-        self.dof = dof
+        self.shape = (dof,)
         n, m, p = sizes
         lengths = [
             (n + m + p) * (n + 1) + 2 * n,
@@ -121,6 +122,7 @@ class RowLayout:
         self.width = ends[-1]
         columns = map(slice, [0, *ends], ends)
         self.columns = dict(zip(RowViews._fields, columns, strict=True))
+        self.dq = self.columns["dq"]
 
     def view(self, rows: Matrix, name: str) -> Matrix:
         """Return the columns of a name of rows (..., width)."""
@@ -146,7 +148,7 @@ class RowLayout:
         bounds = self.view(rows, "program")[..., -2 * n :]
         nearest = np.where(of_bounds > 0.0, bounds[..., n:], bounds[..., :n])
         at_bounds = _active(of_bounds, np.abs(nearest - point[..., :n]), tol)
-        return at_bounds[..., : self.dof], _active(of_rows, self._slacks(rows), tol)
+        return at_bounds[..., : self.shape[0]], _active(of_rows, self._slacks(rows), tol)
 
     def excess(self, rows: Matrix) -> Vector:
         """Compute by how much commands are beyond the bounds of their steps [rad/s], (k,).
@@ -195,7 +197,7 @@ class Command:
     def __init__(self, row: Vector, layout: RowLayout, action: Action = Action.NONE) -> None:
         """Take a row (width,), which is not copied, its columns, and the action taken."""
         self.row = row
-        self.dq = row[layout.columns["dq"]]
+        self.dq = row[layout.dq]
         self.action = action
         self._layout = layout
 

@@ -192,7 +192,7 @@ class Controller:
 
     def _compute(
         self,
-        q: ArrayLike,
+        q: Any,
         t: float,
         target: Target | Mapping[str, Target] | None,
         dt: float | None,
@@ -206,22 +206,23 @@ class Controller:
             step.set_period(checks.positive("dt", dt))
         layout = step.layout
         program = step.program
-        joints: Any = q if _is_plain(q, layout.dof) else checks.finite_array("q", q, (layout.dof,))
-        program.kinematics.update(joints)
+        # Of bytes in another order Pinocchio makes other numbers, without a word.
+        if type(q) is not np.ndarray or q.dtype is not _FLOAT or q.shape != layout.shape:
+            q = checks.finite_array("q", q, layout.shape)
+        program.kinematics.update(q)
         row = np.empty(layout.width)
         past = state.past
         samples = step.samples and target is None
         if not samples:
             layout.targets(row)[:] = self.targets(t - past[DELAY, 0], target, dt)
         if program.refreshed:
-            program.refresh(joints, past[LAST], layout.targets(row), t, dt)
-        past[Q] = joints
+            program.refresh(q, past[LAST], layout.targets(row), t, dt)
         following = np.empty(past.shape)
         state.next = following  # a halt from here on counts for the next step
         network = self.solver.state_for(layout.sizes) if step.has_network else step.relaxed[:0]
-        action = take_step(row, step.plan, past, following, network, step.relaxed, t, samples)
+        action = take_step(row, step.plan, q, past, following, network, step.relaxed, t, samples)
         if action == INVALID:
-            checks.finite_array("q", past[Q], (layout.dof,))
+            checks.finite_array("q", q, layout.shape)
             checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
         return Command(row, layout, _ACTIONS[action])
 
@@ -262,7 +263,8 @@ class Controller:
         if step is None:
             program = self.scheme.program(self.robot)
             policy = int(Action[self.policy.upper()]) if self.mode == "converged" else BRAKE
-            step = ControlStep(program, self._seen(self.dt), self.solver, self.dt, policy)
+            paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
+            step = ControlStep(program, paths, self.solver, self.dt, policy)
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
         return step
@@ -344,22 +346,20 @@ class Controller:
         Raises:
             InvalidInputError: A frame that a task tracks has no reference, or another one has.
         """
-        tip = self.robot.tip
         frames = self.program.target_frames
         if target is not None:
-            return np.array(targets_of(tip, frames, target))
-        paths = paths_of(self._seen(dt or self.dt), tip, frames).values()
+            return np.array(targets_of(self.robot.tip, frames, target))
+        given = paths_of(self.reference, self.robot.tip, frames)
+        paths = self._seen(given, dt or self.dt).values()
         found = np.array([path.base for path in paths])
         for path, row in zip(paths, found, strict=True):
             path.move(t, row)
         return found
 
-    def _seen(self, dt: float) -> Mapping[str, Reference]:
-        """Return the references by frame name, a period ahead if the scheme asks for it."""
-        given = by_frame(self.reference, self.robot.tip)
-        return (
-            {name: path.ahead(dt) for name, path in given.items()} if self.scheme.ahead else given
-        )
+    def _seen(self, paths: Mapping[str, Reference], dt: float) -> Mapping[str, Reference]:
+        """Return references by frame name, a period ahead if the scheme asks for it."""
+        ahead = self.scheme.ahead
+        return {name: path.ahead(dt) if ahead else path for name, path in paths.items()}
 
     def placement(self, q: Vector) -> Vector:
         """Compute the placement of the first tracked frame at joint positions q (n,), (12,)."""
@@ -376,12 +376,6 @@ class Controller:
         program.kinematics.update(q)
         program.write(data, targets, past, self.dt, t)
         return QP.from_data(data, program.sizes)
-
-
-def _is_plain(q: ArrayLike, dof: int) -> bool:
-    """Tell whether joint positions are an array as compiled code takes it."""
-    # Of bytes in another order Pinocchio makes other numbers, without a word.
-    return type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == (dof,)
 
 
 # A change of one of them is checked, and what is derived from them is made anew.

@@ -203,6 +203,7 @@ def ask(
 def take_step(
     row: Vector,
     plan: StepPlan,
+    q: Vector,
     past: Matrix,
     following: Matrix,
     state: Vector,
@@ -217,7 +218,8 @@ def take_step(
     Args:
         row: The row, (width,), with the targets unless they are sampled.
         plan: What the step is laid out with.
-        past: `ControllerState.past`, (8, dof); the kinematics are at its joint positions.
+        q: Joint positions [rad], (dof,), that the kinematics are at.
+        past: `ControllerState.past`, (8, dof); its joint positions are overwritten.
         following: The same for the next step, overwritten.
         state: The network's state, (size,), advanced.
         relaxed: States of the networks of relaxed programs, (`relaxed_size`,), advanced.
@@ -230,6 +232,7 @@ def take_step(
     arrays = plan.arrays
     table = arrays.table
     views = row_views(row, plan.ends, table[0, 3])
+    copied(past[Q], q)
     copied(following.reshape(following.size), past.reshape(past.size))
     copied(following[BEFORE], past[LAST])
     following[REST, 0] = 0.0

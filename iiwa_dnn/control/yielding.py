@@ -149,7 +149,7 @@ def yield_step(
     views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
     following[REST, 0] = rest
     following[DELAY, 0] += yielding.dt * (1.0 - views.decision[1])
-    following[YIELDS, 0] = OWN < kind < STOPPED
+    following[YIELDS, 0] = kind != OWN and action != BRAKE
     copied(views.dq, x[:dof])
     copied(following[LAST], x[:dof])
     return int(views.decision[0])

@@ -4,14 +4,15 @@ import math
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from iiwa_dnn.checks import Array, not_negative, offers
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.references.base import Pose, Reference
+from iiwa_dnn.references.rotations import set_mean_twist, turn_target
 from iiwa_dnn.references.targets import Target
 
-_ARRIVED = 1e-12
+ARRIVED = 1e-12
 """Distance [m] and angle [rad] below which a target is at its goal: rounding has no direction."""
 
 
@@ -43,7 +44,7 @@ class MovingTarget(Reference):
         self.rate = not_negative("rate", rate)
         self._goal = Target(pose.position, pose.rotation)
         self._end = self._goal
-        self._shown = (math.inf, self._goal)
+        self._shown = (math.inf, self._goal.data)
         self._start = self._shown
 
     def set(self, position: ArrayLike, rotation: ArrayLike | None = None) -> None:
@@ -64,30 +65,44 @@ class MovingTarget(Reference):
     def move(self, t: float, target: Array) -> None:
         """Set a target to the pose and the velocity at time t [s]; see `Reference.move`."""
         goal = self._goal  # one reading: it may be set in another thread meanwhile
-        if goal is not self._end:
-            self._start = self._shown
-            self._end = goal
-        began, start = self._start
-        began = min(t, began)
-        self._start = (began, start)
-        turn = pin.log3(goal.rotation @ start.rotation.T)
-        moved, velocity = _approach(goal.position - start.position, self.speed, t - began)
-        turned, rate = _approach(turn, self.rate, t - began)
-        target[:3] = start.position + moved
-        target[3:12] = (pin.exp3(turned) @ start.rotation).ravel()
-        target[12:15] = velocity
-        target[15:] = rate
-        self._shown = (t, Target.from_data(target.copy()))
+        began, start = self._start if goal is self._end else self._shown
+        self._end = goal
+        self._start = (min(t, began), start)
+        target[:] = start
+        approach(target, goal.data, t - self._start[0], self.speed, self.rate)
+        self._shown = (t, target.copy())
 
     def settings(self) -> dict[str, Any]:
         """Return name and speeds, in values that JSON knows."""
         return {"name": self.name, "speed": self.speed, "rate": self.rate}
 
 
-def _approach(difference: Array, fastest: float, elapsed: float) -> tuple[Array, Array]:
-    """Return the part (3,) of a difference (3,) covered after a time [s], and its rate (3,)."""
-    length = float(np.linalg.norm(difference))
-    if length <= max(fastest * elapsed, _ARRIVED):
-        return difference, np.zeros(3)
-    velocity = fastest / length * difference
-    return elapsed * velocity, velocity
+@compiled
+def approach(target: Array, goal: Array, elapsed: float, speed: float, rate: float) -> None:
+    """Move a target (18,) towards a goal (18,) as far as it comes in a time, and set its twist.
+
+    Args:
+        target: The target, `Target.data`, overwritten.
+        goal: The goal.
+        elapsed: The time [s].
+        speed: Largest linear speed [m/s].
+        rate: Largest angular speed [rad/s].
+    """
+    set_mean_twist(target, goal, 1.0)
+    way = target[12:].copy()
+    moved = _paced(target[12:15], speed, elapsed)
+    turned = _paced(target[15:], rate, elapsed)
+    for i in range(3):
+        target[i] += moved * way[i]
+    turn_target(target, (turned * way[3], turned * way[4], turned * way[5]), (0.0, 0.0, 0.0))
+
+
+@compiled
+def _paced(way: Array, fastest: float, elapsed: float) -> float:
+    """Turn a way (3,) into the velocity along it; return the share covered after a time [s]."""
+    length = np.sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])
+    arrived = length <= max(fastest * elapsed, ARRIVED)
+    velocity = 0.0 if arrived else fastest / length
+    for i in range(3):
+        way[i] *= velocity
+    return 1.0 if arrived else elapsed * velocity

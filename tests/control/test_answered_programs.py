@@ -57,10 +57,10 @@ def test_solvers_and_the_proof_agree_with_an_answer_and_with_no_other(arm, limit
     points = np.ascontiguousarray(layout.view(rows, "point"))
     free = layout.view(rows, "decision")[:, 3] < ProgramKind.HELD
     commands = layout.view(rows, "dq")[free]
-    np.testing.assert_allclose(commands, points[free, : layout.dof], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(commands, points[free, : layout.shape[0]], rtol=0, atol=1e-9)
     others = points.copy()
     random = np.random.default_rng(1)
-    others[:, : layout.dof] = random.uniform(-SPEED, SPEED, (len(others), layout.dof))
+    others[:, : layout.shape[0]] = random.uniform(-SPEED, SPEED, (len(others), layout.shape[0]))
     for name in ("proxqp", "osqp", "proof"):
         check = d.CrossCheck((name,))
         agreement = check.check_block(programs, layout.sizes, points)

@@ -35,7 +35,7 @@ int controller_step(struct controller *c, const double *q, const double *target,
     memcpy(c->past, q, sizeof(double) * CONTROLLER_DOF);
     memcpy(c->row + @at_targets@, target, sizeof(double) * 18 * CONTROLLER_FRAMES);
     @kinematics@(&arena, &model, joints, plan.arrays.jacobian, plan.arrays.placements, plan.arrays.inertia);
-    const ptrdiff_t action = @take_step@(&arena, row, &plan, past, following, state, relaxed, t, false);
+    const ptrdiff_t action = @take_step@(&arena, row, &plan, joints, past, following, state, relaxed, t, false);
     if (full || action == CONTROLLER_INVALID) {
         memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
         return CONTROLLER_INVALID;
