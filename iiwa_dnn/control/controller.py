@@ -19,6 +19,7 @@ from iiwa_dnn.control.paths import (
     by_frame,
     doubts,
     far_targets,
+    near_pairs,
     paths_of,
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
@@ -114,6 +115,8 @@ class Controller:
         if check is not None:
             check(name, value)
             self._derived = None
+        elif not name.startswith("_"):
+            raise AttributeError(f"Controller has no setting {name!r}")
         object.__setattr__(self, name, value)
         if name == "robot" and self._state.past.shape[1] != value.dof:
             self._state = ControllerState(value.dof)
@@ -147,8 +150,8 @@ class Controller:
             t: Time [s]; the reference is asked for the time `delay` before it.
             target: Target in place of the reference's; for tasks towards the next one `ahead` too.
             dt: Period that this command is for [s], in a loop whose periods differ; None takes the
-                controller's. With limits on acceleration and jerk a longer one than the last may
-                leave no command that keeps them all.
+                controller's. Velocity and acceleration limits hold all the same; where periods
+                differ, no command may be left that keeps a jerk limit too (docs/limits.md).
 
         Returns:
             The command.
@@ -157,14 +160,17 @@ class Controller:
             InvalidInputError: `q` has another size than the robot has joints, or is not finite; or
                 `t` is no number; or there is neither reference nor target; or `dt` is not above 0.
         """
-        before = self._state.past
+        state = self._state
+        before = state.past
+        dt_before = state.dt
         try:
             with self._lock:
                 command = self._compute(q, t, target, dt)
-                self._state.past = self._state.next
+                state.past = state.next
                 return command
         except BaseException as error:  # interrupted before anybody got the command
-            self._state.past = before
+            state.past = before
+            state.dt = dt_before
             if isinstance(error, TypeError | InvalidInputError):
                 checks.finite("t", t)
             raise
@@ -183,6 +189,7 @@ class Controller:
     def send(self, dq: Vector, fraction: float = 1.0) -> None:
         """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a share of the period."""
         state = self._state
+        state.dt = state.dt or self.dt
         past = state.next.copy()
         past[BEFORE] = state.past[LAST]
         past[LAST] = dq
@@ -202,12 +209,12 @@ class Controller:
         if step is None or not state.begun:
             step = self._prepare(q, t, target is None)
         dt = self.dt if dt is None else dt
-        if dt != step.dt:
+        if not dt == step.dt == state.dt:
             step.set_period(checks.positive("dt", dt))
+            state.set_period(dt)
         layout = step.layout
         program = step.program
-        # Of bytes in another order Pinocchio makes other numbers, without a word.
-        if type(q) is not np.ndarray or q.dtype is not _FLOAT or q.shape != layout.shape:
+        if not _is_plain(q, layout.shape):
             q = checks.finite_array("q", q, layout.shape)
         program.kinematics.update(q)
         row = np.empty(layout.width)
@@ -219,9 +226,10 @@ class Controller:
             program.refresh(q, past[LAST], layout.targets(row), t, dt)
         following = np.empty(past.shape)
         state.next = following  # a halt from here on counts for the next step
-        network = self.solver.state_for(layout.sizes) if step.has_network else step.relaxed[:0]
-        action = take_step(row, step.plan, q, past, following, network, step.relaxed, t, samples)
+        network = self.solver.state_for(layout.sizes) if step.has_network else row[:0]
+        action = take_step(row, step.plan, q, past, following, network, t, samples)
         if action == INVALID:
+            checks.finite("t", t)
             checks.finite_array("q", q, layout.shape)
             checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
         return Command(row, layout, _ACTIONS[action])
@@ -308,7 +316,7 @@ class Controller:
         """
         self._state.begun = True
         program = self.program
-        found = [*doubts(program, start, self.dt, self.mode)]
+        found = [*doubts(program, start, self.dt, self.mode), *near_pairs(program, start, t)]
         if own:
             found += far_targets(self.scheme, program.target_frames, start, self.targets(t))
         for message in found:
@@ -376,6 +384,12 @@ class Controller:
         program.kinematics.update(q)
         program.write(data, targets, past, self.dt, t)
         return QP.from_data(data, program.sizes)
+
+
+def _is_plain(q: ArrayLike, shape: tuple[int, ...]) -> bool:
+    """Tell whether joint positions are an array as compiled code takes it."""
+    # Of bytes in another order Pinocchio makes other numbers, without a word.
+    return type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == shape
 
 
 # A change of one of them is checked, and what is derived from them is made anew.

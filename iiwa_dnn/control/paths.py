@@ -24,6 +24,8 @@ References = Reference | Mapping[str, Reference]
 FAR = 0.05
 TURNED = 0.2
 """Distance [m] and angle [rad] of a first target from which on a warning is given."""
+SLOWEST = 0.1
+"""Control period above which a warning is given [s]."""
 
 
 def by_frame(reference: References | None, tip: str) -> Mapping[str, Reference]:
@@ -64,6 +66,8 @@ def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> 
     if problem := robot.outside(start.q):
         yield f"the start posture {problem}"
     yield from _doubts_of_tasks(program, dt)
+    if dt > SLOWEST:
+        yield f"a control period of {dt:g} s is long: the arm follows each command blindly"
     limits = program.scheme.limits
     if program.rate_limits is None and any(isinstance(limit, TipSpeedLimit) for limit in limits):
         yield "TipSpeedLimit holds beside AccelerationLimits alone: a command may be above it"
@@ -96,6 +100,22 @@ def _doubts_of_tasks(program: StepProgram, dt: float) -> Iterator[str]:
             f"a gain of {max(gains):.3g} 1/s is above {largest:.3g} 1/s, up to which a loop with "
             f"these limits on acceleration and jerk is stable at {dt:g} s a step (docs/limits.md)"
         )
+
+
+def near_pairs(program: StepProgram, start: Configuration, t: float) -> Iterator[str]:
+    """State which pair is nearer than its distance where a loop begins, at time t [s]."""
+    parts = [part for part in program.scheme.limits if isinstance(part, CollisionAvoidance)]
+    for part in parts:
+        scene = part.scene(program.robot)
+        if not scene.pairs:
+            continue
+        (distance,), (pair,) = scene.nearest(start.q[np.newaxis], np.array([t]))
+        if distance < 0.99 * part.distance:
+            yield (
+                f"{' and '.join(scene.pairs[pair])} are {distance:.3g} m apart at the start, not "
+                f"{part.distance:g} m: they may not come nearer, and where they come no further "
+                "apart the arm stands still"
+            )
 
 
 def far_targets(

@@ -61,6 +61,10 @@ ALMOST = 0.999
 """Part of a largest factor that is asked for: at the very edge of what is feasible the multipliers
 may grow without bound."""
 
+RETREAT = 1e-7
+"""Tolerance at least of the search of tau: with a link's end that can hardly retreat, its row is
+nearly zero, and the last digits would take more linear systems than there are."""
+
 DAMPING = 0.05
 """Lambda of the softened program [m/rad]."""
 
@@ -91,6 +95,7 @@ class Yielding(NamedTuple):
         dt: Control period [s].
         cubic: Whether the jerk of a joint is limited.
         coupled: Whether joints follow others.
+        alike: Whether the network of the steps is that of the relaxed programs.
     """
 
     weights: Vector
@@ -100,6 +105,7 @@ class Yielding(NamedTuple):
     dt: float
     cubic: bool
     coupled: bool
+    alike: bool
 
 
 def relaxed_size(sizes: Sizes) -> int:
@@ -131,7 +137,7 @@ def largest_entry(values: Vector) -> float:
 @compiled
 def settled(
     qp: QPViews,
-    yielding: Yielding,
+    settings: Vector,
     state: Vector,
     point: Vector,
     figures: Vector,
@@ -140,7 +146,7 @@ def settled(
 
     Args:
         qp: The program.
-        yielding: How the network settles.
+        settings: Tolerance and budget, `Yielding.settings`, (2,).
         state: Its state, (size,), advanced; where it does not settle, cold again.
         point: The point that the state stands for, (2 n + m + p,), overwritten.
         figures: Figures of the step's answer, (5,): the linear systems are added to the first, the
@@ -150,10 +156,10 @@ def settled(
         Whether the point is the program's solution.
     """
     for _ in range(2):
-        systems, time, primal, dual, gap = settle(qp, 0, yielding.settings, state, point)
+        systems, time, primal, dual, gap = settle(qp, 0, settings, state, point)
         figures[0] += systems
         figures[1] = time
-        if within(primal, dual, gap, yielding.settings[TOLERANCE]):
+        if within(primal, dual, gap, settings[TOLERANCE]):
             return True
         state[:] = 0.0
     return False
@@ -198,7 +204,10 @@ def largest_factor(
         elif not retreats:
             copied(wider.A[j], qp.A[j])
             wider.A[j, n] = -qp.b[j] / longest
-    if not settled(wider, yielding, state, point, figures):
+    settings = yielding.settings.copy()
+    if retreats:
+        settings[TOLERANCE] = max(settings[TOLERANCE], RETREAT)
+    if not settled(wider, settings, state, point, figures):
         return -1.0
     factor: float = max(point[n] / longest, 0.0)
     return 1.0 if factor >= FEASIBLE else ALMOST * factor
@@ -323,7 +332,7 @@ def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, figures: Vector) 
         nearest.q[i] = -x[i]
     _copy_limits(qp, nearest)
     point = np.empty(2 * n + m)
-    found = settled(nearest, yielding, np.zeros(3 * n + m), point, figures)
+    found = settled(nearest, yielding.settings, np.zeros(3 * n + m), point, figures)
     if found:
         copied(x, point[:n])
     return found

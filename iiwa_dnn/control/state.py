@@ -19,10 +19,11 @@ class ControllerState:
             and if the arm brakes whatever has a solution, (8, n). A step makes a new one, which
             counts from when the controller returns its command.
         next: The one after the last command that was computed.
+        dt: Control period of the last step [s]; 0 before the first.
         begun: Whether the start was looked at, and warned of.
     """
 
-    __slots__ = ("begun", "next", "past")
+    __slots__ = ("begun", "dt", "next", "past")
 
     past: Matrix
     next: Matrix
@@ -36,3 +37,14 @@ class ControllerState:
         """Forget all commands to an arm of n joints."""
         self.past = np.zeros((ROWS, dof))
         self.next = self.past
+        self.dt = 0.0
+
+    def set_period(self, dt: float) -> None:
+        """Go on in periods of another length [s]: accelerations and the time to rest stay."""
+        if self.dt > 0.0:
+            ratio = dt / self.dt
+            past = self.past.copy()
+            past[BEFORE] = past[LAST] - ratio * (past[LAST] - past[BEFORE])
+            past[REST] /= ratio
+            self.past = past
+        self.dt = dt

@@ -4,6 +4,7 @@ For seven joints the way into compiled code is a large part of the cost of a cal
 enters it once a step.
 """
 
+import math
 from collections.abc import Mapping
 from functools import partial
 from typing import NamedTuple
@@ -71,12 +72,14 @@ class StepPlan(NamedTuple):
         arrays: Arrays with which the program is written.
         ends: `RowLayout.ends`, (10,).
         yielding: What relaxed programs need beside them.
+        relaxed: States of the networks of relaxed programs, (`relaxed_size`,), warm starts.
         policy: Action that the policy asks for at a step without a solution; `BRAKE`: none.
     """
 
     arrays: ProgramArrays
     ends: IntVector
     yielding: Yielding
+    relaxed: Vector
     policy: int
 
 
@@ -91,7 +94,6 @@ class ControlStep:
         has_network: Whether the network is compiled.
         samples: Whether the compiled step samples the targets: all references are compiled, and no
             part is refreshed by the targets of a step.
-        relaxed: States of the networks of relaxed programs, (`relaxed_size`,), warm starts.
     """
 
     def __init__(
@@ -115,12 +117,12 @@ class ControlStep:
         frames = len(program.target_frames)
         names = LimitNames(program, dt)
         self.layout = RowLayout(program.sizes, program.robot.dof, frames, names)
-        self.relaxed = np.zeros(relaxed_size(program.sizes))
         self.has_network = self._add_network(solver, dt, policy == BRAKE)
         self.samples = self._add_paths(references, dt) and not program.reads_targets
         arrays = program.arrays(dt)
-        yielding = make_yielding(program, solver.tol, dt)
-        self.plan = StepPlan(arrays, self.layout.ends, yielding, policy)
+        yielding = make_yielding(program, solver.tol, dt, self.has_network)
+        relaxed = np.zeros(relaxed_size(program.sizes))
+        self.plan = StepPlan(arrays, self.layout.ends, yielding, relaxed, policy)
         self.set_period(dt)
 
     def set_period(self, dt: float) -> None:
@@ -129,15 +131,14 @@ class ControlStep:
         Raises:
             InvalidInputError: With a jerk limit, a joint's range is too short to turn round in.
         """
-        program = self.program
-        if program.rate_limits is not None:
-            check_ranges(program.rate_limits.constants(program.robot), 1.0 / dt)
+        if self.plan.yielding.limits.size:
+            check_ranges(self.plan.yielding.limits, 1.0 / dt)
         self.dt = dt
         self.layout.names.dt = dt
         arrays = self.plan.arrays._replace(rate=1.0 / dt)
         yielding = self.plan.yielding._replace(dt=dt)
         self.plan = self.plan._replace(arrays=arrays, yielding=yielding)
-        program.constants[self._duration_at] = dt * self._duration_rate
+        self.program.constants[self._duration_at] = dt * self._duration_rate
 
     def _add_network(self, solver: DNNSolver, dt: float, lags: bool) -> bool:
         """Add the network's entry to the table; return whether the network is compiled."""
@@ -207,7 +208,6 @@ def take_step(
     past: Matrix,
     following: Matrix,
     state: Vector,
-    relaxed: Vector,
     t: float,
     samples: bool,
 ) -> int:
@@ -222,7 +222,6 @@ def take_step(
         past: `ControllerState.past`, (8, dof); its joint positions are overwritten.
         following: The same for the next step, overwritten.
         state: The network's state, (size,), advanced.
-        relaxed: States of the networks of relaxed programs, (`relaxed_size`,), advanced.
         t: Time [s].
         samples: Whether the references are asked for the targets.
 
@@ -247,10 +246,11 @@ def take_step(
         if guard_step(arrays, past, following, plan.yielding):
             return NONE
     first = row.size - views.targets.size
-    if not all_finite(past[Q], 0, table[0, 3]) or not all_finite(row, first, row.size):
+    finite = math.isfinite(t) and all_finite(q, 0, q.size)
+    if not finite or not all_finite(row, first, row.size):
         return INVALID
     policy = BRAKE if halted else plan.policy
-    return yield_step(views, arrays, past, following, plan.yielding, relaxed, policy)
+    return yield_step(views, arrays, past, following, plan.yielding, plan.relaxed, policy)
 
 
 @compiled

@@ -22,9 +22,11 @@ joints' way :math:`\Delta q`, still has at least
 .. math::  d + g \cdot \Delta q - \tfrac12 B - v_o T
 
 by inequality (1) of docs/theory.md. Along the motion :math:`g \cdot \Delta q` has its least
-value at rest, or where the sum of its terms changes sign. Where the joints go straight on, their
-way up to any time is :math:`\lambda \Delta q` with :math:`0 \le \lambda \le 1`, and B at most
-:math:`\lambda^2 B`: the difference, concave in :math:`\lambda`, is least at an end.
+value at rest, or where the sum of its terms changes sign. Up to any time the joints have gone at
+most a part :math:`\lambda` of their ways, that of the curve of :math:`x_0`, and B is at most
+:math:`\lambda^2 B`. Of an end that sets off away from the other body, with
+:math:`x_0 \ge \max(b / 3 M, 0)`, the way up to then is at least :math:`\lambda^2` of its whole
+one, where that is away too: the difference is then least at an end of the motion.
 """
 
 import math
@@ -183,24 +185,6 @@ def least_way(motion: Motion, x: float, b: float, dt: float) -> float:
 
 
 @compiled
-def is_straight(motion: Motion) -> bool:
-    """Test whether the joints go straight on to where they rest.
-
-    Their velocities keep direction and sign where b is c times the first one with c >= -3.
-    """
-    fastest = 0.0
-    factor = 0.0
-    for i in range(motion.first.size):
-        if abs(motion.first[i]) > fastest:
-            fastest = abs(motion.first[i])
-            factor = motion.bend[i] / motion.first[i]
-    lacking = 0.0
-    for i in range(motion.first.size):
-        lacking = max(lacking, abs(motion.bend[i] - factor * motion.first[i]))
-    return fastest > 0.0 and factor >= -3.0 and lacking <= ROUNDING * fastest
-
-
-@compiled
 def keeps_joint_limits(motion: Motion, q: Vector, limits: Vector, dt: float) -> bool:
     """Test whether joints at q (n,) [rad] keep position and velocity limits on a motion to rest."""
     n = q.size
@@ -257,7 +241,6 @@ def keeps_distances(motion: Motion, arrays: ProgramArrays, constants: Vector, dt
     scene = scene_views(constants, n)
     placed = np.empty((len(scene.bodies), 12))
     place_bodies(scene, arrays.placements, placed)
-    straight = is_straight(motion)
     M = motion.periods
     travel = np.empty(n)
     for i in range(n):
@@ -277,10 +260,9 @@ def keeps_distances(motion: Motion, arrays: ProgramArrays, constants: Vector, dt
             end = ends[at]
             x, bend = _along(motion, arrays.jacobian, scene.moves, k, end, contact.normal)
             way = way_along(motion, x, bend, M, dt)
-            least = min(0.0, way - lacking)
-            if not straight:
-                least = least_way(motion, x, bend, dt) - lacking
-            change = min(change, height_of(end, contact) + least)
+            if x < max(bend / (3.0 * M), 0.0):
+                way = least_way(motion, x, bend, dt)
+            change = min(change, height_of(end, contact) + min(way - lacking, 0.0))
         if left + change < min(scene.least, left):
             return False
     return True

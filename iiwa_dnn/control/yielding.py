@@ -41,7 +41,7 @@ from iiwa_dnn.control.stopping import (
 )
 from iiwa_dnn.networks.integrators.base import TOLERANCE
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import add_row, row_dot
+from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import QPViews, qp_views
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
@@ -72,8 +72,15 @@ TOWARDS = (1.0, 0.5, 0.25, 0.125)
 """Shares of the way from the braking motion in hand to the wanted command that are tried."""
 
 
-def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
-    """Prepare for a scheme that is laid out for a robot, a tolerance and a control period [s]."""
+def make_yielding(program: StepProgram, tol: float, dt: float, alike: bool) -> Yielding:
+    """Prepare for a scheme that is laid out for a robot.
+
+    Args:
+        program: The scheme.
+        tol: Tolerance of the answers.
+        dt: Control period [s].
+        alike: Whether the network of the steps is that of the relaxed programs.
+    """
     limits: Vector = np.zeros(0)
     if program.rate_limits is not None:
         limits = program.rate_limits.constants(program.robot)
@@ -87,6 +94,7 @@ def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
         dt,
         bool((limits.reshape(6, -1)[4] < np.inf).any()),
         bool((weights == 0.0).any()),
+        alike,
     )
 
 
@@ -145,8 +153,8 @@ def yield_step(
         rest = _brake(own, past, yielding, x)
         views.point[:] = 0.0
         copied(views.point, x)
-    _note_decision(views, own, yielding.weights, x, kind, factor, action)
     views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
+    _note_decision(views, own, yielding, x, kind, factor, action)
     following[REST, 0] = rest
     following[DELAY, 0] += yielding.dt * (1.0 - views.decision[1])
     following[YIELDS, 0] = kind != OWN and action != BRAKE
@@ -159,7 +167,7 @@ def yield_step(
 def _note_decision(
     views: RowViews,
     own: QPViews,
-    weights: Vector,
+    yielding: Yielding,
     x: Vector,
     kind: int,
     factor: float,
@@ -170,7 +178,7 @@ def _note_decision(
     Args:
         views: The step's row.
         own: The step's own program.
-        weights: Weights of its task rows, (p,).
+        yielding: Weights of its task rows, and whose the network is.
         x: The command, (n,).
         kind: Kind of the program that was answered.
         factor: Scaling factor of the task in it.
@@ -185,10 +193,15 @@ def _note_decision(
         taken = action if kind == HELD or _is_path(views.targets) else RELAX
         fraction = 1.0
         if taken == SLOW:
-            fraction = max(attained(own.b, own.A, weights, x), CREEP)
+            fraction = max(attained(own.b, own.A, yielding.weights, x), CREEP)
     views.decision[0] = taken
     views.decision[1] = fraction
-    views.decision[2] = max(views.decision[2], float(NOT_SETTLED)) if taken == STOP else SOLVED
+    if taken == STOP:
+        views.decision[2] = max(views.decision[2], float(NOT_SETTLED))
+    elif kind != OWN or yielding.alike:
+        views.decision[2] = SOLVED
+    elif views.decision[2] >= NOT_SETTLED:  # the answer is not that of the network that failed
+        views.figures[2] = np.inf
     views.decision[3] = kind
 
 
@@ -221,7 +234,7 @@ def _answer_relaxed(
     if factor == 1.0 or (follows and factor >= CREEP):
         asked = qp.b.copy()
         scale_task(qp, yielding.weights, factor)
-        if settled(qp, yielding, relaxed[size:], views.point, views.figures):
+        if settled(qp, yielding.settings, relaxed[size:], views.point, views.figures):
             return SCALED, factor
         copied(qp.b, asked)
     if action == STOP:
@@ -233,7 +246,7 @@ def _answer_relaxed(
         note_blocking(point, n, m, 1, views.blocking)
         return STOPPED, 0.0
     soften_task(qp, yielding.weights, retreat)
-    found = settled(qp, yielding, relaxed[size:], views.point, views.figures)
+    found = settled(qp, yielding.settings, relaxed[size:], views.point, views.figures)
     note_blocking(views.point, n, m, 0, views.blocking)
     return SOFTENED if found else STOPPED, 0.0
 
@@ -359,43 +372,8 @@ def _make_stoppable(
         rest = stopping_time(arrays, past, yielding, x[:dof])
         if rest >= 0.0:
             return rest
-    if not yielding.coupled and _go_away(limits, past[LAST], x[:dof]):
-        rest = stopping_time(arrays, past, yielding, x[:dof])
-        if rest >= 0.0:
-            return rest
     copied(x, brake)
     return left
-
-
-@compiled
-def _go_away(limits: QPViews, last: Vector, dq: Vector) -> bool:
-    """Write the command dq (dof,) that goes straight away from what is too near.
-
-    A row stands for the nearest point of a link. Where the link lies along an obstacle, what the
-    softened program asks for may lead another of its points nearer, and would hold the arm there.
-    The arm sets off along the rows' gradients, and goes on in the direction of its last command.
-
-    Returns:
-        False if no row asks for a retreat, or the bounds allow none in that direction.
-    """
-    rests = largest_entry(last) == 0.0
-    near = 0
-    copied(dq, last)
-    for j in range(limits.h.size):
-        if limits.h[j] < -REACHED:
-            near += 1
-            add_row(dq, -1.0 * rests, limits.G, j)
-    least = 0.0
-    most = np.inf
-    for i in range(dq.size):
-        if dq[i] != 0.0:
-            least = max(least, min(limits.lb[i] / dq[i], limits.ub[i] / dq[i]))
-            most = min(most, max(limits.lb[i] / dq[i], limits.ub[i] / dq[i]))
-    if near == 0 or not least <= most < np.inf:
-        return False
-    for i in range(dq.size):
-        dq[i] *= most
-    return True
 
 
 @compiled

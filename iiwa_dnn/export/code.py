@@ -80,7 +80,6 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
         "rows": ROWS,
         "width": lengths["row"],
         "state": lengths["state"],
-        "relaxed": lengths["relaxed"],
         "frames": len(program.target_frames),
         "frame_names": ", ".join(program.target_frames),
         "joint_names": ", ".join(robot.joint_names),
@@ -118,7 +117,7 @@ def _lengths(controller: Controller, shielded: bool) -> dict[str, int]:
         "past": ROWS * dof,
         "following": ROWS * dof,
         "state": controller.solver.state_for(step.program.sizes).size,
-        "relaxed": step.relaxed.size,
+        "relaxed": step.plan.relaxed.size,
         "jacobian": 6 * dof,
         "placements": 12 * controller.robot.model.nframes,
         "inertia": dof * dof * step.program.needs_inertia,
@@ -140,6 +139,7 @@ class _Code:
             "jacobian": "c->jacobian",
             "placements": "c->placements",
             "inertia": "c->inertia" if needs_inertia else "NULL",
+            "relaxed": "c->relaxed",
         }
         self._translator = Translator(_PACKAGE)
         self._parts: list[Function] = []

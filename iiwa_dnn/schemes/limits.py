@@ -385,11 +385,16 @@ def _jerk_bounds(
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where the jerk is limited."""
     fastest, accel, jerk, deceleration = rates
-    # Jerk before acceleration: an acceleration beyond its limit is taken back as jerk allows.
-    middle = 2.0 * last - before
+    slowest = last - accel * dt
+    quickest = last + accel * dt
+    # A state that no command led to may leave nothing: acceleration goes before jerk, and so does
+    # velocity, or an acceleration beyond its limit would go on.
+    bottom = min(-fastest, quickest)
+    top = max(fastest, slowest)
+    middle = min(max(2.0 * last - before, slowest), quickest)
     change = jerk * dt * dt
-    first = min(max(last - accel * dt, middle - change), middle + change)
-    final = min(max(last + accel * dt, middle - change), middle + change)
+    first = min(max(max(slowest, middle - change), bottom), top)
+    final = min(max(min(quickest, middle + change), bottom), top)
     jerk = min(jerk, min(deceleration / dt, fastest / (dt * dt)) / SHARE)
     unit = jerk * dt * dt
     lb = min(max(last - unit * approach((last + fastest) / unit), first), final)

@@ -158,31 +158,6 @@ def test_hands_move_the_clock_and_play(browser: Any, replay: Replay) -> None:
     assert wait_for(lambda: not replay.playing.value, "the pause")
 
 
-@needs_browser
-def test_on_a_phone_the_arm_stands_above_the_controls(browser: Any, replay: Replay) -> None:
-    first = browser.current_window_handle
-    browser.switch_to.new_window("tab")
-    phone = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
-    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", phone)
-    browser.get(address(replay))
-    wait_for(lambda: sliders(browser), "the page's controls")
-    left, top, width = browser.execute_script(
-        "let part = document.querySelector('[role=slider]');"
-        "while (getComputedStyle(part).position !== 'fixed') part = part.parentElement;"
-        "let box = part.getBoundingClientRect(); return [box.left, box.top, box.width]"
-    )
-    assert top > 0.59 * 844  # the scene has more than half
-    assert (left, width) == (0, 390)  # and no strip beside the controls
-
-    def seen() -> bool:
-        rows, columns = np.nonzero(arm(picture(browser)[: int(top)]))
-        return len(rows) > 100 and bool(columns.min() > 0 and columns.max() < 389)
-
-    assert wait_for(seen, "the whole arm above the controls")
-    browser.close()
-    browser.switch_to.window(first)
-
-
 def test_obstacles_stand_where_they_are_and_slowed_stretches_are_marked(slowed: Record) -> None:
     page = Replay(paper_robot(), slowed, port=0)
     try:

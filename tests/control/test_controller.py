@@ -2,6 +2,7 @@
 
 import copy
 import warnings
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, dh_pose
-from helpers_simulation import driven, heart, near_target, paper_robot, paper_start
+from helpers_simulation import driven, heart, near_target, paper_robot, paper_start, run
 
 DT = 1e-3
 
@@ -61,6 +62,37 @@ def test_a_network_that_lags_says_that_it_keeps_bounds_alone() -> None:
     alone = d.DoubleIndicator(home=PAPER_Q0, extra_limits=(d.TipSpeedLimit(1.0),))
     with pytest.warns(UserWarning, match="TipSpeedLimit holds beside AccelerationLimits alone"):
         d.Controller(paper_robot(), alone).step(PAPER_Q0, 0.0, near)
+
+
+def test_a_loop_that_is_most_likely_wrong_is_warned_of() -> None:
+    inside = d.CollisionAvoidance([d.Sphere(paper_start().position, 0.1)])
+    controller = d.Controller(
+        paper_robot(), d.DoubleIndicator(extra_limits=(inside,)), heart(), dt=0.5
+    )
+    with (
+        pytest.warns(UserWarning, match=r"period of 0.5 s is long"),
+        pytest.warns(UserWarning, match="Sphere 1 and iiwa7_link_7 are -0.1"),
+    ):
+        controller.step(PAPER_Q0, 0.0)
+    with pytest.raises(AttributeError, match="no setting 'polcy'"):
+        controller.polcy = "stop"  # type: ignore[attr-defined]
+
+
+@dataclass(frozen=True)
+class Dead(d.networks.Network):
+    """A network whose rates are no numbers."""
+
+    def state_size(self, qp: d.QP) -> int:
+        return qp.q.size + qp.b.size
+
+    def flow(self, qp: d.QP, rate: float | None = None) -> Any:
+        return d.networks.Flow(lambda state: np.full(state.size, np.nan))
+
+
+def test_what_a_network_failed_at_is_not_its_success() -> None:
+    # The network of the relaxed programs answered, and the run was one without a failure.
+    record = run(solver=d.DNNSolver(Dead()), duration=0.01)
+    assert "9 steps unsolved in all" in d.failures(record)[0]
 
 
 @pytest.mark.parametrize(("orientation", "said"), [("so3", 1), ("block", 1), ("none", 0)])

@@ -120,3 +120,39 @@ def test_what_was_sent_in_place_of_a_command_is_what_the_jerk_is_counted_from(ti
     change = sent - last if times == 1 else 0.0
     jump = controller.step(path[-1], 0.1).dq - (sent + change)
     assert np.abs(jump).max() == pytest.approx(jerk * DT**2, rel=1e-6)
+
+
+DISTURBED: dict[str, Any] = {
+    "periods that differ": lambda k, random: {"dt": DT * random.uniform(0.7, 2.0)},
+    "one long period": lambda k, random: {"dt": 0.02 if k == 100 else DT},
+    "a jump that was sent": lambda k, random: {"sent": 0.5 * (k == 100)},
+    "limits in motion": lambda k, random: {"scheme": RATED if k else LIMITED},
+    "less jerk in motion": lambda k, random: {"scheme": SMOOTH if k > 30 else RATED},
+}
+RATED, SMOOTH = (
+    d.DoubleIndicator(extra_limits=(d.AccelerationLimits(10.0), d.JerkLimits(jerk)), home=PAPER_Q0)
+    for jerk in (500.0, 20.0)
+)
+
+
+@pytest.mark.parametrize("disturbed", DISTURBED.values(), ids=DISTURBED)
+def test_velocity_and_acceleration_hold_whatever_comes_upon_a_loop(disturbed: Any) -> None:
+    # After one period of 20 ms the arm ran away, at 41 rad/s: its acceleration was taken for
+    # twenty times what it was, and the jerk limit held it there.
+    random = np.random.default_rng(0)
+    controller = d.Controller(paper_robot(), RATED, dt=DT, policy="relax")
+    target = d.Target(paper_start().position + [0.0, 0.2, 0.0], paper_start().rotation)
+    q = np.array(PAPER_Q0)
+    last = np.zeros(7)
+    for k in range(1000):
+        asked = {"scheme": RATED, "sent": 0.0, "dt": DT} | disturbed(k, random)
+        controller.scheme = asked["scheme"]
+        if asked["sent"]:
+            last = last + asked["sent"]
+            controller.send(last)
+        dq = controller.step(q, 0.0, target, dt=asked["dt"]).dq
+        assert (np.abs(dq) <= paper_robot().dq_max).all()
+        assert np.abs(dq - last).max() <= 10.0 * asked["dt"] * (1.0 + 1e-9)
+        q = q + asked["dt"] * dq
+        last = dq
+    assert np.abs(q - PAPER_Q0).max() > 0.1

@@ -73,6 +73,16 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
     assert max(ratios) <= (1.0 if jerk == np.inf else 1.125)
 
 
+@pytest.mark.parametrize("periods", [2.0, 3.0, 7.0, 40.0, 300.0])
+def test_what_sets_off_away_has_gone_the_square_of_the_joints_part(periods: float) -> None:
+    motion = stopping.Motion(np.ones(1), np.ones(1), periods, True)
+    part, away = (
+        np.array([stopping.way_along(motion, x, b, k, 1.0) for k in range(int(periods) + 1)])
+        for x, b in ((1.0, 0.0), (1.0 / (3.0 * periods), 1.0))
+    )
+    assert (away / away[-1] >= (part / part[-1]) ** 2 - 1e-12).all()
+
+
 @pytest.mark.parametrize("cubic", [False, True])
 def test_the_way_along_a_motion_is_the_sum_of_its_velocities(cubic: bool) -> None:
     random = np.random.default_rng(4)
@@ -184,6 +194,27 @@ def test_an_arm_just_outside_the_distance_is_in_no_trap() -> None:
         (*ACCELERATION, beside(near - 1e-5, ball)), tip_at(-0.1, 0.0, 0.0), 1500, 1e-3
     )
     assert left < 1e-3
+
+
+@BOTH
+@pytest.mark.parametrize("speed", [0.05, 0.3])
+def test_a_resting_arm_gives_way_to_a_ball(limits, speed: float) -> None:
+    # With a jerk limit no retreat was proven to go away all along: the ball ran into the arm.
+    ball = d.Sphere(START.position + [0.3, 0.1, 0.05], 0.05, velocity=[-speed, 0.0, 0.0])
+    avoidance = beside(0.02, ball)
+    path, _ = approached((*limits, avoidance), tip_at(0.0, 0.0, 0.0), int(150 / speed))
+    times = 4e-3 * np.arange(len(path))
+    assert avoidance.scene(ROBOT).nearest(path, times)[0].min() > 0.019
+    assert np.abs(path - START.q).max() > 0.05
+
+
+def test_an_arm_that_braked_in_continuous_mode_goes_on() -> None:
+    scheme = d.DoubleIndicator(orientation="none", extra_limits=(beside(0.02, WALL),))
+    controller = d.Controller(ROBOT, scheme, dt=1e-3, mode="continuous")
+    _, commands = driven(controller, START.q, 1500, lambda t: tip_at(0.5 * (t < 1.0), 0.0, 0.0))
+    braked = [bool(command.action) for command in commands]
+    assert any(braked)
+    assert not all(braked[braked.index(True) :])
 
 
 def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:

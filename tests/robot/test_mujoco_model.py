@@ -72,24 +72,6 @@ def test_motors_and_stops_are_the_data_sheets_and_links_do_not_collide(robot):
     assert data.ncon == 0
 
 
-def test_masses_and_friction(robot):
-    factors = np.linspace(0.9, 1.1, 7)
-    friction = np.arange(7.0)
-    plain, other = compile_model(robot, 1e-3), compile_model(robot, 1e-3, None, friction, factors)
-    for i, factor in enumerate(factors, 1):
-        link = f"iiwa7_link_{i}"
-        for name in ("mass", "inertia"):
-            before, after = getattr(plain.body(link), name), getattr(other.body(link), name)
-            np.testing.assert_allclose(after, factor * before)
-    np.testing.assert_array_equal(other.dof_frictionloss, friction)
-    assert other.body("iiwa7_link_0").mass == plain.body("iiwa7_link_0").mass
-    # Behind a locked joint a link is off with the one that carries it.
-    locked = load_robot("iiwa7", locked=("iiwa7_joint_7",))
-    other = compile_model(locked, 1e-3, mass_factors=np.array([1, 1, 1, 1, 1, 1.1]))
-    for link, factor in (("iiwa7_link_5", 1.0), ("iiwa7_link_6", 1.1), ("iiwa7_link_7", 1.1)):
-        np.testing.assert_allclose(other.body(link).mass, factor * plain.body(link).mass)
-
-
 @pytest.mark.parametrize(
     ("name", "also"),
     [

@@ -63,25 +63,6 @@ def test_the_arm_gives_way_to_a_dragged_ball(page: Any) -> None:
     assert np.linalg.norm(tip(page, "iiwa7_link_4") - elbow) > 0.02
 
 
-def test_a_twist_moves_the_tip_until_it_is_given_back_to_the_target(page: Any) -> None:
-    start = tip(page)
-    page.twist[0].value = (0.0, 0.0, 0.1)
-    for _ in range(25):  # 1 s
-        page.tick()
-    np.testing.assert_allclose(tip(page) - start, [0.0, 0.0, 0.1], atol=5e-3)
-    assert page.state.content == "twist as wished"
-    for _ in range(75):  # into the ball
-        page.tick()
-        assert np.linalg.norm(tip(page) - page.center) > 0.1
-    assert "clipped by" in page.state.content
-    page.twist[0].value = (0.0, 0.0, 0.0)
-    given_back = tip(page)
-    for _ in range(10):
-        page.tick()
-    np.testing.assert_allclose(tip(page), given_back, atol=5e-3)
-    np.testing.assert_allclose(page.target.position, given_back, atol=5e-3)
-
-
 def test_the_command_ends_by_itself(
     script: dict[str, Any], capsys: pytest.CaptureFixture[str]
 ) -> None:

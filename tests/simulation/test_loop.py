@@ -105,14 +105,6 @@ def test_settings_say_what_was_asked_and_with_what() -> None:
     json.dumps(settings, allow_nan=False)
 
 
-def test_progress_adds_up_to_the_steps() -> None:
-    told: list[int] = []
-    run(duration=1.234, progress=told.append)
-    assert sum(told) == 1234
-    assert told[0] == 0  # the arguments are right
-    assert min(told[1:]) > 0
-
-
 @pytest.mark.parametrize("solvers", [(), ("osqp",)], ids=["none", "osqp"])
 @pytest.mark.parametrize("case", list(OPTIONS))
 def test_the_same_call_saves_the_same_bytes(case, solvers, tmp_path) -> None:

@@ -8,12 +8,6 @@ from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, run
 from iiwa_dnn.control.command import RowLayout
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.results.record import OPTIONAL
-
-
-def test_a_run_as_planned_has_no_optional_columns() -> None:
-    record = run()
-    assert [name for name in OPTIONAL if len(getattr(record, name))] == []
 
 
 def test_a_decision_is_noted_at_its_step_with_the_bound_in_the_way() -> None:

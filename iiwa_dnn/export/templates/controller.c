@@ -29,13 +29,12 @@ int controller_step(struct controller *c, const double *q, const double *target,
     const Matrix past = {c->past, @rows@, CONTROLLER_DOF};
     const Matrix following = {c->following, @rows@, CONTROLLER_DOF};
     const Vector state = {c->state, @state@};
-    const Vector relaxed = {c->relaxed, @relaxed@};
     const Vector joints = {c->past, CONTROLLER_DOF};
     const double t = c->steps[0] * CONTROLLER_DT;
     memcpy(c->past, q, sizeof(double) * CONTROLLER_DOF);
     memcpy(c->row + @at_targets@, target, sizeof(double) * 18 * CONTROLLER_FRAMES);
     @kinematics@(&arena, &model, joints, plan.arrays.jacobian, plan.arrays.placements, plan.arrays.inertia);
-    const ptrdiff_t action = @take_step@(&arena, row, &plan, joints, past, following, state, relaxed, t, false);
+    const ptrdiff_t action = @take_step@(&arena, row, &plan, joints, past, following, state, t, false);
     if (full || action == CONTROLLER_INVALID) {
         memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
         return CONTROLLER_INVALID;

@@ -1,16 +1,12 @@
 """The arm in MuJoCo as the runner sees it: start, read, move; no controller around it."""
 
-from dataclasses import asdict
-
 import numpy as np
 import pytest
 
 from helpers_physics import START
 from iiwa_dnn import Configuration, load_robot
-from iiwa_dnn.robot.mujoco_model import JointDynamics
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
 from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
-from iiwa_dnn.simulation.plants.torque_control import TorqueGains
 
 mujoco = pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
 
@@ -56,25 +52,6 @@ def test_a_command_arrives_late_by_the_delay(robot, delay):
         still.move(np.zeros(7))
     np.testing.assert_array_equal(late[delay:], drive(still, 30 - delay))
     assert np.abs(late[:delay] - START).max(initial=0.0) < 1e-9
-
-
-def test_its_settings_say_everything(robot):
-    disturbances, gains = Disturbances(friction=0.01, delay=2), TorqueGains(bandwidth=50.0)
-    plant = MujocoPlant(disturbances, gains, JointDynamics(0.3, 0.07), timestep=5e-4)
-    settings = dict(plant.start(robot, START, DT, 0))
-    limit = settings.pop("torque_max")
-    np.testing.assert_array_equal(limit, [176.0, 176.0, 110.0, 110.0, 110.0, 40.0, 40.0])
-    assert settings == {
-        "physics": {
-            "engine": f"MuJoCo {mujoco.__version__}",
-            "timestep": 5e-4,
-            "damping": [0.3] * 7,
-            "armature": [0.07] * 7,
-            "friction": [0.01 * value for value in limit],
-            "disturbances": asdict(disturbances),
-            "torque_loop": asdict(gains),
-        }
-    }
 
 
 def test_the_push_has_the_impulse_that_is_asked_for(robot):
