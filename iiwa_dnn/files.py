@@ -8,6 +8,7 @@ import secrets
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -55,11 +56,12 @@ def prepare_folder(folder: str | os.PathLike[str]) -> Path:
     """Make a folder with its parents, unless it exists already, and return it.
 
     Raises:
-        FileError: If it cannot be made.
+        FileError: If it cannot be made, or not written to.
     """
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        TemporaryFile(dir=folder).close()
     except (OSError, ValueError) as error:  # ValueError: a name with a NUL in it
         raise FileError(folder, f"cannot be written to ({one_line(error)})") from error
     return folder

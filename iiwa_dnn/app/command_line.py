@@ -75,17 +75,20 @@ def run_script(main: Callable[..., int | None]) -> int:
 
 
 def claim_folder(folder: Path, settings: Mapping[str, Any], overwrite: bool) -> Path:
-    """Make a folder that of the run with these settings, which are written into it.
+    """Make the folder of a run with these settings, which `write_settings` writes.
 
     Raises:
         FileError: The folder holds other files, or another run and `overwrite` is not set, or
             cannot be written to.
     """
     file = folder / SETTINGS_FILE
-    text = tomli_w.dumps(settings)
-    is_same = file.is_file() and file.read_text(encoding="utf-8") == text
+    is_same = file.is_file() and file.read_text(encoding="utf-8") == tomli_w.dumps(settings)
     if any(folder.glob("[!.]*")) and not (is_same or overwrite):
         problem = "holds another run or other files: choose another --out, or --overwrite"
         raise FileError(folder, problem)
-    write_text(prepare_folder(folder) / SETTINGS_FILE, text)
-    return folder
+    return prepare_folder(folder)
+
+
+def write_settings(folder: Path, settings: Mapping[str, Any]) -> None:
+    """Write the settings of a run into its folder; raises FileError if it cannot be written."""
+    write_text(folder / SETTINGS_FILE, tomli_w.dumps(settings))

@@ -3,6 +3,7 @@
 The studies are imported only for these two commands: SciPy's statistics take a second.
 """
 
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
@@ -21,6 +22,7 @@ from iiwa_dnn.app.command_line import (
     Quiet,
     claim_folder,
     shown,
+    write_settings,
 )
 from iiwa_dnn.files import write_json, write_text
 from iiwa_dnn.results.plots import overview_figure, write_figures
@@ -54,6 +56,7 @@ def start_sweep(words: SweepWords, name: str) -> tuple[Path, Callable[..., list[
     checks.integer("workers", 1 if words.workers is None else words.workers, 1)
     settings = {"command": name}
     folder = claim_folder(words.out or Path("runs") / name, settings, words.overwrite)
+    write_settings(folder, settings)
     compute = partial(sweep, workers=words.workers, dask=words.dask, quiet=words.quiet)
     return folder, partial(compute, folder=folder / "cells")
 
@@ -136,7 +139,8 @@ def atlas(
 ) -> int:
     """Compare the networks of the field, and yours, at equal work.
 
-    A network of one's own is named as module:NAME or file.py:NAME.
+    A network of one's own is named as module:NAME or file.py:NAME. Exit code 1: a network that was
+    named has lost runs; the report names the reason.
 
     Args:
         sweep: words of all sweeps
@@ -150,10 +154,9 @@ def atlas(
     """
     from iiwa_dnn.studies import atlas as league, atlas_report
 
-    if league.NETWORKS.keys().isdisjoint(networks):  # one's own beside all others
-        networks = (*league.NETWORKS, *networks)
+    alone = league.NETWORKS.keys().isdisjoint(networks)  # one's own beside all others
     given = {
-        "networks": networks,
+        "networks": (*league.NETWORKS, *networks) if alone else networks,
         "schemes": schemes or (tuple(league.SCHEMES) if whole else None),
         "disturbances": disturbances or None,
         "work": work,
@@ -173,9 +176,12 @@ def atlas(
     )
     text = atlas_report.report(folder, size, rows, head)
     write_text(folder / "report.md", text)
+    lost = [row["failures"][0] for row in rows if row["lost"] and row["network"] in networks]
     if not sweep.quiet:
         print(text)
-    return 0
+    elif lost:
+        print(*dict.fromkeys(lost), sep="\n", file=sys.stderr)
+    return int(bool(lost))
 
 
 def _chosen(words: Mapping[str, Any]) -> dict[str, Any]:

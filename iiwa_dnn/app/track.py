@@ -42,7 +42,7 @@ from iiwa_dnn import (
     load_robot,
     simulate,
 )
-from iiwa_dnn.app.command_line import Flag, Folder, Quiet, claim_folder, shown
+from iiwa_dnn.app.command_line import Flag, Folder, Quiet, claim_folder, shown, write_settings
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.files import parse_toml, read_toml
 from iiwa_dnn.results.pictures import save_pictures
@@ -273,6 +273,8 @@ def _draw(options: Any, more: Tables) -> int:
             bar.update(done)
 
         record = simulate(**arguments, progress=proceed)
+    (folder / "report.md").unlink(missing_ok=True)  # that of an earlier run
+    write_settings(folder, tables)
     metrics = save_run(record, folder, options.plots, draw_more, published(record.settings))
     reasons = failures(metrics)
     if not options.quiet:
@@ -291,6 +293,7 @@ def export(options: Words) -> int:
     known = signature(Controller).parameters
     controller = Controller(**{key: arguments[key] for key in arguments if key in known})
     folder = claim_folder(options.out or Path("controller"), tables, options.overwrite)
+    write_settings(folder, tables)
     exports.c99(controller, folder, arguments["q0"])
     if controller.robot.name == "iiwa7" and "position" not in tables["limits"]:
         line = "position limits of 2.5 rad are the paper's, wider than those of joints 2, 4 and 6"
@@ -305,7 +308,7 @@ def read_tables(options: Any, more: Tables) -> Tables:
 
     Raises:
         FileError: The file cannot be read.
-        InvalidInputError: There is no such table.
+        InvalidInputError: There is no such table, or a name is none.
     """
     typical = asdict(Disturbances.typical()) if options.disturb else {}
     words = [(f"plant.disturbances.{key}", value) for key, value in typical.items()]
@@ -317,18 +320,18 @@ def read_tables(options: Any, more: Tables) -> Tables:
         *(_nested(place, value) for place, value in words if value is not None),
         *map(_read_setting, options.set),
     ]
-    tables = _checked(reduce(_merge, sources))
-    for table, key in (("robot", "name"), ("reference", "name"), ("limits", "obstacles")):
-        if Path(tables[table].get(key, "")).suffix:
-            tables[table][key] = str(Path(tables[table][key]).resolve())
-    return tables
-
-
-def _checked(tables: Tables) -> Tables:
-    """Return the tables; raise InvalidInputError if one is none of a run's."""
+    tables = reduce(_merge, sources)
     for name, values in tables.items():
         if name not in TABLES or not isinstance(values, dict):
             raise InvalidInputError(name, f"must be one of the tables {', '.join(TABLES)}", values)
+    for table, key in (("robot", "name"), ("reference", "name"), ("limits", "obstacles")):
+        value = tables[table].get(key, "")
+        if not isinstance(value, str):
+            raise InvalidInputError(
+                f"{table}.{key}", f"must be a name or a file, not {value!r}", value
+            )
+        if Path(value).suffix:
+            tables[table][key] = str(Path(value).resolve())
     return tables
 
 
@@ -380,7 +383,11 @@ def build(tables: Tables) -> Tables:
     is_paper = (robot.name, name, plant.exact) == ("iiwa7", "heart", True)
     run.setdefault("dt", 1e-4 if is_paper else 1e-3)
     solver = run.get("check", "proxqp")
-    check = CrossCheck(CHECKS.get(solver, (solver,)), run.get("tolerance", 1e-6))
+    try:
+        check = CrossCheck(CHECKS.get(solver, (solver,)), run.get("tolerance", 1e-6))
+    except InvalidInputError as error:
+        problem = error.problem.replace("one of ", "one of both, none, ")
+        raise InvalidInputError(error.argument, problem, solver) from error
     given = {key: value for key, value in run.items() if key not in ("check", "tolerance")}
     made = {"robot": robot, "scheme": scheme, "reference": reference, "q0": q0, "plant": plant}
     return {**made, "check": check, **objects(signature(simulate).parameters, "run", given)}

@@ -163,8 +163,9 @@ def disturbed(solver: DNNSolver, noise: Matrix) -> DNNSolver:
             state[:width] += next(rows)[:width]
             return super()._advanced(qp, state, *taken)
 
-    settings = {each.name: getattr(solver, each.name) for each in fields(solver) if each.init}
-    return Disturbed(**settings)
+    return Disturbed(
+        **{each.name: getattr(solver, each.name) for each in fields(solver) if each.init}
+    )
 
 
 @dataclass(frozen=True)
@@ -181,11 +182,15 @@ class Paced(ExplicitEuler):
         """Advance `state` (size,) in place, whatever the duration; returns the steps taken.
 
         Raises:
-            InvalidInputError: No step is stable.
+            InvalidInputError: The rates are not finite numbers (size,), or no step is stable.
         """
-        step = self.share * network.flow(qp).linear_limit(state)
+        flow = network.flow(qp)
+        checks.finite_array("rates", flow.rates(state), state.shape)
+        step = self.share * flow.linear_limit(state)
         if not step > 0.0:
-            raise InvalidInputError("network", "has no stable step: take `settled`", network)
+            raise InvalidInputError(
+                "network", "no explicit step is stable; `settled` would integrate it implicitly"
+            )
         return super().advance(network, qp, state, step * (self.substeps or 1))
 
 
@@ -464,19 +469,21 @@ def measure(cell: Cell) -> dict[str, Any]:
     Returns:
         For each of `MEASURES` a list with a number for each seed, None where the run failed: the
         root mean squares, over the second half of the run, of the answers' KKT residual and of the
-        tool's position error [m]. ``failures``, the reasons; ``taken``, the evaluations a control
-        period and their operations.
+        tool's position error [m]. ``failures``, the reasons, which of a network from outside may
+        be any exception; ``taken``, the evaluations a control period and their operations.
     """
     runs: list[dict[str, Any]] = []
     failures = set()
+    foreign = (Exception,) if ":" in cell.network else ()
     for seed in range(cell.seeds):
         try:
             with np.errstate(all="ignore"), warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # a network that diverges ends its run
                 runs.append(_run(cell, seed))
-        except (IiwaDnnError, np.linalg.LinAlgError) as error:
+        except (IiwaDnnError, np.linalg.LinAlgError, *foreign) as error:
             runs.append({})
-            failures.add(str(error))
+            kind = "" if isinstance(error, IiwaDnnError) else f"{type(error).__name__}: "
+            failures.add(kind + one_line(error))
     values: dict[str, Any] = {name: [run.get(name) for run in runs] for name in MEASURES}
     taken = next((run["taken"] for run in runs if run), None)
     return {**values, "taken": taken, "failures": sorted(failures)}

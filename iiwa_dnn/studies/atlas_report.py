@@ -106,8 +106,10 @@ def find(rows: Sequence[Row], **wanted: Any) -> list[Row]:
 
 def of_every_disturbance(rows: Sequence[Row], network: str) -> list[Row]:
     """Return the row of a network for each disturbance, with the league's scheme and budget."""
-    kinds = dict.fromkeys(row["disturbance"] for row in rows)
-    return [find(rows, network=network, disturbance=kind)[0] for kind in kinds]
+    return [
+        find(rows, network=network, disturbance=kind)[0]
+        for kind in dict.fromkeys(row["disturbance"] for row in rows)
+    ]
 
 
 def scores(rows: Sequence[Row], network: str) -> Vector | None:
@@ -222,13 +224,27 @@ def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
         and claim.disturbance in size.disturbances
     ]
     periods = sorted({row["dt"] for row in rows if row["work"] == UNLIMITED}, reverse=True)
-    position = partial(_shown, measure="rms_error_m")
     tables = [
         Table("league", f"RMS KKT residual: {of}", head, _league(rows, ranking, _shown)),
-        Table("errors", f"RMS position error [m]: {of}", head, _league(rows, ranking, position)),
+        Table(
+            "failures",
+            "Runs that failed: the first reason",
+            ["network", "disturbance", "reason"],
+            [
+                [row["network"], row["disturbance"], f"{row['failures'][0]:.100}"]
+                for row in find(rows)
+                if row["failures"]
+            ],
+        ),
+        Table(
+            "errors",
+            f"RMS position error [m], the places by the residual: {of}",
+            head,
+            _league(rows, ranking, partial(_shown, measure="rms_error_m")),
+        ),
         Table(
             "verdicts",
-            "Claims of the papers, by the residual of pairs of runs",
+            "Claims of the papers, by the residual of pairs of runs, gains chosen undisturbed",
             ["claim", "disturbance", "network of the claim", "network beside it", "verdict"],
             claims,
         ),

@@ -53,8 +53,9 @@ _LIMITS = """\
   rows of the ablation are chaotic: their digits depend on the last bit of every sum, and so on the
   versions and the machine.
 - A verdict: *reproduced* if all numbers are within a factor 2 of the paper's, else *same trend* if
-  they go the same way, else *not reproduced*. A change (filter, noise) must also have an interval
-  that leaves zero out, and be of 0.1 % at least. See docs/paper.md and docs/errata.md."""
+  Kendall's tau over ξ has the paper's sign, else *not reproduced*. The four cases of Table II have
+  no order, and so no trend. A change (filter, noise) is of the same trend if its interval lies on
+  the paper's side of zero, and it is 0.1 % at least. See docs/paper.md and docs/errata.md."""
 
 
 def report(tables: Mapping[str, Table], head: Mapping[str, str], figures: Iterable[str]) -> str:
@@ -105,8 +106,9 @@ def _table1(table: Table) -> list[str]:
         for key, label in _ROWS.items():
             rows.append([label, *map(_short, variant["rows"][key])])
             if key in variant["verdicts"]:
-                ratios = variant["verdicts"][key]["ours_over_paper"]
-                rows.append(["ours / paper's", *map(_short, ratios)])
+                rows.append(
+                    ["ours / paper's", *map(_short, variant["verdicts"][key]["ours_over_paper"])]
+                )
         parts += [f"### {name}", markdown_table(head, rows)]
     return parts
 

@@ -9,7 +9,8 @@ difference is taken run by run before it is averaged: the noise that both share 
 interval is the narrower for it.
 
 A verdict is ``reproduced`` if every number is within a factor 2 of the paper's. Otherwise it is
-``same trend`` if the numbers go the same way as the paper's along the row, else ``not reproduced``.
+``same trend`` if Kendall's tau of the numbers along the row has the sign of the paper's, else
+``not reproduced``.
 
 Sources: Student, "The probable error of a mean", Biometrika 6 (1908); M. G. Kendall, "A new measure
 of rank correlation", Biometrika 30 (1938).
@@ -110,8 +111,9 @@ def judge_row(
 ) -> dict[str, Any]:
     """Judge a row of numbers that belong to the increasing parameter x, all of one length.
 
-    The verdict is on the entries that the paper has: of a single one it is no trend, of none ``–``.
-    A number that we lack makes it ``not reproduced``.
+    The verdict is on the entries that the paper has: of a single one, or over an x that is the
+    same everywhere, there is no trend; of none it is ``–``. A number that we lack makes it ``not
+    reproduced``.
 
     Returns:
         In JSON types: ``verdict``; ``ours_over_paper``, entry by entry, None where either is
@@ -125,7 +127,7 @@ def judge_row(
         level = "–"
     elif all(map(_within_factor, mine / theirs)):
         level = "reproduced"
-    elif at.size > 1 and not np.isnan(mine).any() and trend(at, mine) == trend(at, theirs):
+    elif np.ptp(at) and not np.isnan(mine).any() and trend(at, mine) == trend(at, theirs):
         level = "same trend"
     return {
         "verdict": level,

@@ -6,6 +6,7 @@ import sys
 from functools import wraps
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from helpers_kinematics import PAPER_Q0, dh_pose
 from helpers_records import draw_only
 from iiwa_dnn.app import track as command
 from iiwa_dnn.errors import IiwaDnnError
+from iiwa_dnn.simulation import runner
 
 ROOT = Path(__file__).parents[2]
 IIWA7 = next((ROOT / "robots" / "iiwa7").glob("*.urdf"))
@@ -110,8 +112,7 @@ def test_defaults_are_the_papers_experiment(words, dt, tmp_path, monkeypatch) ->
 def test_a_robots_own_limits(tmp_path: Path) -> None:
     words = ("--joint-limit", "datasheet", "--acceleration-limit", "robot", "--check", "none")
     _, metrics = track(tmp_path, *words)
-    degrees = np.rad2deg(metrics["settings"]["q_upper"])
-    np.testing.assert_allclose(degrees, [170, 120, 170, 120, 170, 120, 175], atol=1e-6)
+    assert metrics["settings"]["q_upper"][1] == np.deg2rad(120)
     assert metrics["settings"]["scheme"]["extra_limits"][0]["limit"] is None
     words = ("--set", "limits.lower=-2.4", "--set", "limits.velocity=1.2", "--speed", "0.5")
     _, metrics = track(tmp_path / "table", *words)
@@ -160,7 +161,7 @@ def test_a_run_is_repeated_bit_for_bit_by_its_settings_and_quietly(tmp_path, cap
     assert (tmp_path / "a" / "record.npz").read_bytes() == before
 
 
-def test_another_run_or_other_files_are_overwritten_only_if_it_is_said(tmp_path, capsys) -> None:
+def test_another_run_is_overwritten_only_if_it_is_said_and_done(tmp_path, capsys, monkeypatch):
     folder = tmp_path / "run"
     track(folder, "--check", "none")
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
@@ -171,6 +172,9 @@ def test_another_run_or_other_files_are_overwritten_only_if_it_is_said(tmp_path,
     for out in (folder, tmp_path):
         assert call("track", *QUICK, "--seed", "1", "--out", out) == 2
         assert f"{out}: holds another run or other files: choose" in capsys.readouterr().err
+    with monkeypatch.context() as patch:
+        patch.setattr(runner, "CheckPool", Mock(side_effect=KeyboardInterrupt))
+        assert call("track", *QUICK, "--seed", "1", "--overwrite", "--out", folder) == 130
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
     track(folder, "--seed", "1", "--overwrite")
     assert "seed = 1" in (folder / "settings.toml").read_text()

@@ -107,6 +107,14 @@ class Slow(ProjectionNetwork):
     def flow(self, qp, rate=None):
         inner = super().flow(qp)
         return inner._replace(rates=lambda state: 0.5 * inner.rates(state))
+
+class Short(Slow):
+    def flow(self, qp, rate=None):
+        return super().flow(qp)._replace(rates=lambda state: state[:2])
+
+class Faulty(Slow):
+    def flow(self, qp, rate=None):
+        return super().flow(qp)._replace(rates=lambda state: 1 / 0)
 """
 
 
@@ -115,9 +123,9 @@ def test_a_network_of_ones_own_comes_from_a_file_or_a_module(tmp_path, monkeypat
     monkeypatch.chdir(tmp_path)
     (tmp_path / "atlas_parts.py").write_text(OUTSIDE, encoding="utf-8")
     words = ["atlas", "--out", "a", "--seeds", "2", "--workers", "1", "--work", "3e3"]
-    words += ["--networks", "dual", "atlas_parts:Slow", "atlas_parts.py:Slow"]
     # Undisturbed runs are there unasked: without them it ended in an IndexError.
     words += ["--disturbances", "white"]
+    words += ["--networks", "dual", "atlas_parts:Slow", "atlas_parts.py:Slow"]
     assert main(words) == 0
     report = capsys.readouterr().out
     rows = json.loads((tmp_path / "a" / "atlas.json").read_text(encoding="utf-8"))
@@ -126,6 +134,14 @@ def test_a_network_of_ones_own_comes_from_a_file_or_a_module(tmp_path, monkeypat
     assert both[0]["residual"] == both[2]["residual"], "by either way the same"
     assert both[0]["source"] == both[2]["source"] != ""
     assert "| atlas_parts:Slow " in report
+    words += ["atlas_parts:Short", "atlas_parts:Faulty"]
+    assert main([*words, "--overwrite"]) == 1  # the others' rows are there all the same
+    report = " ".join(capsys.readouterr().out.split())
+    assert all(row in json.loads((tmp_path / "a" / "atlas.json").read_text()) for row in rows)
+    assert "| atlas_parts:Short | white | rates: must have shape (27,), not (2,) |" in report
+    assert "| atlas_parts:Faulty | none | ZeroDivisionError: division by zero |" in report
+    assert main([*words, "-q"]) == 1
+    assert "rates: must have shape (27,), not (2,)\nZero" in capsys.readouterr().err
     before = atlas.Cell("atlas_parts.py:Slow")
     (tmp_path / "atlas_parts.py").write_text(OUTSIDE + "# changed", encoding="utf-8")
     assert atlas.Cell("atlas_parts.py:Slow") != before, "a changed file makes new cells"

@@ -51,16 +51,6 @@ def finished(folder: Path) -> dict[str, bytes]:
     return {path.parent.name: path.read_bytes() for path in folder.rglob("output.pkl")}
 
 
-def test_answers_come_in_the_order_of_the_cells_and_are_kept(tmp_path: Path, log: Path) -> None:
-    folder = tmp_path / "cells"
-    assert sweep(draw, cells(log, 4)[::-1], folder, workers=1) == expected(4)[::-1]
-    kept = finished(folder)
-    assert len(kept) == 4
-    assert sweep(draw, cells(log, 6), folder, workers=1) == expected(6)
-    assert sorted(computed(log)) == [0, 1, 2, 3, 4, 5]
-    assert finished(folder).items() >= kept.items()
-
-
 def test_versions_and_sources_are_in_the_fingerprint(tmp_path, monkeypatch) -> None:
     package = tmp_path / "iiwa_dnn"
     (package / "studies").mkdir(parents=True)
