@@ -157,6 +157,8 @@ class Waypoints(Reference):
         from scipy.spatial.transform import Rotation, RotationSpline
 
         quaternions = finite_array("quaternions", quaternions, (len(knots), 4))
+        if not quaternions.any(axis=1).all():
+            raise InvalidInputError("quaternions", "must not be zero", quaternions)
         turns = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
         if (turns[1:] * turns[:-1].inv()).magnitude().max() > np.pi - 1e-6:
             raise InvalidInputError("quaternions", "two neighbours are half a turn apart")

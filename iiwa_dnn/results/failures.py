@@ -41,9 +41,14 @@ def programs_checked(check: Mapping[str, Any]) -> str:
     Of a step held back the command is checked for its bounds alone, of a stopped step nothing is.
     """
     kinds = dict(check["kinds"])
+    held = kinds.pop("held")
     stopped = kinds.pop("stopped")
     answered = ", ".join(f"{steps:,} {kind}" for kind, steps in kinds.items() if steps)
-    return f"{answered or 'no'} programs checked" + (f", {stopped:,} stopped" if stopped else "")
+    return (
+        f"{answered or 'no'} programs checked"
+        + f", {held:,} commands held back by acceleration, jerk or braking" * bool(held)
+        + f", {stopped:,} stopped" * bool(stopped)
+    )
 
 
 def completed(metrics: Mapping[str, Any]) -> str:
@@ -71,7 +76,9 @@ def _incomplete(metrics: Mapping[str, Any]) -> Iterator[str]:
     """Report an incomplete path, an early end, and a program without a solution."""
     settings = metrics["settings"]
     if metrics["path_completed"] < 1.0:
-        yield f"path completed {completed(metrics)}"
+        away = metrics.get("beyond_reach_m")
+        beyond = f": it leads {away:.3g} m beyond the arm's reach, all in metres" if away else ""
+        yield f"path completed {completed(metrics)}{beyond}"
     if settings["status"] != "completed":
         planned = round(settings["duration"] / settings["dt"])
         yield f"ended after {metrics['steps']:,} of {planned:,} steps: {settings['status']}"
@@ -97,10 +104,17 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
     if not done:
         return
     counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items())
-    pose = "no bound: a singular pose, a path out of reach or tasks against each other"
-    blocking = ", ".join(map(describe, incidents["blocking"][:3])) or pose
-    too_quick = any(limit.get("limit") in KINDS[1:] for limit in incidents["blocking"][:1])
-    advice = "; more time for the path (--period, --stretch) may help" * too_quick
+    pose = (
+        "no bound: a singular pose, a path out of reach or tasks against each other; another start "
+        "(--q0) may help"
+    )
+    unblocked = incidents.get("unblocked_steps", 0)
+    limits = [limit for limit in incidents["blocking"][:3] if limit["steps"] >= unblocked]
+    blocking = ", ".join(map(describe, limits)) or pose
+    kind = limits[0].get("limit") if limits else None
+    advice = "; more time for the path (--period, --stretch) may help" * (kind in KINDS[1:])
+    if kind in KINDS[2:] and incidents["first"]["step"] == 0:
+        advice = "; the arm starts at rest, the path at speed or elsewhere (heart, line: at rest)"
     yield (
         f"{counted(sum(done.values()))} without a solution ({counts}), the first at "
         f"{_at(incidents['first'])}; most often in the way: {blocking}{advice}"

@@ -70,8 +70,9 @@ def rotation_angle(rotation: FloatArray, desired: FloatArray) -> FloatArray:
 
 def limits(record: Record, key: str, unlimited: float = np.inf) -> FloatArray:
     """Return a limit of each joint out of the settings, (n,); None there stands for no limit."""
-    values = record.settings[key]
-    return np.array([unlimited if value is None else value for value in values], dtype=float)
+    return np.array(
+        [unlimited if value is None else value for value in record.settings[key]], dtype=float
+    )
 
 
 def _rate_excess(record: Record, order: int) -> FloatArray:
@@ -142,6 +143,11 @@ def compute_metrics(record: Record) -> dict[str, Any]:
         {
             "path_completed": record.path_completed,
             "start_distance_m": distance[0],
+            "beyond_reach_m": max(
+                0.0,
+                float(np.linalg.norm(record.position_desired, axis=1).max())
+                - (settings.get("reach") or np.inf),
+            ),
             "max_position_error_m": distance.max(),
             "mse_position_error_m2": np.mean(error**2),
             "max_orientation_error_rad": orientation_error(record).max(),
@@ -325,6 +331,7 @@ def _incidents(record: Record) -> dict[str, Any]:
     return {
         "clipped_steps": clipped.sum(),
         **{f"{name}_steps": (action == code).sum() for code, name in ACTIONS.items()},
+        "unblocked_steps": ((action != 0) & ~blocking.any(axis=1)).sum(),
         "path_time_s": record.path_time,
         "first": _first(record, action != 0),
         "blocking": _limits(record, blocking),

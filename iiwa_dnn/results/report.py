@@ -24,7 +24,7 @@ _RESULTS = (
     ("mean squared position error", "mse_position_error_m2", "m²"),
     ("largest orientation error", "max_orientation_error_rad", "rad"),
     ("joint drift, start to end", "joint_drift_rad", "rad"),
-    ("largest kinetic index", "max_kinetic_index", "rad²/s² (J if G is the inertia)"),
+    ("largest kinetic index", "max_kinetic_index", "rad²/s² (J with kinetic = inertia)"),
     ("wall time", "wall_time_s", "s"),
     ("time simulated / wall time", "realtime_factor", ""),
     ("largest KKT residual", "max_kkt_residual", ""),
@@ -194,8 +194,7 @@ def _success(metrics: Mapping[str, Any]) -> str:
 def _text(value: object) -> str:
     """Put a value in words: numbers in four digits."""
     if isinstance(value, Mapping):
-        items = value.items()
-        return ", ".join(f"{key} = {_text(item)}" for key, item in items if item is not None)
+        return ", ".join(f"{key} = {_text(v)}" for key, v in value.items() if v is not None)
     if isinstance(value, list):
         return _listed(value)
     if isinstance(value, float):

@@ -21,6 +21,9 @@ from iiwa_dnn.robot.robot import Robot, frame_id
 _NO_LIMIT = 1e300
 """Limit from which on Pinocchio means none [rad, rad/s]."""
 
+_LARGE = 40.0
+"""Position or velocity limit [rad, rad/s] beyond which a file looks as if it were in degrees."""
+
 _UNLIMITED = {"lower": "-1e308", "upper": "1e308"}
 
 
@@ -75,7 +78,7 @@ def load_robot(
     idle = _idle_joints(full, (tip, *others, *frames))
     chosen = [locked] if isinstance(locked, str) else list(locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
-    limits, ramps = _limits(name, model, root)
+    limits, ramps = _limits(name, path, model, root)
     robot = Robot(
         name,
         model,
@@ -89,9 +92,15 @@ def load_robot(
     )
     expected = {*chosen, *(_idle_joints(full, tips) if tips else ())}
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
+    large = np.where(np.isfinite(limits[:3]), np.abs(limits[:3]), 0.0).max(axis=0)
+    if large.max() > _LARGE:
+        warnings.warn(
+            f"joint {robot.joint_names[large.argmax()]!r} has a limit of {large.max():.4g}: is it "
+            "in degrees? A URDF counts in rad and rad/s",
+            stacklevel=2,
+        )
     if still:
-        message = f"held still, since they do not move {tip}: {', '.join(still)}"
-        warnings.warn(message, stacklevel=2)
+        warnings.warn(f"held still, since they do not move {tip}: {', '.join(still)}", stacklevel=2)
     return robot if tool is None else robot.with_tool(tool)
 
 
@@ -124,7 +133,7 @@ def _read(path: Path) -> ET.Element:
     others.
 
     Raises:
-        FileError: If the file cannot be read or is not XML.
+        FileError: If the file cannot be read, is not XML, or a joint has no <limit>.
     """
     if path.suffix == ".xacro":
         raise FileError(path, f"make a URDF of it: xacro {path.name} -o {path.stem}.urdf")
@@ -140,6 +149,11 @@ def _read(path: Path) -> ET.Element:
         if limit is None:
             limit = ET.SubElement(joint, "limit", effort="0", velocity="0")
         limit.attrib.update(_UNLIMITED)
+    for joint in root.findall("joint[@type='revolute']") + root.findall("joint[@type='prismatic']"):
+        if joint.find("limit[@effort][@velocity]") is None:
+            raise FileError(
+                path, f"joint {joint.get('name')!r} has no <limit> with effort and velocity"
+            )
     return root
 
 
@@ -194,7 +208,9 @@ def _lock(model: pin.Model, locked: Iterable[str]) -> tuple[pin.Model, dict[str,
     return reduced, held
 
 
-def _limits(name: str, model: pin.Model, root: ET.Element) -> tuple[Array, Array]:
+def _limits(
+    name: str, path: Path | None, model: pin.Model, root: ET.Element
+) -> tuple[Array, Array]:
     """Return `Robot.limits`, (5, n), and `Robot.ramps`, (2, n), the latter Franka's element."""
     joints = {joint.get("name"): joint for joint in root.findall("joint")}
     limits = np.full((5, model.nv), np.inf)
@@ -210,6 +226,10 @@ def _limits(name: str, model: pin.Model, root: ET.Element) -> tuple[Array, Array
             problem += " <mimic> out of the file and hold it by a JointCouplingTask"
             raise InvalidInputError("locked", problem, joint)
         ramp = element.find("position_based_velocity_limits")
+        if path is not None and limits[0, i] == limits[1, i] == 0.0:
+            raise FileError(
+                path, f"gives no range for joint {joint!r}: lower and upper are 0 or missing"
+            )
         if ramp is not None:
             ramps[0, i] = ramp.attrib["velocity_offset"]
             ramps[1, i] = ramp.attrib["deceleration_limit"]

@@ -106,8 +106,9 @@ def build_spec(robot: Robot) -> Any:
     # The site of the tip hangs on the body of the joint that carries Pinocchio's frame.
     frame = robot.model.frames[robot.tip_id]
     carrier = joints[robot.model.names[frame.parentJoint]].parent
-    turn = _quaternion(frame.placement)
-    carrier.add_site(name=TIP_SITE, pos=frame.placement.translation, quat=turn)
+    carrier.add_site(
+        name=TIP_SITE, pos=frame.placement.translation, quat=_quaternion(frame.placement)
+    )
     return spec
 
 

@@ -193,7 +193,11 @@ def make_obstacles(tables: Iterable[Any]) -> list[Obstacle]:
             shape = str(values.pop("shape", None)).replace("_", "").lower()
             found.append(SHAPES[checks.one_of("shape", shape, tuple(SHAPES))](**values))
         except (ValueError, TypeError) as error:
-            raise InvalidInputError(f"obstacle {number}", one_line(error), table) from error
+            raise InvalidInputError(
+                f"obstacle {number}",
+                one_line(error).rpartition("__init__() ")[2],  # of Python's own message
+                table,
+            ) from error
     return found
 
 

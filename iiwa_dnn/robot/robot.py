@@ -112,6 +112,19 @@ class Robot:
         """Names of all frames, each once: the links, then the joints."""
         return frame_names(self.model)
 
+    @property
+    def reach(self) -> float:
+        """Distance of the tip from the base that the links' lengths allow at most [m]."""
+        tip = self.model.frames[self.tip_id]
+        joints = list(self.model.supports[tip.parentJoint])[1:]
+        links = [tip.placement, *(self.model.jointPlacements[joint] for joint in joints)]
+        slides = [
+            float(np.abs(self.limits[:2, self.model.idx_vs[joint]]).max())
+            for joint in joints
+            if "JointModelP" in self.model.joints[joint].shortname()
+        ]
+        return sum([float(np.linalg.norm(link.translation)) for link in links] + slides)
+
     @cached_property
     def moves(self) -> checks.Array:
         """Joints that move each frame, (frames, n), by Pinocchio's index of the frame: 1 or 0.
@@ -168,8 +181,9 @@ class Robot:
 
         A distance of 1e-9 beyond a limit is forgiven: a run may end there, and the next one begin.
         """
-        rows = zip(*self.limits[:2], np.asarray(q), strict=True)
-        for i, (lower, upper, each) in enumerate(rows, 1):
+        for i, (lower, upper, each) in enumerate(
+            zip(*self.limits[:2], np.asarray(q), strict=True), 1
+        ):
             if not lower - 1e-9 <= each <= upper + 1e-9:
                 return f"must be within {lower:g} and {upper:g} rad: joint {i} is at {each:g}"
         return ""

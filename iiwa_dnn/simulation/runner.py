@@ -165,8 +165,7 @@ def count_steps(reference: References | None, dt: float, duration: float | None 
     Raises:
         InvalidInputError: There are no steps or too many, or a time is not above 0.
     """
-    length = _duration(reference, dt, duration)
-    steps = length / dt
+    steps = _duration(reference, dt, duration) / dt
     if not 0.5 < steps <= MAX_STEPS:
         by_dt = steps > 1.0 and dt < 1e-6
         problem = f"{steps:.3g} steps of {dt:g} s; there must be from 1 to {MAX_STEPS:,}"
@@ -188,6 +187,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     solver = controller.solver
     program = controller.program
     integrator = solver.settler if controller.mode == "converged" else solver.follower
+    ends = [path.duration for path in by_frame(controller.reference, "").values()]
     rates: dict[str, Any] = {}
     if program.rate_limits is not None:
         of_rates = program.rate_limits.constants(robot).reshape(6, -1)[3:5]
@@ -195,7 +195,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     return {
         "dt": controller.dt,
         "duration": duration,
-        **_end_of_path(controller.reference, duration),
+        "path_duration": max(ends, default=duration),
         "mode": controller.mode,
         "policy": controller.policy,
         **collision_settings(controller.scheme, robot),
@@ -209,6 +209,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         "q_upper": robot.q_upper,
         "dq_max": robot.dq_max,
         **rates,
+        "reach": robot.reach,
         "q0": start.q,
         "tol": solver.tol,
         "rho": solver.network.rho,
@@ -235,9 +236,3 @@ def _reference_settings(reference: References | None) -> dict[str, Any]:
     if not isinstance(reference, Mapping):
         return {} if reference is None else reference.settings()
     return {"name": "frames"} | {name: path.settings() for name, path in reference.items()}
-
-
-def _end_of_path(reference: References | None, duration: float) -> dict[str, float]:
-    """Return the time that a path takes once [s]; without a path, the run's duration [s]."""
-    end = max((path.duration for path in by_frame(reference, "").values()), default=duration)
-    return {"path_duration": end}

@@ -200,7 +200,10 @@ def test_each_kind_of_program_is_counted_and_a_stopped_step_has_nothing_to_check
     check = check_of(kind=KINDS, solution_gap=gap)
     assert check["kinds"] == {"own": 2, "scaled": 1, "softened": 3, "held": 3, "stopped": 1}
     assert (check["steps_checked"], check["disagreements"]) == (9, 0)
-    said = "2 own, 1 scaled, 3 softened, 3 held programs checked, 1 stopped"
+    said = (
+        "2 own, 1 scaled, 3 softened programs checked, 3 commands held back by acceleration, jerk"
+    )
+    said += " or braking, 1 stopped"
     assert failures(make_record(kind=KINDS)) == [said]
     gap[7] = 1e-3  # the velocity that was wanted at a step held back
     wrong = check_of(kind=KINDS, solution_gap=gap)
@@ -253,7 +256,7 @@ def test_the_policies_are_named_with_their_steps():
     assert failures(make_record(action=action, fraction=np.ones(10))) == [
         "4 steps without a solution (2 slowed, 1 relaxed, 1 stopped), the first at step 3 "
         "(t = 0.3 s); most often in the way: no bound: a singular pose, a path out of "
-        "reach or tasks against each other",
+        "reach or tasks against each other; another start (--q0) may help",
     ]
     blocking = np.zeros((10, 7), int)
     for joint in range(5):
@@ -265,6 +268,12 @@ def test_the_policies_are_named_with_their_steps():
     assert failures(half)[1].endswith(f"in the way: {limits}; {advice}")
     out_of_reach = slowed([0.4] * 8 + [1.0] * 2, blocking=np.minimum(blocking, 1))
     assert failures(out_of_reach)[1].endswith("joint 3 upper position limit")
+    seldom = slowed([0.4] * 10, blocking=np.where(np.arange(10)[:, None] < 4, blocking, 0))
+    assert "in the way: no bound: " in failures(seldom)[1]  # of 6 steps, and limits of 4
+    at_speed = slowed([0.4] * 10, blocking=2 * blocking)
+    assert failures(at_speed)[1].endswith("path at speed or elsewhere (heart, line: at rest)")
+    far = slowed([0.4] * 10, settings={"reach": 0.2}, position_desired=np.full((11, 3), 0.3))
+    assert failures(far)[0].endswith(": it leads 0.32 m beyond the arm's reach, all in metres")
     lag = make_record(action=action, settings={"mode": "continuous"})
     assert failures(lag) == []
 

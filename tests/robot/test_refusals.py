@@ -48,6 +48,7 @@ def test_a_bad_argument_is_named(call: Any, arguments: dict[str, Any], named: st
         call(**arguments)
     assert caught.value.argument == named
     assert "\n" not in str(caught.value)
+    assert "__init__" not in str(caught.value)
 
 
 def test_an_unknown_name_lists_those_that_are_near() -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+import iiwa_dnn as d
 from helpers_kinematics import example_urdf, finite_difference
 from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
@@ -19,10 +20,10 @@ LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
 FINGERS = ("panda_finger_joint1", "panda_finger_joint2")
 
 
-def one_joint(limit: str = LIMIT, kind: str = "revolute", origin: str = "0 0 1") -> str:
+def one_joint(limit: str = LIMIT, kind: str = "revolute") -> str:
     return (
         f'<robot name="one"><link name="a"/><link name="b"/><joint name="j" type="{kind}">'
-        f'<parent link="a"/><child link="b"/><origin xyz="{origin}"/><axis xyz="0 1 0"/>{limit}'
+        f'<parent link="a"/><child link="b"/><origin xyz="0 0 1"/><axis xyz="0 1 0"/>{limit}'
         "</joint></robot>"
     )
 
@@ -61,15 +62,15 @@ def test_by_name_and_by_path(robot: Robot, written) -> None:
         (b"\x00\xff\xfe", "not XML"),
         ("<sdf/>", "Pinocchio can read"),
         (one_joint().replace('child link="b"', 'child link="c"'), "Pinocchio can read"),
-        (one_joint(""), "Pinocchio can read"),
-        (one_joint(origin="nan 0 0"), "Pinocchio can read"),
+        (one_joint(""), "joint 'j' has no <limit> with effort and velocity"),
+        (one_joint(LIMIT.replace("velocity", "speed")), "joint 'j' has no <limit>"),
+        (one_joint('<limit effort="3" velocity="4"/>'), "gives no range for joint 'j'"),
         (one_joint(LIMIT.replace("-1", "nan")), "Pinocchio can read"),
         (one_joint(LIMIT.replace('velocity="4"', 'velocity="-4"')), "min_velocity"),
         ('<robot name="x"><link name="a"/></robot>', "^tip: no joint moves frame 'a'"),
         (one_joint("", "fixed"), "^tip: no joint moves frame"),
         (one_joint(LIMIT.replace("-1", "2")), "joint 'j': lower limit 2 is not below 2"),
         (one_joint("", "floating"), "'j' has 7 coordinates"),
-        (one_joint("", "planar"), "'j' has 4 coordinates"),
     ],
 )
 def test_bad_robots(written, content: str | bytes, reason: str) -> None:
@@ -78,6 +79,18 @@ def test_bad_robots(written, content: str | bytes, reason: str) -> None:
         load_robot(path)
     assert "\n" not in str(caught.value)
     assert getattr(caught.value, "path", str(path)) == str(path)
+
+
+def test_limits_in_degrees_are_warned_of(written) -> None:
+    with pytest.warns(UserWarning, match="joint 'j' has a limit of 120: is it in degrees"):
+        load_robot(written(one_joint(LIMIT.replace("2", "120"))))
+
+
+def test_the_reach_bounds_the_tips_distance(robot: Robot) -> None:
+    tips = [Configuration(robot, q).position for q in robot.draw(np.random.default_rng(1), 999)]
+    assert 0.95 * robot.reach < np.linalg.norm(tips, axis=1).max() <= robot.reach
+    slide = d.robot_from_dh([[0, 0, 0.5, 0]], prismatic=[1], lower=-0.1, upper=0.3)
+    assert slide.reach == pytest.approx(0.8)
 
 
 def test_files_that_are_not_read() -> None:
