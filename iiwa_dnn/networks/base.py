@@ -41,7 +41,7 @@ class Flow(NamedTuple):
     def derivative(self, state: Vector) -> Matrix:
         """Differentiate the rates at a state (size,), (size, size)."""
         if self.jacobian is not None:
-            return self.jacobian(state)
+            return checks.array("jacobian", self.jacobian(state), (state.size, state.size))
         steps = 1e-6 * np.maximum(1.0, np.abs(state)) * np.eye(state.size)
         rows = [
             (self.rates(state + step) - self.rates(state - step)) / (2.0 * step.max())
@@ -56,7 +56,10 @@ class Flow(NamedTuple):
         :math:`|1 + h \lambda| \le 1`. Those at zero, of dependent rows, are left out. It is 0 where
         an eigenvalue has no negative real part.
         """
-        eigenvalues = np.linalg.eigvals(self.derivative(state))
+        # Values that are not finite say nothing of a step; the state becomes like them.
+        eigenvalues = np.linalg.eigvals(
+            np.nan_to_num(self.derivative(state), posinf=0.0, neginf=0.0)
+        )
         squares = np.abs(eigenvalues) ** 2
         moving = squares > 1e-14 * squares.max(initial=1e-300)
         bounds = -2.0 * eigenvalues.real[moving] / squares[moving]

@@ -25,6 +25,7 @@ class BatchSolution(NamedTuple):
         z: Multipliers of the inequalities, (k, m).
         z_box: Multipliers of the bounds, (k, n).
         found: True where every residual is at most the tolerance, (k,).
+        status: Each solve's end, a value of `Status`; "not finite" where a value is wrong, (k,).
         residuals: Primal residual, dual residual and duality gap, (k, 3); NaN where a value is
             wrong.
         iterations: Linear systems solved, (k,).
@@ -35,6 +36,7 @@ class BatchSolution(NamedTuple):
     z: Matrix
     z_box: Matrix
     found: NDArray[np.bool_]
+    status: NDArray[np.str_]
     residuals: Matrix
     iterations: NDArray[np.int64]
 

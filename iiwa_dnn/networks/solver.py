@@ -6,23 +6,33 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network, enter_rates
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
 from iiwa_dnn.networks.integrators.base import CompiledAnswer, Settled, enter_answer
 from iiwa_dnn.networks.integrators.explicit import follow
 from iiwa_dnn.networks.integrators.implicit import settle, settle_program
-from iiwa_dnn.networks.integrators.scaling import settle_scaled
+from iiwa_dnn.networks.integrators.scaling import settle_scaled, settle_steep
 from iiwa_dnn.networks.projection import ProjectionNetwork, is_projection
 from iiwa_dnn.qp.certificates import find_certificate
-from iiwa_dnn.qp.layout import Sizes, Vector
+from iiwa_dnn.qp.dense import is_convex
+from iiwa_dnn.qp.layout import Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.qp.solution import Solution, Status
 
 SHARPENED = 1e-14
 SHARPENING = 20
-"""Tolerance of `DNNSolver.sharpen`, and its linear systems."""
+"""Tolerance of `DNNSolver.sharpen`, and the linear systems of each of its two rounds."""
+
+
+@compiled
+def is_answer(data: Vector, n: int, primal: float, dual: float, gap: float, tol: float) -> bool:
+    """Check that residuals are `within` a tolerance and the cost of `QP.data` is convex."""
+    return within(primal, dual, gap, tol) and is_convex(
+        data[: n * n].reshape(n, n), np.empty((n, n))
+    )
 
 
 @dataclass(frozen=True)
@@ -117,36 +127,39 @@ class DNNSolver:
             qp: The program; its values are taken as checked (`QP.check_values`).
 
         Returns:
-            The solution; `found` only if every residual is at most `tol`.
+            The solution; `found` only if every residual is at most `tol` and P is convex.
         """
         state = self._take(qp)
         n, m, p = qp.sizes
         point = np.empty(2 * n + m + p)
         settled = self.settler.settle(self.network, qp, state, point, self.tol)
-        status = self._status(settled)
+        status = self._status(qp, settled)
         certificate = None
         if status is Status.NOT_SETTLED:
             status, certificate = find_certificate(qp, point)
         if status is Status.NOT_SETTLED and is_projection(self.network):
             left = self.settler.max_steps - settled[0]
             settled = settle_scaled(qp, state, point, self.tol, left, settled)
-            status = self._status(settled)
+            status = self._status(qp, settled)
         # Without a solution the state is not kept: the multipliers grow without bound then, and
         # would spoil every later call.
         if status is Status.SOLVED:
             self._keep(qp.sizes, state)
         return Solution(point, qp.sizes, status, *settled, certificate)
 
-    def _status(self, settled: Settled) -> Status:
-        """Judge a point by its residuals."""
-        if within(*settled[2:], self.tol):
+    def _status(self, qp: QP, settled: Settled) -> Status:
+        """Judge a point by its residuals, and the cost by a Cholesky factor."""
+        if is_answer(qp.data, qp.sizes[0], *settled[2:], self.tol):
             return Status.SOLVED
-        return Status.NOT_SETTLED if math.isfinite(sum(settled[2:])) else Status.NOT_FINITE
+        if not math.isfinite(sum(settled[2:])):
+            return Status.NOT_FINITE
+        return Status.NOT_SETTLED if is_convex(qp.P, np.empty_like(qp.P)) else Status.NOT_CONVEX
 
     def sharpen(self, qp: QP, solution: Solution) -> Solution:
         """Go on from the state that the last call left, for a few linear systems.
 
-        If the cost has small eigenvalues, x is known to the residuals over these only.
+        If the cost has small eigenvalues, x is known to the residuals over these only. So the first
+        of them are those of a steeper cost (`iiwa_dnn.networks.integrators.scaling`).
 
         Args:
             qp: The program of the last call.
@@ -155,18 +168,25 @@ class DNNSolver:
         Returns:
             A solution with smaller residuals, or the same if no step had any.
         """
-        warm = self._warm.get(qp.sizes)
-        if warm is None or not solution.found or not is_projection(self.network):
+        state = self._warm.get(qp.sizes)
+        if state is None or not solution.found or not is_projection(self.network):
             return solution
-        state = warm.copy()
-        point = np.empty_like(solution.point)
-        settled = settle_program(qp, state, point, SHARPENED, SHARPENING)
-        if not max(settled[2:]) < solution.residuals.largest:
-            return solution
+        for settle_on in (settle_steep, settle_program):
+            new = state.copy()
+            point = np.empty_like(solution.point)
+            settled = settle_on(qp, new, point, SHARPENED, SHARPENING)
+            if max(settled[2:]) < solution.residuals.largest:
+                state = new
+                solution = Solution(
+                    point,
+                    qp.sizes,
+                    solution.status,
+                    solution.iterations + settled[0],
+                    solution.network_time + settled[1],
+                    *settled[2:],
+                )
         self._keep(qp.sizes, state)
-        systems = solution.iterations + settled[0]
-        time = solution.network_time + settled[1]
-        return Solution(point, qp.sizes, solution.status, systems, time, *settled[2:])
+        return solution
 
     def advance(self, qp: QP, duration: float) -> Solution:
         """Advance the network by `duration`, settled or not.
@@ -198,7 +218,15 @@ class DNNSolver:
     def _take(self, qp: QP) -> Vector:
         """Take the warm state, or make one; nobody else has it until it is kept."""
         state = self._warm.pop(checks.instance("qp", qp, QP).sizes, None)
-        return np.zeros(self.network.state_size(qp)) if state is None else state
+        if state is None:
+            state = np.zeros(checks.integer("state_size", self.network.state_size(qp), 0))
+            if not is_projection(self.network):
+                check_size(
+                    f"rates of {type(self.network).__name__}",
+                    np.asarray(self.network.rates(qp, state)),
+                    state.size,
+                )
+        return state
 
     def _keep(self, sizes: Sizes, state: Vector) -> None:
         """Keep the state (size,) of programs of these sizes alone."""

@@ -253,8 +253,7 @@ class GradientNetwork(ZeroingNetwork):
 
         def rates(state: Vector) -> Vector:
             error, _, matrix = evaluate(qp, self.form, state)
-            result: Vector = -matrix.T @ self.activation(error)
-            return result
+            return np.asarray(-matrix.T @ self.activation(error))
 
         return Flow(rates)
 
@@ -283,6 +282,5 @@ class NoiseSuppressingNetwork(ZeroingNetwork):
         """Return the rate (size,) at which a residual (size,) is removed."""
         summed = state[error.size : 2 * error.size]
         aim = error + self.proportional * np.clip(summed, -1.0, 1.0)
-        first = self.proportional * np.clip(error, -1.0, 1.0)
-        second: Vector = self.integral * np.clip(aim, -1.0, 1.0)
-        return first + second
+        own = self.proportional * np.clip(error, -1.0, 1.0)
+        return np.asarray(own + self.integral * np.clip(aim, -1.0, 1.0))

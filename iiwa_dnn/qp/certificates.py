@@ -18,13 +18,16 @@ their absolute values.
 
 So a certificate has a radius, within which there is no solution. A radius of at least `RADIUS` is
 worth saying, whatever the tolerance of the solver; an infinite one proves that there is none.
-Rounding is counted against the certificate throughout.
+The radius is computed in exact fractions, whoever made the certificate.
 """
+
+from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.layout import Matrix, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.solution import Status
 
@@ -54,25 +57,43 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
     n, m, p = qp.sizes
     limited = np.isfinite(np.concatenate([qp.b, qp.h]))
     multipliers = _scaled(np.where(limited, point[n : n + p + m], 0.0))
+    polished = _polished_multipliers(qp, multipliers)
     multipliers = max(
-        (multipliers, _polished_multipliers(qp, multipliers)),
+        (multipliers, polished, _rounded(polished)),
         key=lambda vector: infeasibility_radius(qp, vector),
     )
-    radius = infeasibility_radius(qp, multipliers)
-    if radius >= RADIUS:
-        status = Status.NONE_FEASIBLE_NEAR if radius < np.inf else Status.PRIMAL_INFEASIBLE
-        carried, w = _carried(qp, multipliers)
-        return status, np.concatenate([multipliers, np.where(carried, -w, 0.0)])
+    carried, w = _carried(qp, multipliers)
     direction = _scaled(point[:n])
     direction = np.where(_towards_bound(qp, direction), 0.0, direction)
     direction = max(
         (direction, _polished_direction(qp, direction)),
         key=lambda vector: unboundedness_radius(qp, vector),
     )
-    radius = unboundedness_radius(qp, direction)
-    if radius >= RADIUS:
-        return Status.NONE_OPTIMAL_NEAR if radius < np.inf else Status.UNBOUNDED, direction
+    for certificate in (np.concatenate([multipliers, np.where(carried, -w, 0.0)]), direction):
+        status = certified(qp, certificate)
+        if status is not Status.NOT_SETTLED:
+            return status, certificate
     return Status.NOT_SETTLED, None
+
+
+def certified(qp: QP, certificate: Vector) -> Status:
+    """Judge a certificate, ``[y | z | z_box]`` of size p + m + n or a direction (n,).
+
+    Returns:
+        One of the statuses of `find_certificate`; ``NOT_SETTLED`` if it proves nothing.
+
+    Raises:
+        InvalidInputError: It has another size.
+    """
+    n, m, p = qp.sizes
+    if certificate.shape == (n,):
+        radius = unboundedness_radius(qp, certificate)
+        statuses = (Status.NONE_OPTIMAL_NEAR, Status.UNBOUNDED)
+    else:
+        check_size("certificate", certificate, n + m + p)
+        radius = infeasibility_radius(qp, certificate[: p + m])
+        statuses = (Status.NONE_FEASIBLE_NEAR, Status.PRIMAL_INFEASIBLE)
+    return statuses[radius == np.inf] if radius >= RADIUS else Status.NOT_SETTLED
 
 
 def infeasibility_radius(qp: QP, multipliers: Vector) -> float:
@@ -89,23 +110,16 @@ def infeasibility_radius(qp: QP, multipliers: Vector) -> float:
     p = qp.b.size
     limits = np.concatenate([qp.b, qp.h])
     used = multipliers != 0.0
-    finite = np.isfinite(multipliers).all() and np.isfinite(limits[used]).all()
+    finite = np.isfinite(np.append(multipliers, limits[used])).all()
     if not finite or (multipliers[p:] < 0.0).any():
         return 0.0
-    carried, w = _carried(qp, multipliers)
+    bounds = np.nan_to_num(np.stack([qp.lb, qp.ub]), posinf=0.0, neginf=0.0)
     rows = np.vstack([qp.A, qp.G])
-    rounding = _rounding(multipliers.size) * (np.abs(rows.T) @ np.abs(multipliers))
-    taking_part = carried & (w != 0.0)
-    bounds = np.where(w > 0.0, qp.lb, qp.ub)[taking_part]
-    reach = np.maximum(np.abs(qp.lb), np.abs(qp.ub))
-    both = reach < np.inf
-    terms = [
-        limits[used] * multipliers[used],
-        -w[taking_part] * bounds,
-        rounding[both] * reach[both],
-    ]
-    residual = np.where(carried, 0.0, np.abs(w)).sum() + rounding[~both].sum()
-    return _radius(np.concatenate(terms), float(residual))
+    one, y, rows, limits, bounds = _integers(multipliers[used], rows[used], limits[used], bounds)
+    w = rows.T @ y
+    carried = np.isfinite(np.where(w > 0, qp.lb, qp.ub))
+    value = (w * np.where(w > 0, *bounds))[carried].sum() - one * (limits @ y)
+    return _radius(value, one * np.abs(w[~carried]).sum())
 
 
 def unboundedness_radius(qp: QP, direction: Vector) -> float:
@@ -117,27 +131,28 @@ def unboundedness_radius(qp: QP, direction: Vector) -> float:
     """
     if not np.isfinite(direction).all():
         return 0.0
-    rows = np.vstack([qp.P, qp.A, qp.G[np.isfinite(qp.h)]])
-    values = rows @ direction
-    first = qp.q.size + qp.b.size
+    one, d, q, P, A, G = _integers(direction, qp.q, qp.P, qp.A, qp.G[np.isfinite(qp.h)])
+    residual = np.abs(P @ d).sum() + np.abs(A @ d).sum()
     # Below zero, an inequality's row is no residual.
-    wrong = np.concatenate([np.abs(values[:first]), values[first:]])
-    wrong += _rounding(direction.size) * (np.abs(rows) @ np.abs(direction))
-    outside = np.abs(direction[_towards_bound(qp, direction)]).sum()
-    return _radius(qp.q * direction, float(np.maximum(wrong, 0.0).sum() + outside))
+    residual += np.maximum(G @ d, 0).sum() + one * np.abs(d[_towards_bound(qp, direction)]).sum()
+    return _radius(-(q @ d), residual)
 
 
-def _radius(terms: Vector, residual: float) -> float:
-    """Divide a certificate's value, less its rounding, by its residual; 0 if it has none."""
-    value = -float(terms.sum() + _rounding(terms.size) * np.abs(terms).sum())
-    if not value > 0.0:
+def _integers(*arrays: Matrix) -> list[Any]:
+    """Multiply 1 and finite numbers by the power of two that makes all of them integers."""
+    parts = [np.frexp(array) for array in (np.ones(()), *arrays)]
+    least = min(exponents.min(initial=0) for _, exponents in parts)
+    return [
+        np.ldexp(digits, 53).astype(np.int64).astype(object) << (exponents - least).astype(object)
+        for digits, exponents in parts
+    ]
+
+
+def _radius(value: int, residual: int) -> float:
+    """Divide a certificate's value by its residual; 0 if it has none."""
+    if not value > 0:
         return 0.0
-    return value / residual if residual > 0.0 else np.inf
-
-
-def _rounding(terms: int) -> float:
-    """Bound the relative rounding error of a sum of so many products."""
-    return (terms + 2) * _EPS
+    return float(min(Fraction(value, residual), Fraction(10**300))) if residual > 0 else np.inf
 
 
 def _carried(qp: QP, multipliers: Vector) -> tuple[NDArray[np.bool_], Vector]:
@@ -167,6 +182,12 @@ def _polished_multipliers(qp: QP, multipliers: Vector) -> Vector:
     polished[used] = _on_null_space(rows[:, left].T, polished[used])
     polished[qp.b.size :] = np.maximum(polished[qp.b.size :], 0.0)
     return polished
+
+
+def _rounded(multipliers: Vector) -> Vector:
+    """Round multipliers to simple fractions of the smallest: of whole rows they cancel exactly."""
+    least = np.abs(multipliers[multipliers != 0.0]).min(initial=1.0)
+    return np.asarray(np.rint(64.0 * multipliers / least) / 64.0)
 
 
 def _polished_direction(qp: QP, direction: Vector) -> Vector:

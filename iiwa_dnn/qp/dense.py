@@ -9,9 +9,12 @@ import numpy as np
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp.layout import Matrix, Vector, larger
 
-ROUNDING = 1e-5
-"""Asymmetry and negative eigenvalues of P that pass as rounding, relative to its largest entry: a
-matrix that was computed in single precision has them. The answer is a KKT point of P as it is."""
+ASYMMETRY = 1e-5
+"""Asymmetry of P that passes, relative to its largest entry: a matrix that was computed in single
+precision has it. The answer is a KKT point of P as it is."""
+ROUNDING = 4e-15
+"""Negative eigenvalues of P that pass as rounding, relative to n times its largest entry. They are
+those of a product J^T J in double precision; of single precision they are refused."""
 
 
 @compiled
@@ -141,9 +144,9 @@ def _rotate(K: Matrix, i: int, k: int) -> None:
 
 @compiled
 def is_convex(P: Matrix, K: Matrix) -> bool:
-    """Check that P (n, n) is symmetric and positive semidefinite to `ROUNDING` of its scale.
+    """Check that P (n, n) is symmetric to `ASYMMETRY`, positive semidefinite to n `ROUNDING`.
 
-    K (n, n) is scratch.
+    Both are relative to its largest entry. K (n, n) is scratch.
     """
     largest = 0.0
     asymmetry = 0.0
@@ -153,8 +156,8 @@ def is_convex(P: Matrix, K: Matrix) -> bool:
             largest = larger(largest, abs(P[i, k]))
             asymmetry = larger(asymmetry, abs(P[i, k] - P[k, i]))
     for i in range(P.shape[0]):
-        K[i, i] += ROUNDING * largest + 1e-300
-    return asymmetry <= ROUNDING * largest and cholesky_factor(K)
+        K[i, i] += ROUNDING * P.shape[0] * largest + 1e-300
+    return asymmetry <= ASYMMETRY * largest and cholesky_factor(K)
 
 
 @compiled

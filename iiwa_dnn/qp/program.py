@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp.dense import ROUNDING, all_finite, is_convex
+from iiwa_dnn.qp.dense import ASYMMETRY, all_finite, is_convex
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size, field_shapes, qp_views
 from iiwa_dnn.qp.residuals import residuals_of
 from iiwa_dnn.qp.solution import Residuals
@@ -191,28 +191,34 @@ class QP:
         """Check for values that no convex solver could make sense of.
 
         Raises:
-            InvalidInputError: A value is NaN, a coefficient is infinite, P is not symmetric or
-                not positive semidefinite to 1e-5 of its largest entry, or a lower bound exceeds
-                its upper bound. The message names the argument.
+            InvalidInputError: As `check_numbers`; or P is not symmetric to 1e-5 of its largest
+                entry, or not positive semidefinite to 4e-15 n of it.
         """
         if _well_formed(self.data, *self.sizes):
             return
+        self.check_numbers()
+        if np.abs(self.P - self.P.T).max() > ASYMMETRY * np.abs(self.P).max():
+            raise InvalidInputError("P", "is not symmetric")
+        smallest = float(np.linalg.eigvalsh(self.P)[0])
+        raise InvalidInputError(
+            "P", f"is not positive semidefinite: eigenvalue {smallest:.3g}, problem not convex"
+        )
+
+    def check_numbers(self) -> None:
+        """Check the values, but not that the program is convex.
+
+        Raises:
+            InvalidInputError: A value is NaN, a coefficient is infinite, or a lower bound exceeds
+                its upper bound. The message names the argument.
+        """
         limitless = {"h": np.inf, "lb": -np.inf, "ub": np.inf}
         for name in FIELDS:
             value = getattr(self, name)
             wrong = value[~(np.isfinite(value) | (value == limitless.get(name, np.nan)))]
             if wrong.size:
                 raise InvalidInputError(name, f"has a value that is {wrong[0]}")
-        crossed = np.flatnonzero(self.lb > self.ub)
-        if crossed.size:
-            i = int(crossed[0])
+        for i in np.flatnonzero(self.lb > self.ub):
             raise InvalidInputError("lb", f"exceeds ub at {i}: {self.lb[i]:g} > {self.ub[i]:g}")
-        if np.abs(self.P - self.P.T).max() > ROUNDING * np.abs(self.P).max():
-            raise InvalidInputError("P", "is not symmetric")
-        smallest = float(np.linalg.eigvalsh(self.P)[0])
-        raise InvalidInputError(
-            "P", f"is not positive semidefinite: eigenvalue {smallest:.3g}, problem not convex"
-        )
 
 
 @compiled
@@ -261,10 +267,9 @@ def real_array(name: str, value: Any) -> NDArray[np.float64]:
         raise InvalidInputError(name, f"is not an array of numbers ({error})", value) from None
 
 
-def _rows(name: str, rows: NDArray[np.float64], columns: int) -> int:
-    """Count the rows, which have so many columns; a vector is one row."""
-    if rows.ndim == 1 and rows.size == columns:
-        return 1
-    if rows.ndim != 2 or rows.shape[1] != columns:
-        raise InvalidInputError(name, f"has shape {rows.shape}, not (rows, {columns})", rows)
+def _rows(name: str, array: NDArray[np.float64], n: int) -> int:
+    """Count the rows of n columns; a vector is one row."""
+    rows = np.atleast_2d(array)
+    if rows.ndim != 2 or rows.shape[1] != n:
+        raise InvalidInputError(name, f"has shape {array.shape}, but q has {n} entries", array)
     return len(rows)

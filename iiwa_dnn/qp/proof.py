@@ -39,10 +39,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp.certificates import infeasibility_radius
+from iiwa_dnn.qp.certificates import certified
 from iiwa_dnn.qp.layout import IntVector, Matrix, Vector, check_size
-from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.solution import Solution
+from iiwa_dnn.qp.program import QP, real_array
+from iiwa_dnn.qp.solution import Solution, Status
 
 if TYPE_CHECKING:
     import qpsolvers
@@ -64,9 +64,7 @@ DEPENDENT = "the active rows are linearly dependent, or nearly so"
 UNDECIDED = "the sign of an inactive row's slack is not decided"
 NOT_CONVEX = "the cost is not shown to be convex"
 FAR = "the answer is not finite"
-INFEASIBLE = "proven: no point satisfies the constraints"
-NO_ANSWER = "no certificate either; iiwa_dnn.solve_problem looks for one"
-"""Status of another solver's solution that was not found."""
+NO_ANSWER = "there is no answer, and no proof of that; iiwa_dnn.solve_problem looks for one"
 
 
 class Proof(NamedTuple):
@@ -91,8 +89,8 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
 
     Nothing about the answer is trusted: its multipliers name the active set to begin with. That
     there is exactly one solution is a part of the proof where the bound is finite. The numbers of
-    the program count as exact. Where an answer has a certificate instead, as a field or among its
-    extras, the reason says whether it proves that there is none.
+    the program count as exact. Where an answer has a certificate, as a field or among its extras,
+    it is judged in exact arithmetic, and what it proves is the reason.
 
     Args:
         qp: The program, also as qpsolvers has it.
@@ -102,20 +100,23 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
         The bound, the proven active set, and the reason if something is not proven.
 
     Raises:
-        InvalidInputError: `qp` is no program, or the answer is none of a program of these sizes.
+        InvalidInputError: `qp` is no program, has a value that is NaN or crossed bounds, or the
+            answer is none of a program of these sizes.
     """
     if not isinstance(qp, QP):
         qp = QP.from_qpsolvers(qp)
-    n, m, p = qp.sizes
-    nothing = np.zeros(n + m, dtype=np.int64)
-    extras: Any = getattr(solution, "extras", {})
-    certificate: Any = getattr(solution, "certificate", extras.get("certificate"))
-    is_farkas = certificate is not None and np.size(certificate) == n + m + p
-    if is_farkas and infeasibility_radius(qp, np.asarray(certificate)[: p + m]) == np.inf:
-        return Proof(np.inf, nothing, INFEASIBLE)
-    if not (isinstance(solution, Solution) or getattr(solution, "found", True)):
-        status = extras.get("status", NO_ANSWER)
-        return Proof(np.inf, nothing, f"there is no answer: {status}")
+    qp.check_numbers()
+    checks.offers("solution", solution, "x")
+    nothing = np.zeros(sum(qp.sizes[:2]), dtype=np.int64)
+    in_extras = getattr(solution, "extras", {}).get("certificate")
+    certificate: Any = getattr(solution, "certificate", in_extras)
+    if certificate is not None:
+        status = certified(qp, real_array("certificate", certificate))
+        if status is not Status.NOT_SETTLED:
+            return Proof(np.inf, nothing, f"proven: {status.value}")
+    claimed = isinstance(solution, Solution) or getattr(solution, "found", True)
+    if solution.x is None or not claimed:
+        return Proof(np.inf, nothing, NO_ANSWER)
     return prove_point(qp, point_of(solution, qp))
 
 
@@ -125,12 +126,11 @@ def point_of(solution: Any, qp: QP) -> Vector:
     Raises:
         InvalidInputError: The answer has a part of another size than the program's.
     """
-    checks.offers("solution", solution, "x")
     n, m, p = qp.sizes
     parts = []
     for name, size in (("x", n), ("y", p), ("z", m), ("z_box", n)):
         part: Any = getattr(solution, name, None)
-        given = part is not None and np.size(part)
+        given = part is not None and (name == "x" or np.size(part))
         parts.append(check_size(name, np.asarray(part) if given else np.zeros(size), size))
     return np.concatenate(parts)
 
@@ -144,7 +144,9 @@ class _Rows:
         equal: Rows that hold as equations: those of A, and upper bounds that are lower ones too.
         usable: Rows that limit anything: a lower bound that is an upper one is counted there.
         unit: Bound on the relative rounding of all sums, (k + n + 16) 2^-53.
-        S: Symmetric part of P, (n, n).
+        exponent: Binary exponent of the largest entry of P, by which the cost is divided.
+        S: Symmetric part of P, divided, (n, n).
+        q: Cost vector, divided, (n,).
     """
 
     def __init__(self, qp: QP) -> None:
@@ -157,9 +159,15 @@ class _Rows:
         self.usable = self.limits != np.inf
         self.usable[p + m + n :] &= ~fixed
         self.unit = (self.limits.size + n + 16) * _ROUNDING
-        both = qp.P + qp.P.T
-        # An entry that is too small to be halved becomes NaN, and nothing is proven.
-        self.S = np.where(0.5 * both + 0.5 * both == both, 0.5 * both, np.nan)
+        self.exponent = int(np.frexp(np.abs(qp.P).max())[1])
+        self.S = _divided(qp.P + qp.P.T, self.exponent + 1)
+        self.q = _divided(qp.q, self.exponent)
+
+
+def _divided(values: Matrix, exponent: int) -> Matrix:
+    """Divide by a power of two; an entry for which that is not exact becomes NaN: no proof then."""
+    divided = np.ldexp(values, -exponent)
+    return np.where(np.ldexp(divided, exponent) == values, divided, np.nan)
 
 
 @np.errstate(all="ignore")
@@ -168,14 +176,14 @@ def prove_point(qp: QP, point: Vector) -> Proof:
     n, m, p = qp.sizes
     rows = _Rows(qp)
     x = point[:n]
-    multipliers = np.concatenate([point[n:], -point[n + p + m :]])
+    multipliers = np.ldexp(np.concatenate([point[n:], -point[n + p + m :]]), -rows.exponent)
     active = rows.equal | (rows.usable & (multipliers > rows.limits - rows.rows @ x))
     active[p + m + n :] &= ~active[p + m : p + m + n]
     bound = np.inf
     reason = UNDECIDED
     for attempt in range(ROUNDS):
         kept = _independent(rows, active)
-        enclosure = _enclose(rows.S, qp.q, rows.rows[kept], rows.limits[kept], rows.unit)
+        enclosure = _enclose(rows.S, rows.q, rows.rows[kept], rows.limits[kept], rows.unit)
         if enclosure is None:
             reason = DEPENDENT
             break

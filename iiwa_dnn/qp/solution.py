@@ -47,6 +47,10 @@ class Status(str, Enum):
     NONE_OPTIMAL_NEAR = "no KKT point within 1e8"
     """Every KKT point has an entry or a multiplier of 1e8 or more: it is proven of a direction that
     leaves a residual. There may be one farther away."""
+    NOT_CONVEX = "not convex"
+    """P is not symmetric and positive semidefinite: a KKT point may be no minimum."""
+
+    __str__ = str.__str__
 
 
 class Residuals(NamedTuple):

@@ -40,17 +40,24 @@ def test_a_large_cold_program_settles() -> None:
     np.testing.assert_allclose(solution.x, known, atol=1e-6)
 
 
-@pytest.mark.parametrize("kind", ["asymmetric", "indefinite", "single precision"])
-def test_rounding_of_single_precision_in_the_cost_is_no_error(kind: str) -> None:
+def test_rounding_in_the_cost_is_no_error_and_more_is() -> None:
     rng = np.random.default_rng(4)
-    J = rng.standard_normal((4, 10)).astype(np.float32)
-    P = {
-        "asymmetric": np.eye(10) + 1e-9 * np.eye(10, k=1),
-        "indefinite": np.diag([-1.5e-6, *np.ones(9)]),
-        "single precision": (J.T @ J).astype(float),
-    }[kind]
-    bounds = np.full(10, 2.0)
-    problem = qpsolvers.Problem(P, rng.standard_normal(10), lb=-bounds, ub=bounds)
-    assert iiwa_dnn.solve_problem(problem, tol=1e-9).is_optimal(1e-9)
-    with pytest.raises(iiwa_dnn.errors.InvalidInputError, match="semidefinite"):
-        iiwa_dnn.solve_problem(qpsolvers.Problem(P - 2.0 * np.eye(10), problem.q))
+    J = rng.standard_normal((4, 10))
+    single = J.astype(np.float32).T @ J.astype(np.float32)
+    q, bounds = rng.standard_normal(10), np.full(10, 2.0)
+    for P in (np.eye(10) + 1e-9 * np.eye(10, k=1), J.T @ J, single + 1e-5 * np.eye(10)):
+        problem = qpsolvers.Problem(P, q, lb=-bounds, ub=bounds)
+        assert iiwa_dnn.solve_problem(problem).is_optimal(1e-9)
+    for P in (single.astype(float), np.diag([-1e-12, *np.ones(9)]), np.diag([-1.0, *np.ones(9)])):
+        qp = QP(P, q, lb=-bounds, ub=bounds)
+        assert DNNSolver().solve(qp).status is iiwa_dnn.Status.NOT_CONVEX
+        with pytest.raises(iiwa_dnn.InvalidInputError, match="semidefinite"):
+            iiwa_dnn.solve_problem(qp)
+
+
+@pytest.mark.parametrize("curvature", [1e-4, 1e-7, 1e-8, 1e-9, 1e-10])
+def test_sharpened_answers_are_right_along_a_flat_direction(curvature: float) -> None:
+    problem = qpsolvers.Problem(np.diag([1.0, curvature]), np.array([0.0, -curvature]))
+    solution = iiwa_dnn.solve_problem(problem, sharpen=True)
+    np.testing.assert_allclose(solution.x, [0.0, 1.0], atol=1e-5)
+    assert solution.is_optimal(1e-14)

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 import iiwa_dnn as d
 from helpers_kinematics import finite_difference
 from helpers_qp import known_qp, network_rates
-from iiwa_dnn.networks import NoiseSuppressingNetwork
+from iiwa_dnn.networks import Flow, Network, NoiseSuppressingNetwork
 from iiwa_dnn.networks.activations import FixedTime
 from iiwa_dnn.networks.admm import AdmmIteration
 from iiwa_dnn.networks.primal_dual import variational
@@ -226,6 +226,22 @@ def test_singular_cost_settles_but_not_with_the_dual_networks() -> None:
         with pytest.raises(d.InvalidInputError, match="singular") as caught:
             d.solve_problem(qp, solver=d.DNNSolver(network))
         assert caught.value.argument == "P"
+
+
+@pytest.mark.parametrize(
+    ("flow", "problem"),
+    [
+        (Flow(lambda s: np.zeros(3)), r"^rates of Own: has shape \(3,\), not \(4,\)"),
+        (Flow(lambda s: None), r"^rates of Own: has shape \(\)"),
+        (Flow(lambda s: -s, lambda s: np.eye(3)), r"^jacobian: must have shape \(4, 4\)"),
+        (Flow(lambda s: s), "^Own: no explicit step is known to be stable"),
+    ],
+)
+def test_a_network_of_wrong_shapes_or_sign_is_named(flow: Flow, problem: str) -> None:
+    qp = d.QP(np.diag([1.0, 2.0, 4.0]), np.ones(3), A=np.ones((1, 3)), b=[0.5])
+    own = type("Own", (Network,), {"flow": lambda self, qp, rate=None: flow})
+    with pytest.raises(d.InvalidInputError, match=problem):
+        d.DNNSolver(own()).advance(qp, 1e-4)
 
 
 def test_a_state_without_x_is_not_disturbed() -> None:

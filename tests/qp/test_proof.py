@@ -5,12 +5,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import qpsolvers
 
 import exact
 import programs
 from exact import whole_numbers
 from helpers_qp import known_qp
-from iiwa_dnn import QP, CrossCheck, DNNSolver, InvalidInputError, Solution, prove, solve_problem
+from iiwa_dnn import QP, CrossCheck, DNNSolver, InvalidInputError, Solution, Status, prove
 from iiwa_dnn.qp.proof import DEPENDENT, FAR, NOT_CONVEX, WEAK, Proof
 
 
@@ -105,6 +106,9 @@ def test_nothing_about_the_answer_is_trusted() -> None:
     ("qp", "x", "bound", "reason"),
     [
         (QP(np.eye(1), [-1.0], ub=[0.5]), [0.25], 0.25, ""),
+        (QP([[1e300]], [-1e300], ub=[0.5]), [0.25], 0.25, ""),
+        (QP([[1e-308]], [-1e-308], ub=[0.5]), [0.25], 0.25, ""),
+        (QP([[1e308]], [-1e-300]), [0.0], np.inf, DEPENDENT),  # their quotient underflows
         (QP(np.eye(1), [-1.0], ub=[1.0]), [1.0], 0.0, WEAK),  # a multiplier of zero
         (QP(np.zeros((1, 1)), [-1.0], ub=[2.0]), [2.0], np.inf, DEPENDENT),  # without multipliers
         (QP(np.zeros((1, 1)), [0.0], lb=[2.0], ub=[2.0]), [2.5], 0.5, ""),
@@ -119,9 +123,7 @@ def test_nothing_about_the_answer_is_trusted() -> None:
         (QP([[1.0, 2.0], [2.0, 1.0]], [0.0, 0.0], A=[[1.0, 1.0]], b=[0.0]), [0.0, 0.0], np.inf,
          NOT_CONVEX),
         (QP([[1.0, 1e-6], [-1e-6, 1.0]], [-1.0, -1.0]), [1.0, 1.0], 0.0, ""),  # its symmetric part
-        (QP(np.eye(1), [0.0], lb=[1.0], ub=[0.0]), [0.5], np.inf, DEPENDENT),
         (QP(np.eye(1), [0.0]), [np.inf], np.inf, FAR),
-        (QP(np.eye(1), [np.nan]), [0.0], np.inf, DEPENDENT),
         (QP(np.eye(1), [0.0], G=[[0.0]], h=[-1.0]), [0.0], np.inf, DEPENDENT),
     ],
 )  # fmt: skip
@@ -136,11 +138,6 @@ def test_a_vertex_of_a_linear_program_is_proven_by_its_multipliers() -> None:
     proof, _ = judged(qp, DNNSolver().solve(qp))
     np.testing.assert_array_equal(proof.active, [0, 1, 1])
     assert (proof.reason, proof.bound < 1e-9) == ("", True)
-
-
-def test_where_products_underflow_the_bound_says_so() -> None:
-    assert prove(QP([[1e-308]], [-1e-308]), answer([1.0])).bound > 1e10
-    assert prove(QP([[1e-200]], [-1e-200]), answer([1.0])).bound < 1e-14
 
 
 def test_a_limit_that_the_answer_names_wrongly_is_released() -> None:
@@ -173,31 +170,48 @@ def test_answers_that_are_none_are_refused() -> None:
     for wrong, problem in (
         (answer([1.0, 2.0, 3.0]), "^x: has shape \\(3,\\), not \\(2,\\)"),
         (answer([1.0, 2.0], y=np.zeros(2)), "^y: has shape \\(2,\\), not \\(1,\\)"),
+        (answer([]), "^x: has shape \\(0,\\), not \\(2,\\)"),
+        (answer([1.0, 2.0], certificate=np.ones(4)), "^certificate: has shape"),
     ):
         with pytest.raises(InvalidInputError, match=problem):
             prove(qp, wrong)
-    with pytest.raises(InvalidInputError, match=r"must be a qpsolvers\.Problem or an iiwa_dnn\.QP"):
-        prove(np.eye(2), answer([1.0, 2.0]))
+    for spoilt, problem in (
+        (np.eye(2), r"must be a qpsolvers\.Problem or an iiwa_dnn\.QP"),
+        (QP(np.nan * np.eye(2), np.zeros(2)), "^P: has a value that is nan"),
+        (QP(np.eye(2), np.zeros(2), lb=[0.0, 1.0], ub=[0.0, 0.0]), "^lb: exceeds ub at 1"),
+    ):
+        with pytest.raises(InvalidInputError, match=problem):
+            prove(spoilt, answer([1.0, 2.0]))
 
 
 def test_a_certificate_is_proven_or_is_not() -> None:
     rows = [[-1.0, -1.0]]
-    for limit, reason in ((-3.0, "proven: no point satisfies the constraints"), (-1.0, "")):
+    for limit, reason in ((-3.0, "proven: primal infeasible"), (-1.0, "")):
         qp = QP(np.eye(2), np.zeros(2), G=rows, h=[limit], lb=[-9.0] * 2, ub=[1.0, 1.0])
         proof = prove(qp, DNNSolver().solve(qp))
         assert proof.reason == reason
         assert (proof.bound < np.inf) is (reason == "")
         farkas = DNNSolver().solve(qp)._replace(certificate=np.ones(3))
         assert prove(qp, farkas).reason == reason
-    problem = QP(
-        np.eye(2), np.zeros(2), G=rows, h=[-3.0], lb=[-9.0] * 2, ub=[1.0, 1.0]
-    ).to_qpsolvers()
-    refuted = solve_problem(problem)
-    assert prove(problem, refuted).reason == "proven: no point satisfies the constraints"
-    del refuted.extras["certificate"]
-    assert prove(problem, refuted).reason == "there is no answer: primal infeasible"
-    del refuted.extras["status"]  # as of another solver
-    assert "solve_problem looks for one" in prove(problem, refuted).reason
+    falling = QP(np.diag([1.0, 0.0]), [1.0, 1.0], lb=[0.0, -np.inf])
+    assert prove(falling, DNNSolver().solve(falling)).reason == "proven: " + Status.UNBOUNDED
+
+
+@pytest.mark.parametrize("certificate", [[1.0], [-1.0], [np.nan], [np.inf], None])
+def test_a_forged_certificate_proves_nothing(certificate: list[float] | None) -> None:
+    problem = QP(np.eye(2), np.zeros(2), G=[[1.0, 1.0]], h=[-1.0]).to_qpsolvers()
+    for found in (False, True):  # an answer without x is none, whatever it claims
+        forged = qpsolvers.Solution(problem, {"status": "primal infeasible"}, found=found)
+        if certificate is not None:
+            forged.extras["certificate"] = np.array([*certificate, 0.0, 0.0])
+        proof = prove(problem, forged)
+        assert (proof.bound, "solve_problem looks for one" in proof.reason) == (np.inf, True)
+
+
+def test_products_of_a_certificate_that_underflow_prove_nothing() -> None:
+    qp = QP(np.eye(1), [0.0], G=[[1e-200]], h=[-1e-100])  # x = -1e100 is feasible
+    proof = prove(qp, answer([0.0], certificate=np.array([1e-200, 0.0])))
+    assert proof.reason == "proven: " + Status.NONE_FEASIBLE_NEAR
 
 
 def test_a_check_hands_the_proof_on() -> None:

@@ -45,8 +45,8 @@ class ExplicitEuler(Integrator):
             Sub-steps taken.
 
         Raises:
-            InvalidInputError: P is singular, so that no step is known to be stable, and
-                `substeps` was not given.
+            InvalidInputError: No step is known to be stable, as where P is singular, and
+                `substeps` was not given. The message names the network.
         """
         check_size("state", state, network.state_size(qp))
         rates = network.flow(qp).rates
@@ -54,8 +54,10 @@ class ExplicitEuler(Integrator):
         if count is None:
             stable = SAFETY * network.stable_step(qp, state)
             if not stable > 0.0:
-                problem = "is singular, so no explicit step is known to be stable"
-                raise InvalidInputError("P", f"{problem}; integrate implicitly")
+                problem = "no explicit step is known to be stable (is P singular?)"
+                raise InvalidInputError(
+                    type(network).__name__, f"{problem}; give substeps, or integrate implicitly"
+                )
             count = max(1, math.ceil(duration / stable))
         step = duration / count
         with np.errstate(over="ignore", invalid="ignore"):  # the caller judges the state

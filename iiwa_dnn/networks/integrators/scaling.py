@@ -1,7 +1,9 @@
-"""A second start, in units in which no row of the program stands out.
+"""Settling in other units: a second start in which no row stands out, and a steeper cost.
 
 The rows of A and G are divided by their largest entries, and the cost by its own. For the network
-that is another time constant for each multiplier; its equilibria are the same.
+that is another time constant for each multiplier; its equilibria are the same. An implicit step of
+length h [rho] leaves the fraction 1 / (1 + h c) of an error along which the cost has the curvature
+c, so that a steeper cost settles sooner where it is nearly flat.
 """
 
 import numpy as np
@@ -13,6 +15,8 @@ from iiwa_dnn.qp.program import QP
 
 STRICTER = 1e-4
 """Tolerance in scaled units over that in the program's own, where the residuals grow."""
+STEEP = 1e5
+"""Largest entry of a cost that was made steep."""
 
 
 def settle_scaled(
@@ -36,5 +40,21 @@ def settle_scaled(
     state[n:] *= cost
     state[n : n + m + p] /= sizes
     second = settle_program(qp, state, point, tol, budget - first[0])
-    systems = before[0] + first[0] + second[0]
-    return systems, before[1] + first[1] + second[1], *second[2:]
+    return before[0] + first[0] + second[0], before[1] + first[1] + second[1], *second[2:]
+
+
+def settle_steep(qp: QP, state: Vector, point: Vector, tol: float, budget: int) -> Settled:
+    """Settle a program from a state (3 n + m + p,), its cost scaled to `STEEP`.
+
+    The tolerance and what is returned are in the program's own units, the point (2 n + m + p,) too.
+    """
+    n = qp.sizes[0]
+    cost = slice(n * n + n)
+    scale = STEEP / max(float(np.abs(qp.data[cost]).max()), 1e-300)
+    steep = QP.from_data(qp.data.copy(), qp.sizes)
+    steep.data[cost] *= scale
+    state[n:] *= scale
+    settled = settle_program(steep, state, point, scale * tol, budget)
+    state[n:] /= scale
+    point[n:] /= scale
+    return *settled[:2], *qp.residuals(point)
