@@ -51,7 +51,9 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
         refused.append(controller.solver.network)
     if refused:
         name = type(refused[0]).__name__
-        raise InvalidInputError("controller", f"{name} changes or answers in Python", refused[0])
+        raise InvalidInputError(
+            "controller", f"{name} answers in Python, as obstacles that move do", refused[0]
+        )
     model = model_tables(robot, program.kinematics.frame_ids, program.needs_inertia)
     code = _Code(program.needs_inertia)
     lengths = _lengths(controller, shield is not None)

@@ -17,9 +17,13 @@ from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Lissajous
 from iiwa_dnn.robot import Configuration
+from iiwa_dnn.schemes.step import TARGET_SIZE
 
 STEPS = 500
 """Steps of the vectors."""
+
+_POSE = np.repeat([1.0, 0.0], [12, 6])
+"""1 for the numbers of a target's pose, 0 for those of its velocities."""
 
 _FILES = (
     "controller.h",
@@ -121,6 +125,7 @@ def _texts(
     """Return the texts that are about the settings and a run, whose first row is given."""
     robot = controller.robot
     paths = by_frame(controller.reference, controller.program.target_frames[0])
+    resting = first[1 + robot.dof : -1 - robot.dof].reshape(-1, TARGET_SIZE) * _POSE
     settings = {
         "q_lower": robot.q_lower,
         "q_upper": robot.q_upper,
@@ -137,7 +142,7 @@ def _texts(
         "velocity_limits": _numbers(np.where(robot.dq_max < np.inf, robot.dq_max, 1.0)),
         "tolerance": f"{10.0 * controller.solver.tol:g}",
         "q0": _numbers(start.q),
-        "target": _numbers(first[1 + robot.dof : -1 - robot.dof]),
+        "target": _numbers(resting.ravel()),
         "sample": "        controller_target(&c, k * CONTROLLER_DT, target);\n" * has_reference,
         "fri_sample": "        controller_target(&controller_, t_, target);\n" * has_reference,
         "usage": "controller_target(&c, t, target);  /* the reference */\n" * has_reference,

@@ -214,9 +214,9 @@ UNSTATED = iiwa_dnn.Scheme([iiwa_dnn.Manipulability()], DoubleIndicator().tasks)
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"scheme": UNSTATED}, "Manipulability changes or answers in Python"),
-        ({"scheme": with_limits(AVOIDANCE)}, "CollisionAvoidance changes"),
-        ({"solver": iiwa_dnn.DNNSolver(DUAL)}, "PrimalDualNetwork changes"),
+        ({"scheme": UNSTATED}, "Manipulability answers in Python"),
+        ({"scheme": with_limits(AVOIDANCE)}, "CollisionAvoidance answers in Python, as obstacles"),
+        ({"solver": iiwa_dnn.DNNSolver(DUAL)}, "PrimalDualNetwork answers"),
         ({"scheme": with_limits(_Local())}, "lambda.* cannot be exported"),
     ],
 )
