@@ -144,6 +144,7 @@ def test_velocity_and_acceleration_hold_whatever_comes_upon_a_loop(disturbed: An
     target = d.Target(paper_start().position + [0.0, 0.2, 0.0], paper_start().rotation)
     q = np.array(PAPER_Q0)
     last = np.zeros(7)
+    rates, jerks = [np.zeros(7)], []
     for k in range(1000):
         asked = {"scheme": RATED, "sent": 0.0, "dt": DT} | disturbed(k, random)
         controller.scheme = asked["scheme"]
@@ -153,6 +154,9 @@ def test_velocity_and_acceleration_hold_whatever_comes_upon_a_loop(disturbed: An
         dq = controller.step(q, 0.0, target, dt=asked["dt"]).dq
         assert (np.abs(dq) <= paper_robot().dq_max).all()
         assert np.abs(dq - last).max() <= 10.0 * asked["dt"] * (1.0 + 1e-9)
+        rates.append((dq - last) / asked["dt"])
+        jerks.append(np.abs(rates[-1] - rates[-2]).max() / asked["dt"])
         q = q + asked["dt"] * dq
         last = dq
     assert np.abs(q - PAPER_Q0).max() > 0.1
+    assert max(jerks) < 2000.0 or "dt" not in disturbed(0, random)
