@@ -325,14 +325,16 @@ def read_tables(options: Any, more: Tables) -> Tables:
         if name not in TABLES or not isinstance(values, dict):
             raise InvalidInputError(name, f"must be one of the tables {', '.join(TABLES)}", values)
     for table, key in (("robot", "name"), ("reference", "name"), ("limits", "obstacles")):
-        value = tables[table].get(key, "")
-        if not isinstance(value, str):
-            raise InvalidInputError(
-                f"{table}.{key}", f"must be a name or a file, not {value!r}", value
-            )
-        if Path(value).suffix:
-            tables[table][key] = str(Path(value).resolve())
+        if key in tables[table]:
+            tables[table][key] = _absolute(f"{table}.{key}", tables[table][key])
     return tables
+
+
+def _absolute(place: str, value: Any) -> str:
+    """Return a name as it is, a file by its whole path, or raise an InvalidInputError."""
+    if not isinstance(value, str):
+        raise InvalidInputError(place, f"must be a name or a file, not {value!r}", value)
+    return str(Path(value).resolve()) if Path(value).suffix else value
 
 
 def _read_setting(text: str) -> Tables:

@@ -4,7 +4,7 @@ import contextlib
 import os
 import warnings
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -92,16 +92,22 @@ def load_robot(
     )
     expected = {*chosen, *(_idle_joints(full, tips) if tips else ())}
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
-    large = np.where(np.isfinite(limits[:3]), np.abs(limits[:3]), 0.0).max(axis=0)
+    for doubt in _doubts(robot, still):
+        warnings.warn(doubt, stacklevel=2)
+    return robot if tool is None else robot.with_tool(tool)
+
+
+def _doubts(robot: Robot, still: list[str]) -> Iterator[str]:
+    """State that a limit is most likely in degrees, and which joints are held still."""
+    limits = robot.limits[:3]
+    large = np.where(np.isfinite(limits), np.abs(limits), 0.0).max(axis=0)
     if large.max() > _LARGE:
-        warnings.warn(
+        yield (
             f"joint {robot.joint_names[large.argmax()]!r} has a limit of {large.max():.4g}: is it "
-            "in degrees? A URDF counts in rad and rad/s",
-            stacklevel=2,
+            "in degrees? A URDF counts in rad and rad/s"
         )
     if still:
-        warnings.warn(f"held still, since they do not move {tip}: {', '.join(still)}", stacklevel=2)
-    return robot if tool is None else robot.with_tool(tool)
+        yield f"held still, since they do not move {robot.tip}: {', '.join(still)}"
 
 
 def robots_folder() -> Path:
