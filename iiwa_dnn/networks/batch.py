@@ -1,6 +1,6 @@
 """Many small programs of one shape."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,7 +36,7 @@ class BatchSolution(NamedTuple):
     z: Matrix
     z_box: Matrix
     found: NDArray[np.bool_]
-    status: NDArray[np.str_]
+    status: NDArray[Any]
     residuals: Matrix
     iterations: NDArray[np.int64]
 
