@@ -138,10 +138,10 @@ def test_a_network_of_ones_own_comes_from_a_file_or_a_module(tmp_path, monkeypat
     assert main([*words, "--overwrite"]) == 1  # the others' rows are there all the same
     report = " ".join(capsys.readouterr().out.split())
     assert all(row in json.loads((tmp_path / "a" / "atlas.json").read_text()) for row in rows)
-    assert "| atlas_parts:Short | white | rates: must have shape (27,), not (2,) |" in report
+    assert "| atlas_parts:Short | white | rates of Short: has shape (2,), not (27,) |" in report
     assert "| atlas_parts:Faulty | none | ZeroDivisionError: division by zero |" in report
     assert main([*words, "-q"]) == 1
-    assert "rates: must have shape (27,), not (2,)\nZero" in capsys.readouterr().err
+    assert "rates of Short: has shape (2,), not (27,)\nZero" in capsys.readouterr().err
     before = atlas.Cell("atlas_parts.py:Slow")
     (tmp_path / "atlas_parts.py").write_text(OUTSIDE + "# changed", encoding="utf-8")
     assert atlas.Cell("atlas_parts.py:Slow") != before, "a changed file makes new cells"
