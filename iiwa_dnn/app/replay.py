@@ -171,9 +171,8 @@ class Replay:
         self.clock = gui.add_slider("time [s]", 0.0, end, 1e-3 * end, 0.0)
         self.marks = gui.add_html(self._bar())
         self.speed = gui.add_dropdown("speed", ("0.1", "0.5", "1", "2", "5"), initial_value="1")
-        gui.add_markdown(
-            "\n".join(f"- {line}" for line in failures(record) or ["completed within all limits"])
-        )
+        verdict = failures(record) or ["completed within all limits"]
+        gui.add_markdown("\n".join(f"- {line}" for line in verdict))
         self._readout = gui.add_markdown("")
         self._distances = np.linalg.norm(position_error(record), axis=1)
         self._angles = orientation_error(record)
@@ -229,8 +228,6 @@ class Replay:
             ("gap to the reference", f"{record.crosscheck_gap[step]:.1e} rad/s"),
             ("policy", ", ".join([action, *map(describe, in_the_way(record.settings, *acting))])),
         ]
-        rows += [
-            (f"{name} [rad]", f"{q:+.3f}")
-            for name, q in zip(record.settings["joints"], record.q[k], strict=True)
-        ]
+        joints = zip(record.settings["joints"], record.q[k], strict=True)
+        rows += [(f"{name} [rad]", f"{q:+.3f}") for name, q in joints]
         self._readout.content = markdown_table(rows[0], rows[1:])

@@ -82,7 +82,9 @@ class DualNetwork(Network):
             equalities = inverse.T @ np.linalg.pinv(scaled, rcond=1e-10)
             M = M - equalities @ scaled @ inverse
             offset = equalities @ qp.b - M @ qp.q
-            rows, lower, upper = (part[p:] for part in (rows, lower, upper))
+            rows = rows[p:]
+            lower = lower[p:]
+            upper = upper[p:]
         lifted = M @ rows.T
         gram = rows @ lifted
 

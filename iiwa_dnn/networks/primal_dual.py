@@ -77,14 +77,16 @@ class Clipped(NamedTuple):
         """Evaluate the rates at a state, (k,) both."""
         aim = self.matrix @ state + self.offset
         clipped = np.minimum(np.maximum(aim, self.lower), self.upper)
-        return np.asarray(self.outer @ (clipped - state - self.kappa * aim))
+        result: Vector = self.outer @ (clipped - state - self.kappa * aim)
+        return result
 
     def jacobian(self, state: Vector) -> Matrix:
         """Differentiate the rates at a state (k,), (k, k)."""
         aim = self.matrix @ state + self.offset
         inside = (aim > self.lower) & (aim < self.upper)
         inner = (inside - self.kappa)[:, np.newaxis] * self.matrix - np.eye(state.size)
-        return np.asarray(self.outer @ inner)
+        result: Matrix = self.outer @ inner
+        return result
 
 
 @dataclass(frozen=True, kw_only=True)

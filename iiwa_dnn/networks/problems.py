@@ -64,9 +64,8 @@ def solve_problem(
     if sharpen:
         solution = solver.sharpen(scaled, solution)
     solution.point[n:] *= scale
-    return solution._replace(dual=solution.dual * scale, gap=solution.gap * scale).to_qpsolvers(
-        problem
-    )
+    dual = solution.dual * scale
+    return solution._replace(dual=dual, gap=solution.gap * scale).to_qpsolvers(problem)
 
 
 SOLVE.append(solve_problem)

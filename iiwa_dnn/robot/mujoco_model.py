@@ -106,9 +106,8 @@ def build_spec(robot: Robot) -> Any:
     # The site of the tip hangs on the body of the joint that carries Pinocchio's frame.
     frame = robot.model.frames[robot.tip_id]
     carrier = joints[robot.model.names[frame.parentJoint]].parent
-    carrier.add_site(
-        name=TIP_SITE, pos=frame.placement.translation, quat=_quaternion(frame.placement)
-    )
+    turn = _quaternion(frame.placement)
+    carrier.add_site(name=TIP_SITE, pos=frame.placement.translation, quat=turn)
     return spec
 
 

@@ -54,7 +54,6 @@ def visual_meshes(robot: Robot) -> tuple[Mesh, ...]:
             corners = np.array(body.vertices()) @ turn.T + shape.placement.translation
             triangles = map(body.tri_indices, range(body.num_tris))
             faces = np.array([(at[0], at[1], at[2]) for at in triangles], dtype=np.int32)
-            meshes.append(
-                Mesh(int(shape.parentJoint), corners, faces, tuple(shape.meshColor[:3].tolist()))
-            )
+            color = tuple(shape.meshColor[:3].tolist())
+            meshes.append(Mesh(int(shape.parentJoint), corners, faces, color))
     return tuple(meshes)

@@ -84,7 +84,8 @@ class Disturbances:
 
     def mass_factors(self, joints: int, seed: int) -> Vector:
         """Draw the factor on mass and inertia of the links that each joint carries, (n,)."""
-        return 1.0 + self.mass_error * np.random.default_rng([seed, 0]).choice([-1.0, 1.0], joints)
+        signs = np.random.default_rng([seed, 0]).choice([-1.0, 1.0], joints)
+        return 1.0 + self.mass_error * signs
 
 
 class Encoder:

@@ -44,7 +44,8 @@ class Recorder:
         program = controller.program
         self._controller = controller
         self._steps = steps
-        self._frame_ids = [program.robot.frame_id(name) for name in program.target_frames[1:]]
+        further = program.target_frames[1:]
+        self._frame_ids = [program.robot.frame_id(name) for name in further]
         self._kinematics = Kinematics(program.robot, program.target_frames)
         self._outcomes: list[Outcome] = []
         self.last_step: int | None = None
@@ -87,7 +88,8 @@ class Recorder:
         self._add_samples(
             self._done, self.layout.view(first, "placement"), self.layout.view(first, "targets")
         )
-        of_bounds, of_rows = self.layout.multipliers(first, self._controller.solver.tol)
+        tol = self._controller.solver.tol
+        of_bounds, of_rows = self.layout.multipliers(first, tol)
         for name, values in (
             ("bound_multiplier", of_bounds),
             ("row_multiplier", of_rows),
@@ -130,7 +132,8 @@ class Recorder:
         """Return the columns, cut to the steps that were taken."""
         controller = self._controller
         self.arrays["t"] = controller.dt * np.arange(self._done + 1, dtype=np.float64)
-        placement = controller.placement(self.arrays["q"][self._done])
+        q = self.arrays["q"][self._done]
+        placement = controller.placement(q)
         targets = controller.targets(self.arrays["t"][self._done] - controller.delay)
         self._add_samples(self._done, placement[np.newaxis], targets.reshape(1, -1))
         return {
@@ -141,7 +144,8 @@ class Recorder:
     def _array(self, name: str, **sizes: int) -> NDArray[Any]:
         """Return a column, allocated when it is first asked for."""
         if name not in self.arrays:
-            known = {"n": self._controller.robot.dof, "f": len(self._frame_ids)} | sizes
+            n = self._controller.robot.dof
+            known = {"n": n, "f": len(self._frame_ids)} | sizes
             self.arrays[name] = COLUMNS[name].allocate(self._steps, **known)
         return self.arrays[name]
 
@@ -165,7 +169,8 @@ class Recorder:
 
     def _add_kinds(self, k: int, command: Command) -> None:
         """Note of what kind the active bounds are in step k."""
-        multipliers, _ = self.layout.multipliers(command.row, self._controller.solver.tol)
+        tol = self._controller.solver.tol
+        multipliers, _ = self.layout.multipliers(command.row, tol)
         if multipliers.any():
             qp = command.qp
             kinds = self._names.codes(np.array([qp.lb, qp.ub]), multipliers, command.past)
@@ -181,9 +186,8 @@ class Recorder:
             column[steps] = np.square(self.arrays["dq"][steps]).sum(axis=1)
             return
         for k in range(steps.start, steps.stop - ended):
-            column[k] = scheme.kinetic_index(
-                Configuration(robot, self.arrays["q"][k]), self.arrays["dq"][k]
-            )
+            conf = Configuration(robot, self.arrays["q"][k])
+            column[k] = scheme.kinetic_index(conf, self.arrays["dq"][k])
 
     def _add_samples(self, first: int, placements: Matrix, targets: Matrix) -> None:
         """Take in samples from number `first` on: placements (k, 12) and targets (k, 18 frames)."""

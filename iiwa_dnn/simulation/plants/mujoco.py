@@ -77,9 +77,8 @@ class MujocoPlant(Plant):
         wrong = self.disturbances
         limit = torque_limits(robot)
         friction = np.where(np.isfinite(limit), wrong.friction * limit, 0.0)
-        self._model = compile_model(
-            robot, timestep, self.dynamics, friction, wrong.mass_factors(robot.dof, seed)
-        )
+        factors = wrong.mass_factors(robot.dof, seed)
+        self._model = compile_model(robot, timestep, self.dynamics, friction, factors)
         self._data = self._mj.MjData(self._model)
         self._data.qpos[:] = q0
         self._mj.mj_forward(self._model, self._data)
@@ -130,9 +129,8 @@ class MujocoPlant(Plant):
                 point = data.site_xpos[tip.id]
                 body = int(tip.bodyid[0])
                 force = np.array(push.force)
-                self._mj.mj_applyFT(
-                    self._model, data, force, np.zeros(3), point, body, data.qfrc_applied
-                )
+                out = data.qfrc_applied
+                self._mj.mj_applyFT(self._model, data, force, np.zeros(3), point, body, out)
         self._mj.mj_step(self._model, data)
 
     def _settings(self) -> dict[str, Any]:
