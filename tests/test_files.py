@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from iiwa_dnn.errors import FileError
-from iiwa_dnn.files import plain, prepare_folder, write_atomically, write_json
+from iiwa_dnn.files import plain, write_atomically, write_json
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt(), OSError(28, "full")])
@@ -50,15 +50,6 @@ def test_an_unwritable_place_is_a_file_error_in_one_line(tmp_path):
         assert "\n" not in str(caught.value)
     assert [found.name for found in tmp_path.iterdir()] == ["file"]
     assert not list(tmp_path.parent.glob(".*.tmp"))
-
-
-def test_a_folder_is_made(tmp_path):
-    folder = tmp_path / "a" / "b"
-    assert prepare_folder(folder) == prepare_folder(folder) == folder
-    assert not list(folder.iterdir())
-    (tmp_path / "file").touch()
-    with pytest.raises(FileError, match="cannot be written to"):
-        prepare_folder(tmp_path / "file" / "below")
 
 
 def test_json_holds_plain_types_and_nothing_that_json_has_not(tmp_path):

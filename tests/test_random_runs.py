@@ -20,16 +20,14 @@ STEPS = 60
 def reference(number: int, size: float, rng: np.random.Generator) -> iiwa_dnn.Reference:
     """A path of about that size [m], run through in 0.5 to 10 s."""
     period = float(10 ** rng.uniform(-0.3, 1.0))
-    if number % 5 == 0:
-        return iiwa_dnn.Heart(scale=size / 30.0, period=period)
-    if number % 5 == 1:
-        return iiwa_dnn.Circle(radius=size, period=period)
-    if number % 5 == 2:
-        return iiwa_dnn.Lissajous(amplitudes=(size, size / 2, size / 3), period=period)
-    if number % 5 == 3:
-        return iiwa_dnn.Line(offset=tuple(size * rng.standard_normal(3)), period=period)
-    times = np.linspace(0.0, period, 5)
-    return iiwa_dnn.Waypoints(times, size * rng.standard_normal((5, 3)))
+    paths = (
+        iiwa_dnn.Heart(scale=size / 30.0, period=period),
+        iiwa_dnn.Circle(radius=size, period=period),
+        iiwa_dnn.Lissajous(amplitudes=(size, size / 2, size / 3), period=period),
+        iiwa_dnn.Line(offset=tuple(size * rng.standard_normal(3)), period=period),
+        iiwa_dnn.Waypoints(np.linspace(0.0, period, 5), size * rng.standard_normal((5, 3))),
+    )
+    return paths[number % 5]
 
 
 def options(number: int) -> dict[str, Any]:

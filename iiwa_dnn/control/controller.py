@@ -161,16 +161,16 @@ class Controller:
                 `t` is no number; or there is neither reference nor target; or `dt` is not above 0.
         """
         state = self._state
-        before = state.past
-        dt_before = state.dt
+        command = None
         try:
             with self._lock:
                 command = self._compute(q, t, target, dt)
+                before = state.past
                 state.past = state.next
                 return command
-        except BaseException as error:  # interrupted before anybody got the command
-            state.past = before
-            state.dt = dt_before
+        except BaseException as error:
+            if command is not None:  # interrupted before anybody got it
+                state.past = before
             if isinstance(error, TypeError | InvalidInputError):
                 checks.finite("t", t)
             raise

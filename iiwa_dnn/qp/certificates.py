@@ -18,11 +18,8 @@ their absolute values.
 
 So a certificate has a radius, within which there is no solution. A radius of at least `RADIUS` is
 worth saying, whatever the tolerance of the solver; an infinite one proves that there is none.
-The radius is computed in exact fractions, whoever made the certificate.
+Rounding, underflow included, is counted against the certificate throughout.
 """
-
-from fractions import Fraction
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +31,7 @@ from iiwa_dnn.qp.solution import Status
 RADIUS = 1e8
 """Radius from which on a certificate is claimed."""
 
-_EPS = float(np.finfo(float).eps)
+_LIMITS = np.finfo(float)
 _SLIGHT = 1e-5
 """Fraction of the largest entry below which a row takes no part in a polish."""
 
@@ -57,9 +54,8 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
     n, m, p = qp.sizes
     limited = np.isfinite(np.concatenate([qp.b, qp.h]))
     multipliers = _scaled(np.where(limited, point[n : n + p + m], 0.0))
-    polished = _polished_multipliers(qp, multipliers)
     multipliers = max(
-        (multipliers, polished, _rounded(polished)),
+        (multipliers, _polished_multipliers(qp, multipliers)),
         key=lambda vector: infeasibility_radius(qp, vector),
     )
     carried, w = _carried(qp, multipliers)
@@ -110,16 +106,19 @@ def infeasibility_radius(qp: QP, multipliers: Vector) -> float:
     p = qp.b.size
     limits = np.concatenate([qp.b, qp.h])
     used = multipliers != 0.0
-    finite = np.isfinite(np.append(multipliers, limits[used])).all()
+    finite = np.isfinite(multipliers).all() and np.isfinite(limits[used]).all()
     if not finite or (multipliers[p:] < 0.0).any():
         return 0.0
-    bounds = np.nan_to_num(np.stack([qp.lb, qp.ub]), posinf=0.0, neginf=0.0)
-    rows = np.vstack([qp.A, qp.G])
-    one, y, rows, limits, bounds = _integers(multipliers[used], rows[used], limits[used], bounds)
-    w = rows.T @ y
-    carried = np.isfinite(np.where(w > 0, qp.lb, qp.ub))
-    value = (w * np.where(w > 0, *bounds))[carried].sum() - one * (limits @ y)
-    return _radius(value, one * np.abs(w[~carried]).sum())
+    carried, w = _carried(qp, multipliers)
+    rounding = _rounding(np.vstack([qp.A, qp.G]).T, multipliers)
+    taking_part = carried & (w != 0.0)
+    bounds = np.where(w > 0.0, qp.lb, qp.ub)[taking_part]
+    reach = np.maximum(np.abs(qp.lb), np.abs(qp.ub))
+    both = reach < np.inf
+    factors = np.concatenate([limits[used], -bounds, reach[both]])
+    weights = np.concatenate([multipliers[used], w[taking_part], rounding[both]])
+    residual = np.where(carried, 0.0, np.abs(w)).sum() + rounding[~both].sum()
+    return _radius(factors, weights, float(residual))
 
 
 def unboundedness_radius(qp: QP, direction: Vector) -> float:
@@ -131,28 +130,28 @@ def unboundedness_radius(qp: QP, direction: Vector) -> float:
     """
     if not np.isfinite(direction).all():
         return 0.0
-    one, d, q, P, A, G = _integers(direction, qp.q, qp.P, qp.A, qp.G[np.isfinite(qp.h)])
-    residual = np.abs(P @ d).sum() + np.abs(A @ d).sum()
+    rows = np.vstack([qp.P, qp.A, qp.G[np.isfinite(qp.h)]])
+    wrong = rows @ direction
+    first = qp.q.size + qp.b.size
     # Below zero, an inequality's row is no residual.
-    residual += np.maximum(G @ d, 0).sum() + one * np.abs(d[_towards_bound(qp, direction)]).sum()
-    return _radius(-(q @ d), residual)
+    wrong[:first] = np.abs(wrong[:first])
+    wrong = np.maximum(wrong + _rounding(rows, direction), 0.0)
+    outside = np.abs(direction[_towards_bound(qp, direction)]).sum()
+    return _radius(qp.q, direction, float(wrong.sum() + outside))
 
 
-def _integers(*arrays: Matrix) -> list[Any]:
-    """Multiply 1 and finite numbers by the power of two that makes all of them integers."""
-    parts = [np.frexp(array) for array in (np.ones(()), *arrays)]
-    least = min(exponents.min(initial=0) for _, exponents in parts)
-    return [
-        np.ldexp(digits, 53).astype(np.int64).astype(object) << (exponents - least).astype(object)
-        for digits, exponents in parts
-    ]
-
-
-def _radius(value: int, residual: int) -> float:
-    """Divide a certificate's value by its residual; 0 if it has none."""
-    if not value > 0:
+def _radius(factors: Vector, weights: Vector, residual: float) -> float:
+    """Divide minus a sum of products, less its rounding, by the residual; 0 if it has none."""
+    value = -float(factors @ weights + _rounding(factors, weights))
+    if not value > 0.0:
         return 0.0
-    return float(min(Fraction(value, residual), Fraction(10**300))) if residual > 0 else np.inf
+    return value / residual if residual > 0.0 else np.inf
+
+
+def _rounding(rows: Matrix, vector: Vector) -> Vector:
+    """Bound the rounding of the product of rows (k, n) and a vector (n,); terms of 0 have none."""
+    terms = (rows != 0.0) @ (vector != 0.0).astype(float)
+    return np.asarray(terms * (_LIMITS.eps * (np.abs(rows) @ np.abs(vector)) + _LIMITS.tiny))
 
 
 def _carried(qp: QP, multipliers: Vector) -> tuple[NDArray[np.bool_], Vector]:
@@ -168,7 +167,7 @@ def _towards_bound(qp: QP, vector: Vector) -> NDArray[np.bool_]:
 
 def _scaled(vector: Vector) -> Vector:
     """Divide a vector by its largest entry."""
-    return vector / max(float(np.abs(vector).max(initial=0.0)), _EPS)
+    return vector / max(float(np.abs(vector).max(initial=0.0)), float(_LIMITS.eps))
 
 
 def _polished_multipliers(qp: QP, multipliers: Vector) -> Vector:
@@ -182,12 +181,6 @@ def _polished_multipliers(qp: QP, multipliers: Vector) -> Vector:
     polished[used] = _on_null_space(rows[:, left].T, polished[used])
     polished[qp.b.size :] = np.maximum(polished[qp.b.size :], 0.0)
     return polished
-
-
-def _rounded(multipliers: Vector) -> Vector:
-    """Round multipliers to simple fractions of the smallest: of whole rows they cancel exactly."""
-    least = np.abs(multipliers[multipliers != 0.0]).min(initial=1.0)
-    return np.asarray(np.rint(64.0 * multipliers / least) / 64.0)
 
 
 def _polished_direction(qp: QP, direction: Vector) -> Vector:

@@ -113,7 +113,7 @@ class CrossCheck:
         """Check the names and the tolerances; raises InvalidInputError naming the argument."""
         for name in self.solvers:
             if name not in ("proxqp", "osqp", PROOF):
-                checks.one_of("solvers", name, (*_installed(), PROOF))
+                checks.one_of("solvers", name, references())
         checks.positive("tolerance", self.tolerance)
         checks.positive("reference_tolerance", self.reference_tolerance)
 
@@ -192,11 +192,11 @@ class CrossCheck:
         return gap, objective_gap, residual, len(residuals) - 1
 
 
-def _installed() -> list[str]:
-    """List the solvers that qpsolvers finds installed, other than the package's own."""
+def references() -> list[str]:
+    """List the names of references: solvers that qpsolvers finds installed, and the proof."""
     import qpsolvers  # with scipy.sparse, 0.2 s that not every run needs
 
-    return [name for name in qpsolvers.available_solvers if name != "iiwa_dnn"]
+    return [name for name in qpsolvers.available_solvers if name != "iiwa_dnn"] + [PROOF]
 
 
 def _answer(name: str, qp: QP) -> tuple[Vector, float]:

@@ -90,7 +90,7 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
     Nothing about the answer is trusted: its multipliers name the active set to begin with. That
     there is exactly one solution is a part of the proof where the bound is finite. The numbers of
     the program count as exact. Where an answer has a certificate, as a field or among its extras,
-    it is judged in exact arithmetic, and what it proves is the reason.
+    it is judged, all rounding counted, and what it proves is the reason.
 
     Args:
         qp: The program, also as qpsolvers has it.

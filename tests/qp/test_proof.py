@@ -211,7 +211,7 @@ def test_a_forged_certificate_proves_nothing(certificate: list[float] | None) ->
 def test_products_of_a_certificate_that_underflow_prove_nothing() -> None:
     qp = QP(np.eye(1), [0.0], G=[[1e-200]], h=[-1e-100])  # x = -1e100 is feasible
     proof = prove(qp, answer([0.0], certificate=np.array([1e-200, 0.0])))
-    assert proof.reason == "proven: " + Status.NONE_FEASIBLE_NEAR
+    assert "proven" not in proof.reason
 
 
 def test_a_check_hands_the_proof_on() -> None:
