@@ -70,9 +70,8 @@ def rotation_angle(rotation: FloatArray, desired: FloatArray) -> FloatArray:
 
 def limits(record: Record, key: str, unlimited: float = np.inf) -> FloatArray:
     """Return a limit of each joint out of the settings, (n,); None there stands for no limit."""
-    return np.array(
-        [unlimited if value is None else value for value in record.settings[key]], dtype=float
-    )
+    values = record.settings[key]
+    return np.array([unlimited if value is None else value for value in values], dtype=float)
 
 
 def _rate_excess(record: Record, order: int) -> FloatArray:
@@ -131,6 +130,7 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     settings = record.settings
     error = position_error(record)
     distance = np.linalg.norm(error, axis=1)
+    farthest = float(np.linalg.norm(record.position_desired, axis=1).max())
     duration = float(record.t[-1] - record.t[0])
     excesses = _excesses(record)
     further = {
@@ -143,11 +143,7 @@ def compute_metrics(record: Record) -> dict[str, Any]:
         {
             "path_completed": record.path_completed,
             "start_distance_m": distance[0],
-            "beyond_reach_m": max(
-                0.0,
-                float(np.linalg.norm(record.position_desired, axis=1).max())
-                - (settings.get("reach") or np.inf),
-            ),
+            "beyond_reach_m": max(0.0, farthest - (settings.get("reach") or np.inf)),
             "max_position_error_m": distance.max(),
             "mse_position_error_m2": np.mean(error**2),
             "max_orientation_error_rad": orientation_error(record).max(),

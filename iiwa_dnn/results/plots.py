@@ -81,9 +81,8 @@ def write_figures(
             figure = draw()
             for suffix, metadata in (("png", {}), ("pdf", {"CreationDate": None})):
                 written.append(folder / f"{name}.{suffix}")
-                write_atomically(
-                    written[-1], partial(figure.savefig, format=suffix, metadata=metadata)
-                )
+                save = partial(figure.savefig, format=suffix, metadata=metadata)
+                write_atomically(written[-1], save)
                 figure.set_layout_engine("none")  # both files share one layout
     return written
 
@@ -182,14 +181,9 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     names = short_names(record.settings)
     labels = [symbol.format(name) if name.isdigit() else name for name in names]
     for joint, curve in enumerate(getattr(record, name).T):
-        _draw_curve(
-            axes,
-            record.t[: len(curve)],
-            curve,
-            color=colors[joint],
-            linestyle=_DASHES[joint % len(_DASHES)],
-            label=labels[joint],
-        )
+        dashes = _DASHES[joint % len(_DASHES)]
+        style = {"color": colors[joint], "linestyle": dashes, "label": labels[joint]}
+        _draw_curve(axes, record.t[: len(curve)], curve, **style)
     low, high = axes.get_ylim()
     margin = 0.15 * (high - low)  # a limit farther off would only flatten the curves
     for i, joint in np.argwhere((low - margin <= bounds) & (bounds <= high + margin)):
@@ -259,12 +253,8 @@ def draw_frames(axes: Axes, record: Record) -> None:
 def draw_distance(axes: Axes, record: Record) -> None:
     """Draw the distance of the nearest pair [m] over time, and the least that is allowed."""
     _draw_curve(axes, record.t, record.distance, color="0.0", label="nearest pair")
-    axes.axhline(
-        record.settings["collisions"]["distance"],
-        color="0.0",
-        linestyle="--",
-        label="least allowed",
-    )
+    allowed = record.settings["collisions"]["distance"]
+    axes.axhline(allowed, color="0.0", linestyle="--", label="least allowed")
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     label_time(axes, record, "Distance [m]")
 

@@ -194,7 +194,8 @@ def _success(metrics: Mapping[str, Any]) -> str:
 def _text(value: object) -> str:
     """Put a value in words: numbers in four digits."""
     if isinstance(value, Mapping):
-        return ", ".join(f"{key} = {_text(v)}" for key, v in value.items() if v is not None)
+        items = value.items()
+        return ", ".join(f"{key} = {_text(item)}" for key, item in items if item is not None)
     if isinstance(value, list):
         return _listed(value)
     if isinstance(value, float):

@@ -198,9 +198,8 @@ def coal_geometry(
         shape = coal.Capsule(capsule.radius, 2.0 * half[2])
         frame = robot.model.frames[robot.frame_id(capsule.link)]
         pose = frame.placement * pin.SE3(rotation, center)
-        geometry.addGeometryObject(
-            pin.GeometryObject(f"{capsule.link}_{i}", frame.parentJoint, pose, shape)
-        )
+        name = f"{capsule.link}_{i}"
+        geometry.addGeometryObject(pin.GeometryObject(name, frame.parentJoint, pose, shape))
     for i, k in pairs:
         geometry.addCollisionPair(pin.CollisionPair(i, k))
     return geometry

@@ -165,7 +165,8 @@ def count_steps(reference: References | None, dt: float, duration: float | None 
     Raises:
         InvalidInputError: There are no steps or too many, or a time is not above 0.
     """
-    steps = _duration(reference, dt, duration) / dt
+    length = _duration(reference, dt, duration)
+    steps = length / dt
     if not 0.5 < steps <= MAX_STEPS:
         by_dt = steps > 1.0 and dt < 1e-6
         problem = f"{steps:.3g} steps of {dt:g} s; there must be from 1 to {MAX_STEPS:,}"

@@ -163,9 +163,8 @@ def disturbed(solver: DNNSolver, noise: Matrix) -> DNNSolver:
             state[:width] += next(rows)[:width]
             return super()._advanced(qp, state, *taken)
 
-    return Disturbed(
-        **{each.name: getattr(solver, each.name) for each in fields(solver) if each.init}
-    )
+    settings = {each.name: getattr(solver, each.name) for each in fields(solver) if each.init}
+    return Disturbed(**settings)
 
 
 @dataclass(frozen=True)

@@ -106,10 +106,8 @@ def find(rows: Sequence[Row], **wanted: Any) -> list[Row]:
 
 def of_every_disturbance(rows: Sequence[Row], network: str) -> list[Row]:
     """Return the row of a network for each disturbance, with the league's scheme and budget."""
-    return [
-        find(rows, network=network, disturbance=kind)[0]
-        for kind in dict.fromkeys(row["disturbance"] for row in rows)
-    ]
+    kinds = dict.fromkeys(row["disturbance"] for row in rows)
+    return [find(rows, network=network, disturbance=kind)[0] for kind in kinds]
 
 
 def scores(rows: Sequence[Row], network: str) -> Vector | None:
@@ -224,6 +222,7 @@ def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
         and claim.disturbance in size.disturbances
     ]
     periods = sorted({row["dt"] for row in rows if row["work"] == UNLIMITED}, reverse=True)
+    position = partial(_shown, measure="rms_error_m")
     tables = [
         Table("league", f"RMS KKT residual: {of}", head, _league(rows, ranking, _shown)),
         Table(
@@ -240,7 +239,7 @@ def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
             "errors",
             f"RMS position error [m], the places by the residual: {of}",
             head,
-            _league(rows, ranking, partial(_shown, measure="rms_error_m")),
+            _league(rows, ranking, position),
         ),
         Table(
             "verdicts",

@@ -106,9 +106,8 @@ def _table1(table: Table) -> list[str]:
         for key, label in _ROWS.items():
             rows.append([label, *map(_short, variant["rows"][key])])
             if key in variant["verdicts"]:
-                rows.append(
-                    ["ours / paper's", *map(_short, variant["verdicts"][key]["ours_over_paper"])]
-                )
+                ratios = variant["verdicts"][key]["ours_over_paper"]
+                rows.append(["ours / paper's", *map(_short, ratios)])
         parts += [f"### {name}", markdown_table(head, rows)]
     return parts
 

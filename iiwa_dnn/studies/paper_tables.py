@@ -110,9 +110,8 @@ def table2_runs(scope: Scope) -> Runs:
         quiet = replace(mode, dt=scope.dt, duration=scope.duration, filter_window=window)
         runs[name, window] = quiet
         for entry, seed in product(NOISE_ENTRIES, range(scope.seeds)):
-            runs[name, window, entry, seed] = replace(
-                quiet, noise=paper.NOISE, noise_at=entry, seed=seed
-            )
+            noisy = replace(quiet, noise=paper.NOISE, noise_at=entry, seed=seed)
+            runs[name, window, entry, seed] = noisy
     return runs
 
 
