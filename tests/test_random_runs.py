@@ -92,7 +92,7 @@ def test_limits_hold_and_every_run_has_an_end() -> None:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             # Off its path and its limits on purpose.
-            warnings.filterwarnings("ignore", "the (reference begins|start posture)")
+            warnings.filterwarnings("ignore", "the (reference begins|start posture|path leads)")
             record = iiwa_dnn.simulate(**asked)
             iiwa_dnn.failures(record)
         assert beyond(record, asked["robot"]) <= 1e-9, number

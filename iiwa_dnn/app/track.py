@@ -44,9 +44,11 @@ from iiwa_dnn import (
 )
 from iiwa_dnn.app.command_line import Flag, Folder, Quiet, claim_folder, shown, write_settings
 from iiwa_dnn.control.estimation import NoiseModel
-from iiwa_dnn.files import parse_toml, read_toml
+from iiwa_dnn.errors import IiwaDnnError
+from iiwa_dnn.files import one_line, parse_toml, read_toml
 from iiwa_dnn.qp.crosscheck import references
 from iiwa_dnn.results.pictures import save_pictures
+from iiwa_dnn.results.plots import CAPTIONS
 from iiwa_dnn.results.report import save_run, summary
 from iiwa_dnn.robot.mujoco_model import prepare_renderer
 from iiwa_dnn.simulation import Disturbances, IdealPlant, Push, count_steps
@@ -60,6 +62,12 @@ TABLES = ("robot", "reference", "scheme", "limits", "run", "plant")
 
 BOUNDS = ("position", "speed", "lower", "upper", "velocity")
 """Keys of the table [limits] that change the robot's own limits; all others are parts."""
+
+OUTPUTS = (
+    *("report.md", "video.mp4"),
+    *(f"{name}{suffix}" for name in CAPTIONS for suffix in (".png", ".pdf")),
+)
+"""Files of a run that another one in its folder may not write."""
 
 CHECKS = {"both": ("proxqp", "osqp"), "none": ()}
 PLANTS: Choices = {"ideal": IdealPlant, "mujoco": MujocoPlant}
@@ -274,7 +282,8 @@ def _draw(options: Any, more: Tables) -> int:
             bar.update(done)
 
         record = simulate(**arguments, progress=proceed)
-    (folder / "report.md").unlink(missing_ok=True)  # that of an earlier run
+    for name in OUTPUTS:  # those of an earlier run
+        (folder / name).unlink(missing_ok=True)
     write_settings(folder, tables)
     metrics = save_run(record, folder, options.plots, draw_more, published(record.settings))
     reasons = failures(metrics)
@@ -391,13 +400,20 @@ def build(tables: Tables) -> Tables:
     check = CrossCheck(CHECKS.get(solver, (solver,)), run.get("tolerance", 1e-6))
     given = {key: value for key, value in run.items() if key not in ("check", "tolerance")}
     made = {"robot": robot, "scheme": scheme, "reference": reference, "q0": q0, "plant": plant}
-    return {**made, "check": check, **objects(signature(simulate).parameters, "run", given)}
+    known = [key for key in signature(simulate).parameters if key not in (*made, "progress")]
+    return {**made, "check": check, **objects(known, "run", given)}
 
 
 def call(function: Callable[..., Any], table: str, values: Tables) -> Any:
     """Call a function with the values of a table; errors as of `objects`."""
-    arguments = {key: value for key, value in values.items() if key not in ("name", "q0")}
-    return function(**objects(signature(function).parameters, table, arguments))
+    given = {key: value for key, value in values.items() if key not in ("name", "q0")}
+    arguments = objects(signature(function).parameters, table, given)
+    try:
+        return function(**arguments)
+    except IiwaDnnError:
+        raise
+    except (AttributeError, TypeError, ValueError) as error:  # a value of a wrong type
+        raise InvalidInputError(table, one_line(error), given) from error
 
 
 def choose(choices: Choices, table: str, values: Tables) -> Any:

@@ -16,6 +16,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.control.command import Command, RowLayout
 from iiwa_dnn.control.paths import (
     References,
+    beyond_reach,
     by_frame,
     doubts,
     far_targets,
@@ -319,6 +320,8 @@ class Controller:
         found = [*doubts(program, start, self.dt, self.mode), *near_pairs(program, start, t)]
         if own:
             found += far_targets(self.scheme, program.target_frames, start, self.targets(t))
+            away = beyond_reach(self.reference, self.robot)
+            found += [f"the path leads {away:.3g} m beyond the arm's reach"] * (away > 0.0)
         for message in found:
             warnings.warn(message, stacklevel=stacklevel)
 

@@ -1,5 +1,6 @@
 """The references of a control loop, one for each frame that tasks track."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -11,7 +12,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.references import Reference, Target
-from iiwa_dnn.robot import Configuration
+from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.collision import unwatched_links
 from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
@@ -24,6 +25,8 @@ References = Reference | Mapping[str, Reference]
 FAR = 0.05
 TURNED = 0.2
 """Distance [m] and angle [rad] of a first target from which on a warning is given."""
+PLACES = 200
+"""Places of a path at which it is looked at."""
 SLOWEST = 0.1
 """Control period above which a warning is given [s]."""
 
@@ -116,6 +119,16 @@ def near_pairs(program: StepProgram, start: Configuration, t: float) -> Iterator
                 f"{part.distance:g} m: they may not come nearer, and where they come no further "
                 "apart the arm stands still"
             )
+
+
+def beyond_reach(reference: References | None, robot: Robot) -> float:
+    """Compute how far the tip's path leads beyond the robot's reach [m], 0 if it does not."""
+    path = by_frame(reference, robot.tip).get(robot.tip)
+    if path is None:
+        return 0.0
+    end = path.duration if math.isfinite(path.duration) else 0.0
+    distances = np.linalg.norm(path.sample(np.linspace(0.0, end, PLACES)).position, axis=1)
+    return max(0.0, float(distances.max()) - robot.reach)
 
 
 def far_targets(

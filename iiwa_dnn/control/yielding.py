@@ -242,9 +242,7 @@ def _answer_relaxed(
     retreat = 1.0
     if factor < 0.0:
         retreat = largest_factor(qp, yielding, np.zeros(size), point, views.figures, True)
-    if retreat < 0.0:
-        note_blocking(point, n, m, 1, views.blocking)
-        return STOPPED, 0.0
+        retreat = max(retreat, 0.0)  # what cannot be said to retreat may come no nearer
     soften_task(qp, yielding.weights, retreat)
     found = settled(qp, yielding.settings, relaxed[size:], views.point, views.figures)
     note_blocking(views.point, n, m, 0, views.blocking)

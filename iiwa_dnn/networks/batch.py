@@ -92,7 +92,7 @@ def solve_batch(
 def _solve(qp: QP, tol: float) -> Solution:
     """Solve a program; one with a wrong value becomes NaN, and is not found."""
     try:
-        qp.check_values()
+        qp.check_numbers()
     except InvalidInputError:
         qp = QP.from_data(np.nan * qp.data, qp.sizes)
     return DNNSolver(tol=tol).solve(qp)

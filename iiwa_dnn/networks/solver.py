@@ -121,7 +121,7 @@ class DNNSolver:
         """Advance the network until it has settled, and judge the point it has reached.
 
         Where it does not settle and no certificate is found, it starts once more, from zero, in
-        coordinates in which no row of the program stands out.
+        coordinates in which nothing of the program stands out.
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).

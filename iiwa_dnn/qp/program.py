@@ -259,9 +259,9 @@ def real_array(name: str, value: Any) -> NDArray[np.float64]:
         return value
     if hasattr(value, "toarray"):  # scipy's sparse matrices
         value = value.toarray()
-    if np.iscomplexobj(value):
-        raise InvalidInputError(name, "is not an array of real numbers", value)
     try:
+        if np.iscomplexobj(value):
+            raise TypeError("complex numbers")
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise InvalidInputError(name, f"is not an array of numbers ({error})", value) from None

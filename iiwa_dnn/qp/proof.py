@@ -60,7 +60,7 @@ _SHARE = 0.9
 
 WEAK = "a multiplier may be zero: the bound is that of the curvature, the active set is not proven"
 FLAT = "a multiplier may be zero, and no curvature of the cost is shown along the equality rows"
-DEPENDENT = "the active rows are linearly dependent, or nearly so"
+DEPENDENT = "the KKT system of the active rows is singular, or nearly so"
 UNDECIDED = "the sign of an inactive row's slack is not decided"
 NOT_CONVEX = "the cost is not shown to be convex"
 FAR = "the answer is not finite"

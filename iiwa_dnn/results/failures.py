@@ -76,9 +76,9 @@ def _incomplete(metrics: Mapping[str, Any]) -> Iterator[str]:
     """Report an incomplete path, an early end, and a program without a solution."""
     settings = metrics["settings"]
     if metrics["path_completed"] < 1.0:
-        away = metrics.get("beyond_reach_m")
-        beyond = f": it leads {away:.3g} m beyond the arm's reach, all in metres" if away else ""
-        yield f"path completed {completed(metrics)}{beyond}"
+        yield f"path completed {completed(metrics)}"
+    if away := metrics.get("beyond_reach_m"):
+        yield f"the path leads {away:.3g} m beyond the arm's reach: are its positions in metres?"
     if settings["status"] != "completed":
         planned = round(settings["duration"] / settings["dt"])
         yield f"ended after {metrics['steps']:,} of {planned:,} steps: {settings['status']}"

@@ -130,7 +130,6 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     settings = record.settings
     error = position_error(record)
     distance = np.linalg.norm(error, axis=1)
-    farthest = float(np.linalg.norm(record.position_desired, axis=1).max())
     duration = float(record.t[-1] - record.t[0])
     excesses = _excesses(record)
     further = {
@@ -143,7 +142,7 @@ def compute_metrics(record: Record) -> dict[str, Any]:
         {
             "path_completed": record.path_completed,
             "start_distance_m": distance[0],
-            "beyond_reach_m": max(0.0, farthest - (settings.get("reach") or np.inf)),
+            "beyond_reach_m": settings.get("beyond_reach", 0.0),
             "max_position_error_m": distance.max(),
             "mse_position_error_m2": np.mean(error**2),
             "max_orientation_error_rad": orientation_error(record).max(),

@@ -146,7 +146,8 @@ def _draw_panels(record: Record, panels: Sequence[Panel], columns: int, height: 
     for number, draw in enumerate(panels):
         axes = figure.add_subplot(rows, columns, number + 1)
         draw(axes, record)
-        axes.set_title(f"({chr(ord('a') + number)})", loc="left", fontsize=8)
+        # Left of the axes, above which a legend may be as wide as they are.
+        axes.set_title(f"({chr(ord('a') + number)})", loc="left", x=-0.12, fontsize=8)
     return figure
 
 

@@ -121,6 +121,8 @@ def _find(source: Any) -> tuple[Path | None, tuple[str, ...]]:
     """Find the file of a robot; return it with the tips of its arms if it is known by name."""
     if isinstance(source, pin.Model):
         return None, ()
+    if not isinstance(source, str | os.PathLike):
+        raise InvalidInputError("source", "must be a name, a file or a pinocchio.Model", source)
     name = os.fspath(source)
     is_file = isinstance(source, os.PathLike) or name.endswith((".urdf", ".xacro"))
     if is_file or os.sep in name:

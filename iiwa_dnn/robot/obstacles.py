@@ -1,7 +1,7 @@
 """Obstacles that an arm keeps away from: convex shapes in the world, still or moving."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
@@ -179,13 +179,15 @@ class HalfSpace(Obstacle):
 SHAPES = {shape.__name__.lower(): shape for shape in (Sphere, Capsule, Box, HalfSpace)}
 
 
-def make_obstacles(tables: Iterable[Any]) -> list[Obstacle]:
-    """Make the obstacles of a file: tables of ``shape`` and the shape's parameters.
+def make_obstacles(tables: Any) -> list[Obstacle]:
+    """Make the obstacles of a file: a list of tables of ``shape`` and the shape's parameters.
 
     Raises:
-        InvalidInputError: The shape or a parameter of the one with a number is missing, unknown or
-            wrong.
+        InvalidInputError: It is no list, or the shape or a parameter of the one with a number is
+            missing, unknown or wrong.
     """
+    if not isinstance(tables, list):
+        raise InvalidInputError("obstacle", "must be tables [[obstacle]], one for each", tables)
     found: list[Obstacle] = []
     for number, table in enumerate(tables, 1):
         try:

@@ -185,7 +185,7 @@ class Robot:
             zip(*self.limits[:2], np.asarray(q), strict=True), 1
         ):
             if not lower - 1e-9 <= each <= upper + 1e-9:
-                return f"must be within {lower:g} and {upper:g} rad: joint {i} is at {each:g}"
+                return f"is not between {lower:g} and {upper:g} rad: joint {i} is at {each:g}"
         return ""
 
     def with_tool(self, tool: pin.SE3 | ArrayLike, name: str = "tool") -> Robot:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Controller, Mode
 from iiwa_dnn.control.estimation import NoiseModel
-from iiwa_dnn.control.paths import References, by_frame
+from iiwa_dnn.control.paths import References, beyond_reach, by_frame
 from iiwa_dnn.control.policies import Policy
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
@@ -210,7 +210,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         "q_upper": robot.q_upper,
         "dq_max": robot.dq_max,
         **rates,
-        "reach": robot.reach,
+        "beyond_reach": beyond_reach(controller.reference, robot),
         "q0": start.q,
         "tol": solver.tol,
         "rho": solver.network.rho,

@@ -79,6 +79,8 @@ BAD = [
     ("track --set limits.tipspeed=1", "no setting in [limits] 'tipspeed'"),
     ("physics --set plant.disturbances.fricton=1", "did you mean: friction"),
     ("track --plant franka", "plant: must be one of ideal, mujoco, not 'franka'"),
+    ("track --set robot.locked=3", "robot: 'int' object is not iterable"),
+    ("track --set run.progress=3", "no setting in [run] 'progress'"),
     ("track --set schema.weight=1", "schema: must be one of the tables"),
     ("track --set run=1", "run: must be one of the tables"),
     ("track --set limits.obstacles.distance=1", "limits.obstacles: must be a name or a file"),

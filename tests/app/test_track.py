@@ -176,7 +176,9 @@ def test_another_run_is_overwritten_only_if_it_is_said_and_done(tmp_path, capsys
         patch.setattr(runner, "CheckPool", Mock(side_effect=KeyboardInterrupt))
         assert call("track", *QUICK, "--seed", "1", "--overwrite", "--out", folder) == 130
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+    (folder / "video.mp4").touch()
     track(folder, "--seed", "1", "--overwrite")
+    assert not (folder / "video.mp4").exists()  # of another run
     assert "seed = 1" in (folder / "settings.toml").read_text()
 
 

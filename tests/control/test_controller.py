@@ -234,10 +234,12 @@ def test_the_reference_is_judged_at_the_time_of_the_first_step() -> None:
     again.step(q, half * DT)  # a warning would be an error
     with pytest.warns(UserWarning, match=r"begins 0\.07\d* m and 0\.000 rad from"):
         late.step(PAPER_Q0, half * DT)
-    elsewhere = d.Controller(paper_robot(), d.DoubleIndicator(), d.Circle(), dt=DT)
-    elsewhere.warm_up(PAPER_Q0)
-    with pytest.warns(UserWarning, match="the reference begins"):
-        elsewhere.step(PAPER_Q0, 0.0)
+    far = d.Line((2.0, 0.0, 0.0)).anchored(paper_start())
+    for path, said in ((d.Circle(), "the reference begins"), (far, "beyond the arm's reach")):
+        elsewhere = d.Controller(paper_robot(), d.DoubleIndicator(), path, dt=DT)
+        elsewhere.warm_up(PAPER_Q0)
+        with pytest.warns(UserWarning, match=said):
+            elsewhere.step(PAPER_Q0, 0.0)
 
 
 @pytest.mark.parametrize("mode", ["converged", "continuous"])

@@ -94,7 +94,7 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
             ("[[obstacle]]\nshape = 'Box'\ncenter = [0,0,0]\nhalf_extents = [1,1,-1]", "half_ext"),
             ("distance = -1", f"distance: {NUMBER}"),
             ("distanz = 1", "unexpected keyword argument 'distanz'"),
-            ("obstacle = 3", "not"),
+            ("obstacle = 3", "obstacle: must be tables"),
             ("x = [", "cannot be read as TOML"),
         )
     ],

@@ -1,7 +1,8 @@
-"""Settling in other units: a second start in which no row stands out, and a steeper cost.
+"""Settling in other units: a second start in which nothing stands out, and a steeper cost.
 
-The rows of A and G are divided by their largest entries, and the cost by its own. For the network
-that is another time constant for each multiplier; its equilibria are the same. An implicit step of
+The variables and the rows of A and G get factors with which all rows of the KKT matrix have a size
+near 1, and the cost is divided by its largest entry. For the network that is another time constant
+for each entry of its state; its equilibria are the same. An implicit step of
 length h [rho] leaves the fraction 1 / (1 + h c) of an error along which the cost has the curvature
 c, so that a steeper cost settles sooner where it is nearly flat.
 """
@@ -10,11 +11,13 @@ import numpy as np
 
 from iiwa_dnn.networks.integrators.base import Settled
 from iiwa_dnn.networks.integrators.implicit import settle_program
-from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.layout import Matrix, Vector
 from iiwa_dnn.qp.program import QP
 
 STRICTER = 1e-4
 """Tolerance in scaled units over that in the program's own, where the residuals grow."""
+ROUNDS = 10
+"""Rounds of balancing; each takes the square root of what is left."""
 STEEP = 1e5
 """Largest entry of a cost that was made steep."""
 
@@ -29,18 +32,34 @@ def settle_scaled(
     """
     n, m, p = qp.sizes
     rows = np.vstack([qp.A, qp.G])
-    sizes = np.abs(rows).max(axis=1, initial=0.0)
-    sizes[sizes == 0.0] = 1.0
-    rows /= sizes[:, np.newaxis]
-    limits = np.concatenate([qp.b, qp.h]) / sizes
-    cost = max(np.abs(qp.P).max(), np.abs(qp.q).max(), 1e-300)
-    scaled = QP(qp.P / cost, qp.q / cost, rows[p:], limits[p:], rows[:p], limits[:p], qp.lb, qp.ub)
+    units = balanced(np.block([[qp.P, rows.T], [rows, np.zeros((m + p, m + p))]]))
+    own, of_rows = units[:n], units[n:]
+    rows = of_rows[:, np.newaxis] * rows * own
+    limits = of_rows * np.concatenate([qp.b, qp.h])
+    P, q = own[:, np.newaxis] * qp.P * own, own * qp.q
+    cost = max(np.abs(P).max(), np.abs(q).max(), 1e-300)
+    scaled = QP(
+        P / cost, q / cost, rows[p:], limits[p:], rows[:p], limits[:p], qp.lb / own, qp.ub / own
+    )
     state[:] = 0.0
     first = settle_program(scaled, state, point, STRICTER * tol / max(1.0, cost), budget)
     state[n:] *= cost
-    state[n : n + m + p] /= sizes
+    state *= np.concatenate([own, of_rows, 1.0 / own, 1.0 / own])
     second = settle_program(qp, state, point, tol, budget - first[0])
     return before[0] + first[0] + second[0], before[1] + first[1] + second[1], *second[2:]
+
+
+def balanced(matrix: Matrix) -> Vector:
+    """Return factors of rows and columns of a symmetric matrix that bring each to a size near 1.
+
+    Source: D. Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices",
+    Rutherford Appleton Laboratory, RAL-TR-2001-034.
+    """
+    units = np.ones(len(matrix))
+    for _ in range(ROUNDS):
+        sizes = units * np.abs(matrix * units).max(axis=1)
+        units /= np.sqrt(np.where(sizes > 0.0, sizes, 1.0))
+    return units
 
 
 def settle_steep(qp: QP, state: Vector, point: Vector, tol: float, budget: int) -> Settled:
