@@ -215,6 +215,8 @@ def _listed(values: Sequence[Any]) -> str:
 
 def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Lay out a table of texts in Markdown, its cells made fit to stand in one."""
-    cells = [[" ".join(str(text).split()).replace("|", "\\|") for text in row] for row in rows]
-    table = tabulate(cells, head, "pipe", disable_numparse=True)
+    cells = [
+        [" ".join(str(text).split()).replace("|", "\\|") for text in row] for row in (head, *rows)
+    ]
+    table = tabulate(cells, "firstrow", "pipe", disable_numparse=True)
     return re.sub("  +", " ", re.sub(r"(?<=\|):?-+(?=\|)", ":---", table))  # without the padding

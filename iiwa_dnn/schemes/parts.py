@@ -63,7 +63,7 @@ _IDLE = {"h": np.inf, "lb": -np.inf, "ub": np.inf}
 """Values that an answer may hold though they are infinite, and that variables which it leaves out
 have, by its name; others are zero."""
 
-COMPILED = "no method in numpy; Scheme.build_qp shows the rows of a compiled part"
+COMPILED = "has no such method in numpy; Scheme.build_qp shows the rows of a compiled part"
 
 _ROUNDING = 1e-9
 """Asymmetry and negative curvature of P that are forgiven, by its largest entry."""
@@ -256,7 +256,7 @@ class Cost(Part):
         n counts the scheme's variables, the joints and then its slack variables, or the joints
         alone: slack variables may be left out of any part.
         """
-        raise NotImplementedError(COMPILED)
+        raise NotImplementedError(f"{type(self).__name__} {COMPILED}")
 
     def _check(self, arrays: dict[str, Matrix]) -> None:
         P = arrays["P"]
@@ -287,7 +287,7 @@ class Task(Part):
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (rows, n) and b (rows,)."""
-        raise NotImplementedError(COMPILED)
+        raise NotImplementedError(f"{type(self).__name__} {COMPILED}")
 
 
 class Limit(Part):
@@ -310,11 +310,11 @@ class Limit(Part):
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
         """Return G (rows, n) and h (rows,), by default none."""
         if self.rows or not self.copies:
-            raise NotImplementedError(COMPILED)
+            raise NotImplementedError(f"{type(self).__name__} {COMPILED}")
         return np.zeros((0, step.q.size)), np.zeros(0)
 
     def bounds(self, step: Step) -> tuple[Vector, Vector]:
         """Return lb (n,) and ub (n,), infinite by default; those of all limits are intersected."""
         if not self.copies:
-            raise NotImplementedError(COMPILED)
+            raise NotImplementedError(f"{type(self).__name__} {COMPILED}")
         return np.full(step.q.size, -np.inf), np.full(step.q.size, np.inf)

@@ -13,9 +13,10 @@ import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import partial
+from importlib import import_module
 from itertools import product
 from pathlib import Path
-from pkgutil import resolve_name
+from types import ModuleType
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -323,10 +324,8 @@ def entry_of(name: str) -> Entry:
     """
     if ":" not in name:
         return _look_up("network", name, NETWORKS)
-    if str(Path.cwd()) not in sys.path:
-        sys.path.append(str(Path.cwd()))
     try:
-        found = resolve_name(name.replace(".py:", ":"))
+        found = getattr(_imported(name), name.rpartition(":")[2])
         found = found() if isinstance(found, type) else found
     except Exception as error:  # whatever the file of others raises
         problem = f"{name} cannot be had in {Path.cwd()}: {one_line(error)}"
@@ -334,6 +333,16 @@ def entry_of(name: str) -> Entry:
     if not isinstance(found, Entry | Network):
         raise InvalidInputError("network", f"{name} is no Network: {found!r}", found)
     return still(found) if isinstance(found, Network) else found
+
+
+def _imported(name: str) -> ModuleType:
+    """Import the module of a network from outside, named as module:NAME or FILE.py:NAME."""
+    place = Path(name.rpartition(":")[0])
+    is_file = place.suffix == ".py"
+    folder = str(place.resolve().parent if is_file else Path.cwd())
+    if folder not in sys.path:
+        sys.path.append(folder)
+    return import_module(place.stem if is_file else place.name)
 
 
 @dataclass(frozen=True)
@@ -367,9 +376,9 @@ class Cell:
         if self.disturbance == "none":
             object.__setattr__(self, "seeds", min(self.seeds, len(PATHS)))
         if ":" in self.network:
-            entry_of(self.network)  # imports its module
-            module = sys.modules[self.network.rpartition(":")[0].removesuffix(".py")]
-            digest = hashlib.sha256(Path(str(module.__file__)).read_bytes()).hexdigest()
+            entry_of(self.network)  # refuses what is none
+            file = Path(str(_imported(self.network).__file__))
+            digest = hashlib.sha256(file.read_bytes()).hexdigest()
             object.__setattr__(self, "source", digest[:24])
 
 

@@ -142,6 +142,10 @@ def test_a_network_of_ones_own_comes_from_a_file_or_a_module(tmp_path, monkeypat
     assert "| atlas_parts:Faulty | none | ZeroDivisionError: division by zero |" in report
     assert main([*words, "-q"]) == 1
     assert "rates of Short: has shape (2,), not (27,)\nZero" in capsys.readouterr().err
+    other = tmp_path / "my-own" / "my-parts.py"
+    other.parent.mkdir()
+    other.write_text(OUTSIDE, encoding="utf-8")
+    assert atlas.Cell(f"{other}:Slow").source == atlas.Cell("my-own/my-parts.py:Slow").source
     before = atlas.Cell("atlas_parts.py:Slow")
     (tmp_path / "atlas_parts.py").write_text(OUTSIDE + "# changed", encoding="utf-8")
     assert atlas.Cell("atlas_parts.py:Slow") != before, "a changed file makes new cells"
