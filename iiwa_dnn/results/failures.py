@@ -124,10 +124,11 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
 def _unsolved(metrics: Mapping[str, Any]) -> Iterator[str]:
     first = metrics["unsolved"]
     if first is not None:
-        yield (
-            f"{_at(first)}: KKT residual {_show(first['residual'])}, tolerance "
-            f"{_show(metrics['settings']['tol'])}; {counted(first['steps'])} unsolved in all"
-        )
+        tolerance = _show(metrics["settings"]["tol"])
+        said = f"KKT residual {_show(first['residual'])}, tolerance {tolerance}"
+        if first["residual"] is None:
+            said = "the network has no answer, a relaxed program took its place"
+        yield f"{_at(first)}: {said}; {counted(first['steps'])} unsolved in all"
 
 
 def _crosscheck(check: Mapping[str, Any], steps: int) -> Iterator[str]:
