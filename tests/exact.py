@@ -5,8 +5,6 @@ The KKT system of an active set is solved by Bareiss's elimination, in which no 
 and no fraction is needed, and its signs are looked at. Nothing here is shared with the package.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from fractions import Fraction
 from typing import Any, NamedTuple

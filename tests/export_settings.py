@@ -1,7 +1,5 @@
 """Controllers of every kind that is exported, each with the posture where it begins."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Headless Chromium, driven by selenium: what a page looks like, and what hands can do to it."""
 
-from __future__ import annotations
-
 import io
 import json
 import os

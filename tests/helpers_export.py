@@ -1,7 +1,5 @@
 """Exported controllers, and the programs that compile them."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from pathlib import Path

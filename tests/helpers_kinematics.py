@@ -1,7 +1,5 @@
 """Kinematics written independently of the package, and derivatives by finite differences."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

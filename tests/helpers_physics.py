@@ -1,7 +1,5 @@
 """What the tests of physics and pictures share: the paper's heart, and what a machine lacks."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Made-up records whose metrics are known in closed form."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The paper's experiment in small: robot, start, reference, and short runs of it."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A task so small that a sweep of it is quick, and that says when it is computed."""
 
-from __future__ import annotations
-
 import os
 import sys
 import time

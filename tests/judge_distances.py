@@ -1,7 +1,5 @@
 """A judge of distances: coal's shapes and nearest points, Pinocchio's placements."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import coal

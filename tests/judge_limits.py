@@ -1,7 +1,5 @@
 """A judge of joint trajectories: finite differences against limits, and nothing of the package."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

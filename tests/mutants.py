@@ -5,8 +5,6 @@ fails, "survives" or "unknown". ``python tests/mutants.py LIST`` tries all that 
 noticed, and fails where one survives that was noticed before.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

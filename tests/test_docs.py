@@ -4,8 +4,6 @@ A ``python`` block is run, the blocks of one document after each other in one na
 block right after one is what it prints, to the letter.
 """
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import io

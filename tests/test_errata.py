@@ -1,7 +1,5 @@
 """Each slip of the paper that docs/errata.md lists: what is printed fails, the correction holds."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

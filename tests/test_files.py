@@ -1,7 +1,5 @@
 """Files are the old one or the whole new one."""
 
-from __future__ import annotations
-
 import os
 
 import numpy as np

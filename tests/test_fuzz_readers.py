@@ -1,7 +1,5 @@
 """Damaged files for every reader: only the package's own errors may come back."""
 
-from __future__ import annotations
-
 import traceback
 from collections import Counter
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The judges of tests/hostile.py: what a few runs show, and what they find in one that is wrong."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What is built and handed on: the wheel, pins, and one version everywhere."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

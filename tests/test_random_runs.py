@@ -1,7 +1,5 @@
 """Seeded random runs of the whole loop: whatever is asked for, limits hold and nothing crashes."""
 
-from __future__ import annotations
-
 import warnings
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The statements of docs/theory.md that are marked (T)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The package's library: functions entered by address, and the bits of whole steps."""
 
-from __future__ import annotations
-
 import ctypes
 import traceback
 from concurrent.futures import ThreadPoolExecutor

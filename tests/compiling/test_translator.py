@@ -1,7 +1,5 @@
 """Each construct of the subset: Python's own bits, and refusals by file and line."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 from copy import deepcopy

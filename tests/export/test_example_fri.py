@@ -3,8 +3,6 @@
 `FRI_SDK` names the folder of an SDK. Without it nothing is tested here: it cannot be downloaded.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Exported controllers: C's commands are Python's, and the code keeps the promises of its page."""
 
-from __future__ import annotations
-
 import ctypes
 import re
 import shutil

@@ -1,7 +1,5 @@
 """A shield in C: the same commands, to the last bit where the kinematics have no part in them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

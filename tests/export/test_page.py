@@ -1,7 +1,5 @@
 """The page of the documentation on which the exported heart runs in a browser."""
 
-from __future__ import annotations
-
 import runpy
 from collections.abc import Iterator
 from pathlib import Path

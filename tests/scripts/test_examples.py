@@ -1,7 +1,5 @@
 """The worked examples run from anywhere, end with 0 and print what they promise."""
 
-from __future__ import annotations
-
 import re
 import runpy
 import sys

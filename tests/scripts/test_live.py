@@ -1,7 +1,5 @@
 """The live page: the arm follows a dragged target, and gives way to a dragged ball."""
 
-from __future__ import annotations
-
 import re
 import runpy
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Countermeasures against noise: what each is for shows in the script's numbers."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The second paper's arm, rows and runs, beside finite differences and a second implementation."""
 
-from __future__ import annotations
-
 import runpy
 from pathlib import Path
 from types import SimpleNamespace

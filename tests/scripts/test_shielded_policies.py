@@ -1,7 +1,5 @@
 """The shield under random policies, through Gymnasium and in the form of LeRobot's processors."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import gymnasium
