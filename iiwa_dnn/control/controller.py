@@ -226,7 +226,9 @@ class Controller:
         if program.refreshed:
             program.refresh(q, past[LAST], layout.targets(row), t, dt)
         following = np.empty(past.shape)
-        state.next = following  # a halt from here on counts for the next step
+        state.next = following
+        if state.halted:
+            past[HALTED] = 1.0
         network = self.solver.state_for(layout.sizes) if step.has_network else row[:0]
         action = take_step(row, step.plan, q, past, following, network, t, samples)
         if action == INVALID:
@@ -295,8 +297,7 @@ class Controller:
 
     def halt(self) -> None:
         """Brake at every step from now on."""
-        self._state.past[HALTED] = 1.0
-        self._state.next[HALTED] = 1.0
+        self._state.halted = True  # no array: a step that goes on may replace it
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, if the scheme has none."""

@@ -20,10 +20,11 @@ class ControllerState:
             counts from when the controller returns its command.
         next: The one after the last command that was computed.
         dt: Control period of the last step [s]; 0 before the first.
+        halted: Whether the arm brakes from now on; each step writes it into the row `HALTED`.
         begun: Whether the start was looked at, and warned of.
     """
 
-    __slots__ = ("begun", "dt", "next", "past")
+    __slots__ = ("begun", "dt", "halted", "next", "past")
 
     past: Matrix
     next: Matrix
@@ -38,6 +39,7 @@ class ControllerState:
         self.past = np.zeros((ROWS, dof))
         self.next = self.past
         self.dt = 0.0
+        self.halted = False
 
     def set_period(self, dt: float) -> None:
         """Go on in periods of another length [s]: accelerations and the time to rest stay."""

@@ -100,7 +100,7 @@ def velocity_at(x: float, b: float, u: float, cubic: bool) -> float:
 @compiled
 def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float:
     """Compute the velocity after the first of so many periods on the way to zero [rad/s]."""
-    if periods < 1.5:
+    if periods <= 1.0:  # a part of one where the control period has changed
         return 0.0
     b = bend_of(x, before, periods) if cubic else 0.0
     return velocity_at(x, b, 1.0 / periods, cubic)
