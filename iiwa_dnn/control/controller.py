@@ -118,9 +118,13 @@ class Controller:
             self._derived = None
         elif not name.startswith("_"):
             raise AttributeError(f"Controller has no setting {name!r}")
+        before = vars(self).get(name)
         object.__setattr__(self, name, value)
         if name == "robot" and self._state.past.shape[1] != value.dof:
             self._state = ControllerState(value.dof)
+        # A braking motion in hand keeps the limits of before.
+        if name in ("robot", "scheme") and value is not before:
+            self._state.past[REST] = 0.0
 
     def __getstate__(self) -> dict[str, Any]:
         own = {"_state": copy.deepcopy(self._state), "solver": copy.deepcopy(self.solver)}
@@ -188,12 +192,16 @@ class Controller:
             return self._compute(q, t, target, None)
 
     def send(self, dq: Vector, fraction: float = 1.0) -> None:
-        """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a share of the period."""
+        """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a share of the period.
+
+        Raises:
+            InvalidInputError: `dq` has another size, or is not finite.
+        """
         state = self._state
         state.dt = state.dt or self.dt
         past = state.next.copy()
         past[BEFORE] = state.past[LAST]
-        past[LAST] = dq
+        past[LAST] = checks.finite_array("dq", dq, past[LAST].shape)
         past[REST] = 0.0
         past[DELAY] = state.past[DELAY] + self.dt * (1.0 - fraction)
         state.past = past

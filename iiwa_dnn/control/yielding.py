@@ -394,7 +394,7 @@ def _brake(limits: QPViews, past: Matrix, yielding: Yielding, dq: Vector) -> flo
         )
     for i in range(past.shape[1]):
         if periods < np.inf:
-            fastest = yielding.limits[2 * past.shape[1] + i]
+            fastest = max(yielding.limits[2 * past.shape[1] + i], abs(past[LAST, i]))
             dq[i] = next_velocity(past[LAST, i], past[BEFORE, i], periods, yielding.cubic)
             # Where the control period has changed, the curve has too.
             dq[i] = min(max(dq[i], -fastest), fastest)
