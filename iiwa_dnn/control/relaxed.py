@@ -311,28 +311,41 @@ def note_blocking(point: Vector, n: int, m: int, extra: int, blocking: Vector) -
 def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, figures: Vector) -> bool:
     """Move x (n,) into the bounds of a program, and on to the nearest point within its rows too.
 
-    The figures (5,) are those of `settled`.
+    The rows of joints that follow others hold as well, if the bounds allow it. The figures (5,) are
+    those of `settled`.
 
     Returns:
         False if the inequality rows contradict the bounds: x is then within the bounds.
     """
+    if yielding.coupled and _move_within(qp, x, yielding, figures, qp.b.size):
+        return True
+    outside = 0
+    for i in range(x.size):
+        x[i] = min(max(x[i], qp.lb[i]), qp.ub[i])
+    for j in range(qp.h.size):
+        outside += row_dot(qp.G, j, x) > qp.h[j]
+    return outside == 0 or _move_within(qp, x, yielding, figures, 0)
+
+
+@compiled
+def _move_within(
+    qp: QPViews, x: Vector, yielding: Yielding, figures: Vector, equalities: int
+) -> bool:
+    """Move x (n,) to the nearest point within bounds and rows, and the first equalities' limits."""
     n = x.size
     m = qp.h.size
-    outside = 0
-    for i in range(n):
-        x[i] = min(max(x[i], qp.lb[i]), qp.ub[i])
-    for j in range(m):
-        outside += row_dot(qp.G, j, x) > qp.h[j]
-    if outside == 0:
-        return True
-    data = np.zeros(data_size(n, m, 0))
-    nearest = qp_views(data, n, m, 0)
+    data = np.zeros(data_size(n, m, equalities))
+    nearest = qp_views(data, n, m, equalities)
     for i in range(n):
         nearest.P[i, i] = 1.0
         nearest.q[i] = -x[i]
+    for j in range(equalities):
+        if yielding.weights[j] == 0.0:
+            copied(nearest.A[j], qp.A[j])
+            nearest.b[j] = qp.b[j]
     _copy_limits(qp, nearest)
-    point = np.empty(2 * n + m)
-    found = settled(nearest, yielding.settings, np.zeros(3 * n + m), point, figures)
+    point = np.empty(2 * n + m + equalities)
+    found = settled(nearest, yielding.settings, np.zeros(3 * n + m + equalities), point, figures)
     if found:
         copied(x, point[:n])
     return found

@@ -17,10 +17,11 @@ has one to rest.
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -320,6 +321,11 @@ class Shield:
         self._controllers: dict[str, Controller] = {}
         self._kept = ControllerState(robot.dof)
         self.reset()
+
+    def __getstate__(self) -> dict[str, Any]:
+        # The controllers share one state, and are made anew to share the copy's.
+        own = {name: copy.deepcopy(getattr(self, name)) for name in ("_kept", "_state")}
+        return {**vars(self), **own, "_controllers": {}}
 
     def reset(self) -> None:
         """Forget wishes, a halt and the last commands: the arm stands where it is measured next."""

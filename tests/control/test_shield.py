@@ -1,5 +1,7 @@
 """A shield gives the wish itself where the limits admit it, and the nearest safe command else."""
 
+import copy
+import pickle
 from typing import Any
 
 import numpy as np
@@ -208,6 +210,19 @@ def test_a_halt_lasts_until_the_reset() -> None:
     shield.reset()
     assert shield.step(rest[-1]).limits == ("no wish",)
     assert shield.step(rest[-1], np.full(7, 1e-3)).limits == ()
+
+
+@pytest.mark.parametrize("copied", [copy.copy, lambda each: pickle.loads(pickle.dumps(each))])
+def test_a_copy_goes_on_from_the_last_command(copied: Any) -> None:
+    robot = d.load_robot("iiwa7").with_limits(acceleration=10.0)
+    shield, q = d.Shield(robot), robot.start_posture()
+    for k in range(40):
+        command = shield.step(q, np.ones(7)) if k < 20 else shield.step(q, twist=np.full(6, 0.1))
+        q = q + 1e-3 * command.dq
+    twin = copied(shield)
+    for _ in range(5):  # neither knows of the other
+        assert np.abs(twin.step(q, np.ones(7)).dq - command.dq).max() <= 0.051
+    assert np.abs(shield.step(q, np.ones(7)).dq - command.dq).max() <= 0.0101
 
 
 def test_measured_positions_count_only_where_they_are_far() -> None:

@@ -117,7 +117,7 @@ def test_what_was_sent_in_place_of_a_command_is_what_the_jerk_is_counted_from(ti
     sent = last + 5e-4
     for _ in range(times):  # twice the same: the acceleration is over
         controller.send(sent)
-    with pytest.raises(d.InvalidInputError, match="^dq: "):
+    with pytest.raises(d.InvalidInputError, match=r"^dq: "):
         controller.send(np.nan * sent)
     change = sent - last if times == 1 else 0.0
     jump = controller.step(path[-1], 0.1).dq - (sent + change)
