@@ -276,7 +276,10 @@ class Command:
         Then the arm is on its way there, or noise asks for more than it may follow; a command that
         is neither `ok` nor limited cannot do it.
         """
-        if self.action is Action.NONE or self.blocking[self._layout.sizes[0] :].any():
+        if (
+            self.action in (Action.NONE, Action.STOP)
+            or self.blocking[self._layout.sizes[0] :].any()
+        ):
             return False
         codes = np.abs(self._layout.names.codes(self.bounds, self.blocking, self.past))
         return bool(codes.any()) and bool((codes[codes > 0] >= ACCELERATION).all())

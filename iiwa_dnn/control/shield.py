@@ -366,9 +366,22 @@ class Shield:
                 several wishes.
             NotFoundError: The robot has no frame of that name.
         """
+        kept = ShieldState(*[part.copy() for part in self._state])
+        before = (self._kept.past, kept, self._asked, self._t)
+        wishes = {"dq": dq, "twist": twist, "position": position}
+        try:
+            return self._step(q, {k: x for k, x in wishes.items() if x is not None}, frame)
+        except BaseException:  # refused, or interrupted before anybody got the command
+            halted = self._state.flags[REASON] == HALTED
+            self._kept.past, self._state, self._asked, self._t = before
+            if halted:
+                self.halt()
+            raise
+
+    def _step(self, q: ArrayLike, given: dict[str, ArrayLike], frame: str | None) -> ShieldCommand:
+        """Take a step with a wish, or none."""
         measured = checks.finite_array("q", q, (self.robot.dof,)).copy()
-        given = {"dq": dq, "twist": twist, "position": position}
-        held = self._take(measured, {k: x for k, x in given.items() if x is not None}, frame)
+        held = self._take(measured, given, frame)
         positions, wish, flags = self._state
         said = (REASONS[int(flags[REASON])], TAKEN_OVER if flags[TAKEN] else "")
         kind, seen = ("dq", JOINTS) if said[0] else self._asked

@@ -259,11 +259,13 @@ def test_margin_and_stopping_time_are_those_of_closed_forms() -> None:
         ({"position": "home"}, "position: must be numbers"),
         ({"dq": np.zeros(7), "twist": np.zeros(6)}, "several wishes"),
         ({"dq": np.zeros(7), "q": np.full(7, np.nan)}, "q: must be finite"),
+        ({"twist": np.zeros(6), "frame": "bogus"}, "no frame 'bogus'"),
     ],
 )
 def test_wrong_wishes_are_refused_and_change_nothing(arguments: dict[str, Any], words: str) -> None:
     shield = d.Shield(ROBOT, DT)
     shield.step(START, np.full(7, 0.01))
-    with pytest.raises(d.InvalidInputError, match=words):
+    with pytest.raises(d.IiwaDnnError, match=words):
         shield.step(**{"q": START} | arguments)
+    shield.step(START)  # the last wish counts
     np.testing.assert_array_equal(shield.step(START, np.full(7, 0.02)).dq, np.full(7, 0.02))
