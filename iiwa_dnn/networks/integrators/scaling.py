@@ -33,10 +33,12 @@ def settle_scaled(
     n, m, p = qp.sizes
     rows = np.vstack([qp.A, qp.G])
     units = balanced(np.block([[qp.P, rows.T], [rows, np.zeros((m + p, m + p))]]))
-    own, of_rows = units[:n], units[n:]
+    own = units[:n]
+    of_rows = units[n:]
     rows = of_rows[:, np.newaxis] * rows * own
     limits = of_rows * np.concatenate([qp.b, qp.h])
-    P, q = own[:, np.newaxis] * qp.P * own, own * qp.q
+    P = own[:, np.newaxis] * qp.P * own
+    q = own * qp.q
     cost = max(np.abs(P).max(), np.abs(q).max(), 1e-300)
     scaled = QP(
         P / cost, q / cost, rows[p:], limits[p:], rows[:p], limits[:p], qp.lb / own, qp.ub / own
