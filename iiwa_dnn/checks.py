@@ -37,9 +37,13 @@ def not_negative(argument: str, value: object) -> float:
 
 def _number(argument: str, value: object, kind: str, fits: Callable[[float], bool]) -> float:
     # A float first: the test for any kind of number costs more than all the rest of some callers.
-    is_number = isinstance(value, float | Real) and not isinstance(value, bool)
-    if is_number and math.isfinite(value) and fits(float(value)):  # type: ignore[arg-type]
-        return float(value)  # type: ignore[arg-type]
+    if (
+        isinstance(value, float | Real)
+        and not isinstance(value, bool)
+        and math.isfinite(value)
+        and fits(float(value))
+    ):
+        return float(value)
     raise InvalidInputError(argument, f"must be {kind}, not {value!r}", value)
 
 

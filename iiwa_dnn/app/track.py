@@ -64,7 +64,8 @@ BOUNDS = ("position", "speed", "lower", "upper", "velocity")
 """Keys of the table [limits] that change the robot's own limits; all others are parts."""
 
 OUTPUTS = (
-    *("report.md", "video.mp4"),
+    "report.md",
+    "video.mp4",
     *(f"{name}{suffix}" for name in CAPTIONS for suffix in (".png", ".pdf")),
 )
 """Files of a run that another one in its folder may not write."""

@@ -2,9 +2,10 @@
 
 The variables and the rows of A and G get factors with which all rows of the KKT matrix have a size
 near 1, and the cost is divided by its largest entry. For the network that is another time constant
-for each entry of its state; its equilibria are the same. An implicit step of
-length h [rho] leaves the fraction 1 / (1 + h c) of an error along which the cost has the curvature
-c, so that a steeper cost settles sooner where it is nearly flat.
+for each entry of its state; its equilibria are the same.
+
+An implicit step of length h [rho] leaves the fraction 1 / (1 + h c) of an error along which the
+cost has the curvature c, so that a steeper cost settles sooner where it is nearly flat.
 """
 
 import numpy as np
