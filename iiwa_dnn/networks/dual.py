@@ -68,7 +68,7 @@ class DualNetwork(Network):
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
         """Set a program up; dependent equalities are solved in the least-squares sense."""
         n, m, p = qp.sizes
-        rows, lower, upper = two_sided(qp)
+        rows, lower, upper = two_sided(qp, p if self.simplified else 0)
         try:
             inverse = np.linalg.inv(np.linalg.cholesky(qp.P))
         except np.linalg.LinAlgError:
@@ -82,9 +82,6 @@ class DualNetwork(Network):
             equalities = inverse.T @ np.linalg.pinv(scaled, rcond=1e-10)
             M = M - equalities @ scaled @ inverse
             offset = equalities @ qp.b - M @ qp.q
-            rows = rows[p:]
-            lower = lower[p:]
-            upper = upper[p:]
         lifted = M @ rows.T
         gram = rows @ lifted
 
@@ -108,9 +105,9 @@ class SimplifiedDualNetwork(DualNetwork):
     simplified: ClassVar[bool] = True
 
 
-def two_sided(qp: QP) -> tuple[Matrix, Vector, Vector]:
-    """Return the rows [A; G; I] (k, n) and their lower and upper limits, (k,)."""
+def two_sided(qp: QP, first: int = 0) -> tuple[Matrix, Vector, Vector]:
+    """Return the rows [A; G; I] from one on, (k, n), and their lower and upper limits, (k,)."""
     n, m, _ = qp.sizes
     rows = np.vstack([qp.A, qp.G, np.eye(n)])
     lower = np.concatenate([qp.b, np.full(m, -np.inf), qp.lb])
-    return rows, lower, np.concatenate([qp.b, qp.h, qp.ub])
+    return rows[first:], lower[first:], np.concatenate([qp.b, qp.h, qp.ub])[first:]

@@ -192,7 +192,7 @@ class ProjectionNetwork(Network):
         n, _, p = qp.sizes
         active = np.where((state + self.rates(qp, state))[n:] > 0.0, 1.0, 0.0)
         active[:p] = 1.0
-        return stable_step(QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, qp.lb, qp.ub), active)
+        return stable_step(qp.views, active)
 
 
 def is_projection(network: Network) -> TypeGuard[ProjectionNetwork]:

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network, enter_rates
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
@@ -25,14 +24,6 @@ from iiwa_dnn.qp.solution import Solution, Status
 SHARPENED = 1e-14
 SHARPENING = 20
 """Tolerance of `DNNSolver.sharpen`, and the linear systems of each of its two rounds."""
-
-
-@compiled
-def is_answer(data: Vector, n: int, primal: float, dual: float, gap: float, tol: float) -> bool:
-    """Check that residuals are `within` a tolerance and the cost of `QP.data` is convex."""
-    return within(primal, dual, gap, tol) and is_convex(
-        data[: n * n].reshape(n, n), np.empty((n, n))
-    )
 
 
 @dataclass(frozen=True)
@@ -149,11 +140,11 @@ class DNNSolver:
 
     def _status(self, qp: QP, settled: Settled) -> Status:
         """Judge a point by its residuals, and the cost by a Cholesky factor."""
-        if is_answer(qp.data, qp.sizes[0], *settled[2:], self.tol):
-            return Status.SOLVED
         if not math.isfinite(sum(settled[2:])):
             return Status.NOT_FINITE
-        return Status.NOT_SETTLED if is_convex(qp.P, np.empty_like(qp.P)) else Status.NOT_CONVEX
+        if not is_convex(qp.P, np.empty_like(qp.P)):
+            return Status.NOT_CONVEX
+        return Status.SOLVED if within(*settled[2:], self.tol) else Status.NOT_SETTLED
 
     def sharpen(self, qp: QP, solution: Solution) -> Solution:
         """Go on from the state that the last call left, for a few linear systems.

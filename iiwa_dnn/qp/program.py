@@ -24,8 +24,16 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.dense import ASYMMETRY, all_finite, is_convex
-from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size, field_shapes, qp_views
-from iiwa_dnn.qp.residuals import residuals_of
+from iiwa_dnn.qp.layout import (
+    Matrix,
+    QPViews,
+    Sizes,
+    Vector,
+    check_size,
+    field_shapes,
+    qp_views,
+)
+from iiwa_dnn.qp.residuals import point_residuals
 from iiwa_dnn.qp.solution import Residuals
 
 if TYPE_CHECKING:
@@ -181,11 +189,16 @@ class QP:
             self.ub if bounded else None,
         )
 
+    @property
+    def views(self) -> QPViews:
+        """The fields, as compiled code takes them."""
+        return QPViews(*[getattr(self, name) for name in FIELDS])
+
     def residuals(self, point: Vector) -> Residuals:
         """Compute qpsolvers' residuals of a point ``[x | y | z | z_box]``, (2 n + m + p,)."""
         n, m, p = self.sizes
         check_size("point", point, 2 * n + m + p)
-        return Residuals(*residuals_of(self.data, n, m, p, point))
+        return Residuals(*point_residuals(self.views, point))
 
     def check_values(self) -> None:
         """Check for values that no convex solver could make sense of.

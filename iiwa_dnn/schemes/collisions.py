@@ -243,39 +243,22 @@ class CollisionAvoidance(Limit):
         """Return name and parameters, as values that JSON can hold."""
         return super().settings() | {"obstacles": [each.settings() for each in self.obstacles]}
 
+    def overview(self, robot: Robot) -> dict[str, Any]:
+        """Return a record's settings: least distance, obstacles, pairs, unwatched links.
+
+        ``left_out`` has the pairs of links that no row watches, each with the reason, as in
+        `CollisionModel`.
+        """
+        return {
+            "distance": self.distance,
+            "obstacles": self.settings()["obstacles"],
+            "pairs": self.scene(robot).pairs,
+            "left_out": collision_model(robot).left_out if self.self_collision else (),
+            "unwatched": unwatched_links(robot),
+        }
+
 
 def avoidance_of(scheme: object) -> CollisionAvoidance | None:
     """Return the first `CollisionAvoidance` among the limits of a scheme."""
     limits = getattr(scheme, "limits", ())
     return next((part for part in limits if isinstance(part, CollisionAvoidance)), None)
-
-
-def collision_settings(scheme: object, robot: Robot) -> dict[str, Any]:
-    """Return a record's settings ``collisions``: least distance, obstacles, pairs, unwatched links.
-
-    ``left_out`` has the pairs of links that no row watches, each with the reason, as in
-    `CollisionModel`. If the scheme does not avoid collisions, there are none of all these.
-    """
-    part = avoidance_of(scheme)
-    if part is None:
-        return {}
-    return {
-        "collisions": {
-            "distance": part.distance,
-            "obstacles": part.settings()["obstacles"],
-            "pairs": part.scene(robot).pairs,
-            "left_out": collision_model(robot).left_out if part.self_collision else (),
-            "unwatched": unwatched_links(robot),
-        }
-    }
-
-
-def collision_arrays(scheme: object, robot: Robot, q: Matrix, t: Vector) -> dict[str, Any]:
-    """Return a record's arrays ``distance`` and ``nearest`` where a scheme avoids collisions.
-
-    q (k, n) [rad] are the joint positions at times t (k,) [s].
-    """
-    part = avoidance_of(scheme)
-    if part is None:
-        return {}
-    return dict(zip(("distance", "nearest"), part.scene(robot).nearest(q, t), strict=True))

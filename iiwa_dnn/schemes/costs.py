@@ -91,8 +91,8 @@ class CyclicMotion(WeightedCost):
     Attributes:
         weight: w, at least 0.
         gain: The paper's m [1/s], at least 0.
-        home: Posture q_0 to come back to [rad], (n,). None stands for wherever the robot is: then
-            nothing draws it; `simulate` and `Controller` anchor it where they begin.
+        home: Posture q_0 to come back to [rad], (n,). None stands for wherever the robot is:
+            `Scheme.build_qp` anchors it there, `simulate` and `Controller` where they begin.
     """
 
     kernel = staticmethod(add_cyclic_motion)
@@ -116,7 +116,7 @@ class CyclicMotion(WeightedCost):
         home = (0.0,) * robot.dof if self.home is None else self.home
         if len(home) != robot.dof:
             raise InvalidInputError("home", f"has {len(home)} values for {robot.dof} joints")
-        return np.array([self.weight, 0.0 if self.home is None else self.gain, *home])
+        return np.array([self.weight, self.gain, *home])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -97,9 +97,8 @@ class DoubleIndicator(Scheme):
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
         parameters = {field.name: getattr(self, field.name) for field in fields(self)}
-        extra = [limit.settings() for limit in parameters.pop("extra_limits")]
-        parameters |= {"extra_limits": extra} if extra else {}
-        return {"name": "double-indicator", **parameters}
+        extra = tuple(limit.settings() for limit in self.extra_limits)
+        return {"name": "double-indicator", **parameters, "extra_limits": extra}
 
 
 @dataclass(frozen=True)

@@ -125,7 +125,8 @@ class Scheme:
         """Build the program of one instant; it is not solved here.
 
         Args:
-            conf: Configuration of the robot, n joints.
+            conf: Configuration of the robot, n joints; the posture to come back to where there is
+                none.
             target: Target of the tip; with tasks of other frames, a target by frame name.
             dt: Control period [s], which a gain of inf stands for.
             dq: Joint velocities [rad/s], (n,), or the last command; None: zero.
@@ -136,7 +137,8 @@ class Scheme:
         Raises:
             InvalidInputError: A task's frame has no target, or a part does not fit the robot.
         """
-        program = self.program(checks.instance("conf", conf, Configuration).robot)
+        scheme = self.anchored(checks.instance("conf", conf, Configuration))
+        program = scheme.program(conf.robot)
         if program.needs_period:
             checks.positive("dt", dt)
         q = conf.q

@@ -308,12 +308,6 @@ class RelativePoseTask(FrameTask):
         pose = np.eye(4) if self.pose is None else np.array(self.pose)
         return [*pose[:3, 3], *pose[:3, :3].ravel(), *np.zeros(6)]
 
-    def constants(self, robot: Robot) -> Vector:
-        """Return those of a task of a frame, (21,); without a pose the gain is 0."""
-        found = super().constants(robot)
-        found[GAIN] *= self.pose is not None
-        return found
-
 
 @compiled
 def axis_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:

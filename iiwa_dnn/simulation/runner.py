@@ -21,7 +21,7 @@ from iiwa_dnn.qp.crosscheck import CheckPool, CrossCheck
 from iiwa_dnn.results.record import RATES, Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
-from iiwa_dnn.schemes.collisions import collision_arrays, collision_settings
+from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.simulation.loop import Loop
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
 from iiwa_dnn.simulation.noise import NoiseEntry, SignalChain
@@ -143,6 +143,10 @@ def simulate(
             break
     agreement = pool.finish().worst_of(stages)
     columns = recorder.finish()
+    avoidance = avoidance_of(controller.scheme)
+    if avoidance is not None:
+        nearest = avoidance.scene(robot).nearest(columns["q"], columns["t"])
+        columns |= dict(zip(("distance", "nearest"), nearest, strict=True))
     return Record(
         **columns,
         solution_gap=agreement.solution_gap,
@@ -154,7 +158,6 @@ def simulate(
             "status": _status(recorder, controller, loop.fault),
             "infeasible_step": recorder.infeasible,
         },
-        **collision_arrays(controller.scheme, robot, columns["q"], columns["t"]),
         wall_time_s=time.perf_counter() - began,
     )
 
@@ -189,17 +192,18 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     program = controller.program
     integrator = solver.settler if controller.mode == "converged" else solver.follower
     ends = [path.duration for path in by_frame(controller.reference, "").values()]
-    rates: dict[str, Any] = {}
+    limits: dict[str, Any] = {}
     if program.rate_limits is not None:
         of_rates = program.rate_limits.constants(robot).reshape(6, -1)[3:5]
-        rates = dict(zip(RATES, of_rates, strict=False))
+        limits |= dict(zip(RATES, of_rates, strict=False))
+    if (avoidance := avoidance_of(controller.scheme)) is not None:
+        limits["collisions"] = avoidance.overview(robot)
     return {
         "dt": controller.dt,
         "duration": duration,
         "path_duration": max(ends, default=duration),
         "mode": controller.mode,
         "policy": controller.policy,
-        **collision_settings(controller.scheme, robot),
         "versions": {name: _version(name) for name in _PACKAGES},
         "robot": robot.name,
         "joints": robot.joint_names,
@@ -209,7 +213,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         "q_lower": robot.q_lower,
         "q_upper": robot.q_upper,
         "dq_max": robot.dq_max,
-        **rates,
+        **limits,
         "beyond_reach": beyond_reach(controller.reference, robot),
         "q0": start.q,
         "tol": solver.tol,

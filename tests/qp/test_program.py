@@ -11,7 +11,7 @@ import scipy.sparse as spa
 from helpers_qp import known_qp
 from iiwa_dnn import QP, DNNSolver, InvalidInputError, Residuals, Status, solve_problem
 from iiwa_dnn.qp.program import FIELDS
-from iiwa_dnn.qp.residuals import point_of_state
+from iiwa_dnn.qp.residuals import kkt_point
 
 
 def test_missing_parts_become_empty_rows_and_infinite_bounds() -> None:
@@ -111,7 +111,7 @@ def test_residuals_are_those_of_qpsolvers() -> None:
         n, p, m = 6, 2, 4
         state = rng.standard_normal(n + p + m + 2 * n)  # nothing like a solution
         point = np.empty(n + p + m + n)
-        ours = point_of_state(qp.data, *qp.sizes, state, point)
+        ours = kkt_point(qp.views, state, point)
         outside = rng.standard_normal(point.size)  # nobody put it inside its bounds
         for residuals, judged in ((ours, point), (qp.residuals(outside), outside)):
             x, y, z, z_box = np.split(judged, [n, n + p, n + p + m])

@@ -18,16 +18,10 @@ since a control loop asks for it at every step.
 Answered = tuple[float, float, float, float, float]
 """What `Settled` holds, as compiled code returns it."""
 
-TOLERANCE = 0
-"""Index, in a compiled answer's constants, of the tolerance of the residuals;"""
-BUDGET = 1
-"""of the budget of linear systems;"""
-DURATION = 2
-"""of the time to advance [rho];"""
-SUBSTEPS = 3
-"""of the number of explicit sub-steps, 0 for as many as stability needs;"""
-NETWORK = 4
-"""and of the first of the network's own constants."""
+TOLERANCE, BUDGET, DURATION, SUBSTEPS, NETWORK = range(5)
+"""Constants of a compiled answer: the tolerance of the residuals, the budget of linear systems, the
+time to advance [rho], the number of explicit sub-steps, 0 for as many as stability needs, and the
+first of the network's own."""
 
 
 @entry

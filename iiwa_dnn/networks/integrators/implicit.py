@@ -42,6 +42,7 @@ from iiwa_dnn.networks.integrators.implicit_steps import (
     copy_into,
     linear_step,
 )
+from iiwa_dnn.networks.integrators.pseudo_transient import LONGEST
 from iiwa_dnn.networks.projection import field, is_projection, mark_active
 from iiwa_dnn.qp.layout import QPViews, Vector, check_size, qp_views
 from iiwa_dnn.qp.program import QP
@@ -51,8 +52,6 @@ SHORTEST = 30.0
 """Length of the first backward Euler step [rho]."""
 GROWTH = 10.0
 """Growth of that length from round to round."""
-LONGEST = 1e8
-"""Length of the linearly implicit steps, and of the longest backward Euler steps [rho]."""
 STUCK = 15
 """Rounds in which the smallest rate so far is not halved, before the end: there is no solution, or
 rounding keeps the residuals above the tolerance."""

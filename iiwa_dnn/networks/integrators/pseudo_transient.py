@@ -16,7 +16,7 @@ from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import within
 
 LONGEST = 1e8
-"""Longest step of `settle` [rho]."""
+"""Longest implicit step of a network that settles [rho]."""
 SHORTEST = 1e-6
 """Step [rho] below which the field is not followed any more."""
 
