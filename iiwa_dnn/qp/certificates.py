@@ -11,10 +11,10 @@ Where the left side is above the right one, no x is feasible. An entry of w with
 it needs is a residual r, and then every feasible x has :math:`\|x\|_\infty` of at least the
 difference over :math:`\|r\|_1`.
 
-**Unbounded.** A direction d with :math:`Pd = 0`, :math:`Ad = 0`, :math:`Gd \le 0`, d not towards a
-finite bound, and :math:`q^T d < 0`: from any feasible point the cost falls along it for ever. With
-the residuals as they are, every KKT point has an entry of at least :math:`-q^T d` over the sum of
-their absolute values.
+**Unbounded.** A direction d with :math:`Sd = 0`, S the symmetric part of P, :math:`Ad = 0`,
+:math:`Gd \le 0`, d not towards a finite bound, and :math:`q^T d < 0`: from any feasible point the
+cost falls along it for ever. With the residuals as they are, every KKT point has an entry of at
+least :math:`-q^T d` over the sum of their absolute values.
 
 So a certificate has a radius, within which there is no solution. A radius of at least `RADIUS` is
 worth saying, whatever the tolerance of the solver; an infinite one proves that there is none.
@@ -121,6 +121,7 @@ def infeasibility_radius(qp: QP, multipliers: Vector) -> float:
     return _radius(factors, weights, float(residual))
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def unboundedness_radius(qp: QP, direction: Vector) -> float:
     """Compute the radius within which there is no KKT point, as the direction (n,) proves.
 
@@ -130,12 +131,14 @@ def unboundedness_radius(qp: QP, direction: Vector) -> float:
     """
     if not np.isfinite(direction).all():
         return 0.0
-    rows = np.vstack([qp.P, qp.A, qp.G[np.isfinite(qp.h)]])
+    # Twice the symmetric part: of the smallest numbers halves would be rounded.
+    rows = np.vstack([qp.P + qp.P.T, qp.A, qp.G[np.isfinite(qp.h)]])
     wrong = rows @ direction
     first = qp.q.size + qp.b.size
     # Below zero, an inequality's row is no residual.
     wrong[:first] = np.abs(wrong[:first])
     wrong = np.maximum(wrong + _rounding(rows, direction), 0.0)
+    wrong[: qp.q.size] *= 0.5
     outside = np.abs(direction[_towards_bound(qp, direction)]).sum()
     return _radius(qp.q, direction, float(wrong.sum() + outside))
 
@@ -145,7 +148,7 @@ def _radius(factors: Vector, weights: Vector, residual: float) -> float:
     value = -float(factors @ weights + _rounding(factors, weights))
     if not value > 0.0:
         return 0.0
-    return value / residual if residual > 0.0 else np.inf
+    return value / residual if residual != 0.0 else np.inf
 
 
 def _rounding(rows: Matrix, vector: Vector) -> Vector:
@@ -188,7 +191,7 @@ def _polished_direction(qp: QP, direction: Vector) -> Vector:
     moves = np.abs(direction) > _SLIGHT
     polished = np.where(moves, direction, 0.0)
     falls = qp.G @ polished < -_SLIGHT * np.abs(qp.G).sum(axis=1)
-    rows = np.vstack([qp.P, qp.A, qp.G[~falls & np.isfinite(qp.h)]])[:, moves]
+    rows = np.vstack([0.5 * qp.P + 0.5 * qp.P.T, qp.A, qp.G[~falls & np.isfinite(qp.h)]])[:, moves]
     polished[moves] = _on_null_space(rows, polished[moves])
     return polished
 

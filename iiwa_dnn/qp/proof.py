@@ -233,8 +233,7 @@ def _enclose(
     Returns:
         Center and radii, (n + k,) both; None if it is not shown that there is exactly one solution.
     """
-    k = d.size
-    K = np.block([[S, C.T], [C, np.zeros((k, k))]])
+    K = np.block([[S, C.T], [C, np.zeros((d.size, d.size))]])
     r = np.concatenate([-q, d])
     try:
         R = np.linalg.inv(K)
@@ -259,12 +258,11 @@ def _bound(qp: QP, rows: _Rows, distance: float, missing: float, weak: bool) -> 
 
     Where a multiplier is `weak`, `missing` bounds the change of the cost vector that makes it none.
     """
-    unit = rows.unit
-    curvature = _curvature(rows.S, qp.A, unit, _SHARE if weak else 0.0)
+    curvature = _curvature(rows.S, qp.A, rows.unit, _SHARE if weak else 0.0)
     if not curvature > 0.0:
         return np.inf, FLAT if weak else NOT_CONVEX
     if weak:
-        distance = (1.0 + 2.0 * unit) * (distance + (1.0 + unit) * missing / curvature)
+        distance = (1.0 + 2.0 * rows.unit) * (distance + (1.0 + rows.unit) * missing / curvature)
     if not distance < np.inf:
         return np.inf, FAR
     return distance, WEAK if weak else ""
@@ -278,19 +276,22 @@ def _curvature(S: Matrix, A: Matrix, unit: float, share: float) -> float:
         A: Equality rows, (p, n).
         unit: Bound on the relative rounding of a sum.
         share: Share of the smallest eigenvalue to be shown; 0 asks for semidefiniteness alone,
-            to which a variable without cost does no harm.
+            to which a variable does no harm that is neither in the cost nor, where A^T A is
+            added, in an equality row.
 
     Returns:
         sigma with :math:`d^T P d \ge \sigma \|d\|^2` where A d = 0; negative if none is shown.
     """
     trace = float(np.trace(S))
     squares = float((A * A).sum())
-    for weight in (0.0, trace / squares) if squares > 0.0 else (0.0,):
-        empty = (share == 0.0) & ~np.any(S != 0.0, axis=1)
+    added = [(trace / squares, np.vstack([S, A]))] if squares > 0.0 else []
+    for weight, taking_part in [(0.0, S), *added]:
+        empty = (share == 0.0) & ~np.any(taking_part != 0.0, axis=0)
         filling = np.where(empty, trace + (trace == 0.0), 0.0)
         M = S + weight * (A.T @ A) + np.diag(filling)
-        size = np.abs(S).sum() + weight * (np.abs(A).sum(axis=1) ** 2).sum() + filling.sum()
-        loss = 2.0 * unit * float(size) + _TINY
+        loss = _TINY + 2.0 * unit * float(
+            np.abs(S).sum() + weight * (np.abs(A).sum(axis=1) ** 2).sum() + filling.sum()
+        )
         shift = 2.0 * loss
         try:
             if share > 0.0:
