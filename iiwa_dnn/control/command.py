@@ -12,7 +12,7 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.naming import DONE
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
-from iiwa_dnn.qp.layout import IntVector, Sizes, offsets
+from iiwa_dnn.qp.layout import IntVector, Sizes, data_size, offsets
 from iiwa_dnn.schemes.program import ACCELERATION, LimitNames
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -106,7 +106,7 @@ class RowLayout:
         self.shape = (dof,)
         n, m, p = sizes
         lengths = [
-            (n + m + p) * (n + 1) + 2 * n,
+            data_size(*sizes),
             2 * n + m + p,
             FIGURES,
             PLACEMENT,

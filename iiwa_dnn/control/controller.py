@@ -38,6 +38,7 @@ from iiwa_dnn.control.yielding import BRAKE, guard_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp.layout import data_size
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
@@ -392,7 +393,7 @@ class Controller:
         program = self.program
         past = self._state.past[: LAST + 2].copy()
         past[Q] = q
-        data = np.empty(program.data_size)
+        data = np.empty(data_size(*program.sizes))
         program.kinematics.update(q)
         program.write(data, targets, past, self.dt, t)
         return QP.from_data(data, program.sizes)

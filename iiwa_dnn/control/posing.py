@@ -32,6 +32,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Solution, Vector
+from iiwa_dnn.qp.layout import data_size
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.obstacles import Obstacle
@@ -196,7 +197,7 @@ def _descend(
 
 def _at(program: StepProgram, q: Vector, goal: Matrix) -> _Point:
     """Write the program at joint positions q (n,) [rad] for a goal (1, 18)."""
-    data = np.empty(program.data_size)
+    data = np.empty(data_size(*program.sizes))
     program.kinematics.update(q)
     program.write(data, goal, np.array([q, 0.0 * q, 0.0 * q]), np.inf)
     qp = QP.from_data(data, program.sizes)

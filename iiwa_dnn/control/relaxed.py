@@ -44,7 +44,7 @@ from iiwa_dnn.networks.integrators.base import TOLERANCE
 from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import row_dot
-from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, qp_views
+from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, copied, data_size, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.schemes.program import add_soft
 
@@ -116,13 +116,6 @@ def relaxed_size(sizes: Sizes) -> int:
     """
     n, m, p = sizes
     return (3 * n + 3 + m + p) + (3 * n + m + p)
-
-
-@compiled
-def copied(out: Vector, values: Vector) -> None:
-    """Write values (k,) into the first k of `out`."""
-    for i in range(values.size):
-        out[i] = values[i]
 
 
 @compiled
@@ -244,12 +237,6 @@ def _copy_limits(qp: QPViews, other: QPViews) -> None:
     copied(other.h, qp.h)
     for j in range(qp.h.size):
         copied(other.G[j], qp.G[j])
-
-
-@compiled
-def data_size(n: int, m: int, p: int) -> int:
-    """Count the numbers of a program, `QP.data`."""
-    return (n + m + p) * (n + 1) + 2 * n
 
 
 @compiled

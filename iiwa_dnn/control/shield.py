@@ -30,12 +30,12 @@ from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.relaxed import copied
 from iiwa_dnn.control.state import BEFORE, LAST, YIELDS, ControllerState
 from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite
+from iiwa_dnn.qp.layout import copied
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes import (

@@ -22,7 +22,7 @@ from iiwa_dnn.control.command import (
     RowViews,
     row_views,
 )
-from iiwa_dnn.control.relaxed import Yielding, copied, relaxed_size
+from iiwa_dnn.control.relaxed import Yielding, relaxed_size
 from iiwa_dnn.control.state import (
     BEFORE,
     DELAY,
@@ -50,7 +50,7 @@ from iiwa_dnn.networks.integrators.base import (
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.qp.dense import all_finite
-from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, qp_views
+from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, copied, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.base import Ahead, enter_path

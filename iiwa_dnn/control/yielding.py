@@ -24,7 +24,6 @@ from iiwa_dnn.control.relaxed import (
     MOST_SYSTEMS,
     Yielding,
     attained,
-    copied,
     largest_entry,
     largest_factor,
     nearest_within,
@@ -42,7 +41,7 @@ from iiwa_dnn.control.stopping import (
 from iiwa_dnn.networks.integrators.base import TOLERANCE
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import row_dot
-from iiwa_dnn.qp.layout import QPViews, qp_views
+from iiwa_dnn.qp.layout import QPViews, copied, qp_views
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.limits import braking

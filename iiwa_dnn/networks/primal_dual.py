@@ -49,7 +49,7 @@ from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 SHARE = 0.5
-"""Alpha times the norm of H in the one-layer network."""
+"""Alpha times the norm of H in the one-layer network; alpha itself where H is zero."""
 
 
 class Clipped(NamedTuple):
@@ -123,7 +123,7 @@ class OneLayerNetwork(PrimalDualNetwork):
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
         """Set a program up."""
         H, c, lower, upper = variational(qp)
-        alpha = SHARE / float(np.linalg.norm(H, 2))
+        alpha = SHARE / (float(np.linalg.norm(H, 2)) or 1.0)
         eye = np.eye(c.size)
         matrix = eye - alpha * H
         outer = matrix if self.corrected else eye

@@ -9,7 +9,7 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.solution import SOLVE
+from iiwa_dnn.qp.solution import SOLVE, Solution
 
 if TYPE_CHECKING:
     import qpsolvers
@@ -48,24 +48,27 @@ def solve_problem(
     else:
         qp = QP.from_qpsolvers(problem)
     qp.check_values()
-    if solver is None:
-        solver = DNNSolver(tol=tol)
-    else:
-        checks.instance("solver", solver, DNNSolver).reset()
+    solver = DNNSolver(tol=tol) if solver is None else solver
+    checks.instance("solver", solver, DNNSolver).reset()
+    return solve_cost_of_any_size(solver, qp, sharpen).to_qpsolvers(problem)
+
+
+def solve_cost_of_any_size(solver: DNNSolver, qp: QP, sharpen: bool = False) -> Solution:
+    """Solve a program whose values were checked, a slight cost scaled to 1.
+
+    Of a slight cost, any x at all would be within an absolute tolerance on the residuals.
+    """
     n = qp.sizes[0]
-    data = qp.data.copy()
-    cost = data[: n * n + n]
+    scaled = QP.from_data(qp.data.copy(), qp.sizes)
+    cost = scaled.data[: n * n + n]
     largest = float(np.abs(cost).max())
-    # Of a slight cost, any x at all would be within an absolute tolerance on the residuals.
     scale = largest if 0.0 < largest < _SLIGHT else 1.0
     cost /= scale
-    scaled = QP.from_data(data, qp.sizes)
     solution = solver.solve(scaled)
     if sharpen:
         solution = solver.sharpen(scaled, solution)
     solution.point[n:] *= scale
-    dual = solution.dual * scale
-    return solution._replace(dual=dual, gap=solution.gap * scale).to_qpsolvers(problem)
+    return solution._replace(dual=solution.dual * scale, gap=solution.gap * scale)
 
 
 SOLVE.append(solve_problem)

@@ -16,7 +16,7 @@ from iiwa_dnn.networks.integrators.scaling import settle_scaled, settle_steep
 from iiwa_dnn.networks.projection import ProjectionNetwork, is_projection
 from iiwa_dnn.qp.certificates import find_certificate
 from iiwa_dnn.qp.dense import is_convex
-from iiwa_dnn.qp.layout import Sizes, Vector, check_size
+from iiwa_dnn.qp.layout import Sizes, Vector, check_size, data_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.qp.solution import Solution, Status
@@ -63,23 +63,24 @@ class DNNSolver:
         self._warm.clear()
 
     def disturb(self, noise: Vector) -> None:
-        """Add noise (n,) [the unit of x] to x of the network's state; the next call starts there.
+        """Add noise (k,) [the unit of x] to the first k entries of x in the network's state.
 
-        Before the first call there is no state yet, and nothing happens.
+        The next call starts there. Before the first one there is no state yet, and nothing happens.
 
         Raises:
-            InvalidInputError: The network computes x from its state, which does not hold it.
+            InvalidInputError: The network computes x from its state, which does not hold it; or
+                there is more noise than entries of x.
         """
         if not self.network.carries_x:
             raise InvalidInputError("network", "holds no x in its state that could be disturbed")
-        for state in self._warm.values():
-            state[: noise.size] += noise
+        added = checks.array("noise", noise, (-1,))
+        for sizes, state in self._warm.items():
+            state[: added.size] += check_size("noise", added, min(added.size, sizes[0]))
 
     def state_for(self, sizes: Sizes) -> Vector:
         """Return the state itself, (size,), from which a program of sizes (n, m, p) starts."""
         if sizes not in self._warm:
-            n, m, p = sizes
-            some = QP.from_data(np.zeros((n + m + p) * (n + 1) + 2 * n), sizes)
+            some = QP.from_data(np.zeros(data_size(*sizes)), sizes)
             self._keep(sizes, np.zeros(self.network.state_size(some)))
         return self._warm[sizes]
 
@@ -188,9 +189,13 @@ class DNNSolver:
 
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
+
+        Raises:
+            InvalidInputError: The duration is no finite number above 0; or as
+                `ExplicitEuler.advance`.
         """
+        time = checks.positive("duration", duration) / self.network.rho
         state = self._take(qp)
-        time = duration / self.network.rho
         iterations = self.follower.advance(self.network, qp, state, time)
         return self._advanced(qp, state, iterations, time)
 

@@ -75,6 +75,7 @@ class TrackingSolver(DNNSolver):
     def __post_init__(self) -> None:
         """Check the settings."""
         super().__post_init__()
+        checks.instance("formula", self.formula, Formula)
         checks.integer("substeps", self.substeps, 1)
 
     def reset(self) -> None:
@@ -91,7 +92,11 @@ class TrackingSolver(DNNSolver):
 
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
+
+        Raises:
+            InvalidInputError: The duration is no finite number above 0.
         """
+        checks.positive("duration", duration)
         if qp.sizes not in self._warm:
             self.reset()
         state = self._take(qp)

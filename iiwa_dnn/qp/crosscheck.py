@@ -111,7 +111,7 @@ class CrossCheck:
 
     def __post_init__(self) -> None:
         """Check the names and the tolerances; raises InvalidInputError naming the argument."""
-        for name in self.solvers:
+        for name in checks.offers("solvers", self.solvers, "__iter__"):
             if name not in ("proxqp", "osqp", PROOF):
                 checks.one_of("solvers", name, references())
         checks.positive("tolerance", self.tolerance)
@@ -135,8 +135,8 @@ class CrossCheck:
                 multipliers a proof begins with.
         """
         n, m, p = qp.sizes
-        size = n if np.size(answer) == n else 2 * n + m + p
-        point = check_size("answer", np.asarray(answer), size)
+        point = np.asarray(answer)
+        check_size("answer", point, n if point.size == n else 2 * n + m + p)
         return self.check_block(qp.data[np.newaxis], qp.sizes, point[np.newaxis])
 
     def check_block(self, programs: Matrix, sizes: Sizes, answers: Matrix) -> Agreement:
@@ -242,8 +242,7 @@ def _ask_proxqp(qp: QP) -> Vector:
 def _proven(name: str, qp: QP, point: Vector) -> tuple[float, float, float, int]:
     """Prove a point (2 n + m + p,); returns the bound, and the other entries of `Agreement`."""
     bound = prove_point(qp, point).bound
-    proven = bound < np.inf
-    return bound, np.nan, 0.0 if proven else np.inf, 0 if proven else -1
+    return (bound, np.nan, 0.0, 0) if bound < np.inf else (bound, np.nan, np.inf, -1)
 
 
 class CheckPool:

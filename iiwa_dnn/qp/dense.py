@@ -10,8 +10,9 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp.layout import Matrix, Vector, larger
 
 ASYMMETRY = 1e-5
-"""Asymmetry of P that passes, relative to its largest entry: a matrix that was computed in single
-precision has it. The answer is a KKT point of P as it is."""
+"""Difference of P_ij and P_ji that passes, relative to sqrt(P_ii P_jj), which no entry of a
+semidefinite matrix exceeds: a matrix that was computed in single precision has it. The answer is a
+KKT point of P as it is."""
 ROUNDING = 4e-15
 """Negative eigenvalues of P that pass as rounding, relative to n times its largest entry. They are
 those of a product J^T J in double precision; of single precision they are refused."""
@@ -143,21 +144,31 @@ def _rotate(K: Matrix, i: int, k: int) -> None:
 
 
 @compiled
-def is_convex(P: Matrix, K: Matrix) -> bool:
-    """Check that P (n, n) is symmetric to `ASYMMETRY`, positive semidefinite to n `ROUNDING`.
+def is_symmetric(P: Matrix, largest: float) -> bool:
+    """Check that P (n, n), with a largest entry, is symmetric to `ASYMMETRY` and n `ROUNDING`."""
+    rounding = ROUNDING * P.shape[0] * largest
+    for i in range(P.shape[0]):
+        for k in range(i):
+            size = np.sqrt(max(P[i, i], 0.0)) * np.sqrt(max(P[k, k], 0.0))
+            if not abs(P[i, k] - P[k, i]) <= ASYMMETRY * size + rounding:
+                return False
+    return True
 
-    Both are relative to its largest entry. K (n, n) is scratch.
+
+@compiled
+def is_convex(P: Matrix, K: Matrix) -> bool:
+    """Check that P (n, n) is symmetric (`is_symmetric`), positive semidefinite to n `ROUNDING`.
+
+    The latter is relative to its largest entry. K (n, n) is scratch.
     """
     largest = 0.0
-    asymmetry = 0.0
     for i in range(P.shape[0]):
         for k in range(P.shape[0]):
             K[i, k] = P[i, k]
             largest = larger(largest, abs(P[i, k]))
-            asymmetry = larger(asymmetry, abs(P[i, k] - P[k, i]))
     for i in range(P.shape[0]):
         K[i, i] += ROUNDING * P.shape[0] * largest + 1e-300
-    return asymmetry <= ASYMMETRY * largest and cholesky_factor(K)
+    return is_symmetric(P, largest) and cholesky_factor(K)
 
 
 @compiled

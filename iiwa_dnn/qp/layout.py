@@ -35,6 +35,12 @@ def check_size(argument: str, array: Vector, size: int) -> Vector:
 
 
 @compiled
+def data_size(n: int, m: int, p: int) -> int:
+    """Count the numbers of a program, `QP.data`."""
+    return (n + m + p) * (n + 1) + 2 * n
+
+
+@compiled
 def offsets(n: int, m: int, p: int) -> tuple[int, int, int, int]:
     """Compute ``(at_q, at_G, at_A, at_lb)``, the beginnings of the parts of `QP.data`."""
     at_q = n * n
@@ -90,6 +96,13 @@ def qp_views(data: Vector, n: int, m: int, p: int) -> QPViews:
         data[at_lb : at_lb + n],
         data[at_lb + n : at_lb + 2 * n],
     )
+
+
+@compiled
+def copied(out: Vector, values: Vector) -> None:
+    """Write values (k,) into the first k of `out`."""
+    for k in range(values.size):
+        out[k] = values[k]
 
 
 @compiled

@@ -23,14 +23,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp.dense import ASYMMETRY, all_finite, is_convex
+from iiwa_dnn.qp.dense import all_finite, is_convex, is_symmetric
 from iiwa_dnn.qp.layout import (
     Matrix,
     QPViews,
     Sizes,
     Vector,
     check_size,
+    data_size,
     field_shapes,
+    offsets,
     qp_views,
 )
 from iiwa_dnn.qp.residuals import point_residuals
@@ -61,10 +63,9 @@ def _places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
 @lru_cache
 def absent_fields(n: int) -> list[NDArray[np.float64]]:
     """Return an empty array, or infinite bounds (n,), for each field that is left out."""
-    no_rows = np.empty((0, n))
     nothing = np.empty(0)
     free = np.full(n, np.inf)
-    return [nothing, nothing, no_rows, nothing, no_rows, nothing, -free, free]
+    return [nothing, nothing, np.empty((0, n)), nothing, np.empty((0, n)), nothing, -free, free]
 
 
 class _Field:
@@ -130,10 +131,11 @@ class QP:
             InvalidInputError: An array has the wrong shape; the message names it.
         """
         n = q.size if type(q) is np.ndarray else np.size(q)
-        arguments = (P, q, G, h, A, b, lb, ub)
         arrays = [
             absent if argument is None else real_array(name, argument)
-            for name, argument, absent in zip(FIELDS, arguments, absent_fields(n), strict=True)
+            for name, argument, absent in zip(
+                FIELDS, (P, q, G, h, A, b, lb, ub), absent_fields(n), strict=True
+            )
         ]
         self.sizes = sizes = n, arrays[3].size, arrays[5].size
         if n == 0 or [v.shape for v in arrays] != field_shapes(sizes):  # rarely
@@ -147,8 +149,7 @@ class QP:
         Raises:
             InvalidInputError: The array's size is not that of such a program.
         """
-        n, m, p = sizes
-        check_size("data", data, (n + m + p) * (n + 1) + 2 * n)
+        check_size("data", data, data_size(*sizes))
         qp = cls.__new__(cls)
         qp.data = data
         qp.sizes = sizes
@@ -204,13 +205,14 @@ class QP:
         """Check for values that no convex solver could make sense of.
 
         Raises:
-            InvalidInputError: As `check_numbers`; or P is not symmetric to 1e-5 of its largest
-                entry, or not positive semidefinite to 4e-15 n of it.
+            InvalidInputError: As `check_numbers`; or P is not symmetric, each pair of entries to
+                1e-5 sqrt(P_ii P_jj) and 4e-15 n times the largest entry, or not positive
+                semidefinite to the latter.
         """
         if _well_formed(self.data, *self.sizes):
             return
         self.check_numbers()
-        if np.abs(self.P - self.P.T).max() > ASYMMETRY * np.abs(self.P).max():
+        if not is_symmetric(self.P, float(np.abs(self.P).max())):
             raise InvalidInputError("P", "is not symmetric")
         smallest = float(np.linalg.eigvalsh(self.P)[0])
         raise InvalidInputError(
@@ -237,10 +239,8 @@ class QP:
 @compiled
 def _well_formed(data: Vector, n: int, m: int, p: int) -> bool:
     """Check in one pass over the numbers that `QP.check_values` would find nothing."""
-    at_h = n * n + n + m * n
-    at_A = at_h + m
-    at_lb = data.size - 2 * n
-    if not (all_finite(data, 0, at_h) and all_finite(data, at_A, at_lb)):
+    _, _, at_A, at_lb = offsets(n, m, p)
+    if not (all_finite(data, 0, at_A - m) and all_finite(data, at_A, at_lb)):
         return False
     qp = qp_views(data, n, m, p)
     for j in range(m):

@@ -4,7 +4,7 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp.dense import add_row, row_dot
-from iiwa_dnn.qp.layout import QPViews, Triple, Vector, larger
+from iiwa_dnn.qp.layout import QPViews, Triple, Vector, copied, larger
 
 
 @compiled
@@ -49,9 +49,10 @@ def point_residuals(qp: QPViews, point: Vector) -> Triple:
 def kkt_point(qp: QPViews, s: Vector, point: Vector) -> Triple:
     """Write the point [x | y | z | z_box] of a state [x | y | z | ...] into `point`.
 
-    x is put inside its bounds and z made nonnegative. z_box is the part of x minus the gradient
-    P x + q + A^T y + G^T z that the projection on the bounds cuts off: at an equilibrium u - l and
-    the part of the multiplier that the primal projection carries.
+    x is put inside its bounds, and z is made nonnegative, and zero where a row has no limit. z_box
+    is the part of x minus the gradient P x + q + A^T y + G^T z that the projection on the bounds
+    cuts off: at an equilibrium u - l and the part of the multiplier that the primal projection
+    carries.
 
     Returns:
         ``(primal, dual, gap)`` of the point as it is handed out.
@@ -63,10 +64,9 @@ def kkt_point(qp: QPViews, s: Vector, point: Vector) -> Triple:
     at_box = at_z + m
     for i in range(n):
         point[i] = min(max(s[i], qp.lb[i]), qp.ub[i])
-    for j in range(p):
-        point[n + j] = s[n + j]
+    copied(point[n:], s[n:at_z])
     for j in range(m):
-        point[at_z + j] = max(s[at_z + j], 0.0)
+        point[at_z + j] = max(s[at_z + j], 0.0) if qp.h[j] < np.inf else 0.0
     descent = point[at_box:]
     for i in range(n):
         descent[i] = -qp.q[i] - row_dot(qp.P, i, point)

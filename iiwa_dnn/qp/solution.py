@@ -69,9 +69,8 @@ class Residuals(NamedTuple):
     @property
     def largest(self) -> float:
         """The largest of the three: the KKT residual that records and reports show."""
-        total = self.primal + self.dual + self.gap
         # max() would drop a NaN that does not come first.
-        return max(self) if total == total else total
+        return float(np.max(self))
 
 
 class Solution(NamedTuple):
@@ -142,20 +141,19 @@ class Solution(NamedTuple):
         """
         import qpsolvers
 
-        point, (n, m, p), status, iterations, time, primal, dual, gap, certificate = self
         extras: dict[str, Any] = {
-            "status": status.value,
-            "iterations": iterations,
-            "network_time": time,
-            "primal_residual": primal,
-            "dual_residual": dual,
-            "duality_gap": gap,
+            "status": self.status.value,
+            "iterations": self.iterations,
+            "network_time": self.network_time,
+            "primal_residual": self.primal,
+            "dual_residual": self.dual,
+            "duality_gap": self.gap,
         }
-        if status is not Status.SOLVED:
-            if certificate is not None:
-                extras["certificate"] = certificate
-            return qpsolvers.Solution(problem, {**extras, "last_x": self.x}, found=False)
-        x = point[:n]
+        x = self.x
+        if not self.found:
+            if self.certificate is not None:
+                extras["certificate"] = self.certificate
+            return qpsolvers.Solution(problem, {**extras, "last_x": x}, found=False)
         bounded = problem.lb is not None or problem.ub is not None
         return qpsolvers.Solution(
             problem,
@@ -163,9 +161,9 @@ class Solution(NamedTuple):
             True,
             float(0.5 * x.dot(problem.P.dot(x)) + x.dot(problem.q)),
             x,
-            point[n : n + p],
-            point[n + p : n + p + m],
-            point[n + p + m :] if bounded else np.empty(0),
+            self.y,
+            self.z,
+            self.z_box if bounded else np.empty(0),
         )
 
 

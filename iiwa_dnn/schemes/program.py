@@ -21,7 +21,7 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp import QP, Matrix, Vector
-from iiwa_dnn.qp.layout import IntMatrix, QPViews, qp_views
+from iiwa_dnn.qp.layout import IntMatrix, QPViews, data_size, qp_views
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
@@ -144,7 +144,7 @@ class Scheme:
         q = conf.q
         velocity = np.zeros(q.size) if dq is None else checks.finite_array("dq", dq, (q.size,))
         targets = np.array(targets_of(conf.robot.tip, program.target_frames, target))
-        data = np.empty(program.data_size)
+        data = np.empty(data_size(*program.sizes))
         program.kinematics.update(q)
         program.write(data, targets, np.array([q, velocity, velocity]), dt)
         return QP.from_data(data, program.sizes)
@@ -362,12 +362,6 @@ class StepProgram:
         """Placement of the first tracked frame, (12,), a view."""
         place: Vector = self.kinematics.placements[self.table[0, 5]]
         return place
-
-    @property
-    def data_size(self) -> int:
-        """Length of the programs' `QP.data`."""
-        n, m, p = self.sizes
-        return (n + m + p) * (n + 1) + 2 * n
 
     def append(self, address: int, constants: Vector, second: int = 0) -> None:
         """Add an entry for another compiled function of a control step.

@@ -12,8 +12,8 @@ import programs
 def test_qpsolvers_lists_the_network_once_and_solves_with_it() -> None:
     iiwa_dnn.qp.register()
     iiwa_dnn.qp.register()
-    assert qpsolvers.available_solvers.count("iiwa_dnn") == 1
-    assert qpsolvers.dense_solvers.count("iiwa_dnn") == 1
+    for names in (qpsolvers.available_solvers, qpsolvers.dense_solvers):
+        assert names.count("iiwa_dnn") == 1
     for seed in range(20):
         qp, known = programs.strictly_convex(np.random.default_rng([41, seed]), None, 1e2)
         problem = qp.to_qpsolvers()

@@ -5,8 +5,7 @@ import pytest
 
 from helpers_qp import known_qp
 from iiwa_dnn import QP, DNNSolver, InvalidInputError, solve_batch
-
-FIELDS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
+from iiwa_dnn.qp.program import FIELDS
 
 
 def stacked(qps: list[QP]) -> dict[str, np.ndarray]:

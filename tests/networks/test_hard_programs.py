@@ -12,9 +12,7 @@ from iiwa_dnn import QP, DNNSolver
 def test_degenerate_vertices_settle() -> None:
     for seed in range(300):
         problem = programs.degenerate(np.random.default_rng([7, seed])).to_qpsolvers()
-        solution = iiwa_dnn.solve_problem(problem)
-        assert solution.found, seed
-        assert solution.is_optimal(2e-9), seed
+        assert iiwa_dnn.solve_problem(problem).is_optimal(2e-9), seed
 
 
 @pytest.mark.parametrize("kind", programs.SCALINGS)
@@ -29,16 +27,9 @@ def test_variables_in_other_units_settle() -> None:
         rng = np.random.default_rng([9, seed])
         qp, x = programs.strictly_convex(rng, 6, 1e3, spoilt=False)
         d = 10.0 ** rng.uniform(-5.0, 5.0, 6)
-        rows = {
-            "G": qp.G * d,
-            "h": qp.h,
-            "A": qp.A * d,
-            "b": qp.b,
-            "lb": qp.lb / d,
-            "ub": qp.ub / d,
-        }
-        solution = DNNSolver().solve(QP(qp.P * np.outer(d, d), qp.q * d, **rows))
-        np.testing.assert_allclose(d * solution.x, x, atol=1e-6)
+        P = qp.P * np.outer(d, d)
+        scaled = QP(P, qp.q * d, qp.G * d, qp.h, qp.A * d, qp.b, qp.lb / d, qp.ub / d)
+        np.testing.assert_allclose(d * DNNSolver().solve(scaled).x, x, atol=1e-6)
 
 
 # The cost is 1e8 and more: gaps of 1e-8 and 1e-6 are one rounding.
@@ -70,6 +61,12 @@ def test_rounding_in_the_cost_is_no_error_and_more_is() -> None:
         assert DNNSolver().solve(qp).status is iiwa_dnn.Status.NOT_CONVEX
         with pytest.raises(iiwa_dnn.InvalidInputError, match="semidefinite"):
             iiwa_dnn.solve_problem(qp)
+    # Each pair is symmetric to 1e-5 in the unit of its own variables.
+    unit = 10.0 ** rng.uniform(-3.0, 3.0, 10)
+    QP(np.outer(unit, unit) * (np.eye(10) + 9e-6 * np.eye(10, k=1)), q).check_values()
+    for side in (-1, 1):
+        with pytest.raises(iiwa_dnn.InvalidInputError, match="is not symmetric"):
+            QP(np.outer(unit, unit) * (np.eye(10) + 2e-5 * np.eye(10, k=side)), q).check_values()
 
 
 @pytest.mark.parametrize("curvature", [1e-4, 1e-7, 1e-8, 1e-9, 1e-10])

@@ -1,7 +1,7 @@
 """All networks: fields, derivatives, equilibria and steps, against their sources' equations."""
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import osqp
@@ -16,6 +16,7 @@ from iiwa_dnn.networks import Flow, Network, NoiseSuppressingNetwork
 from iiwa_dnn.networks.activations import FixedTime
 from iiwa_dnn.networks.admm import AdmmIteration
 from iiwa_dnn.networks.primal_dual import variational
+from iiwa_dnn.networks.tracking import TrackingSolver
 
 Array = np.ndarray
 
@@ -218,6 +219,8 @@ def test_the_yardsticks_iterations_are_osqps() -> None:
 
 
 def test_singular_cost_settles_but_not_with_the_dual_networks() -> None:
+    nothing = d.QP(np.zeros((1, 1)), [1.0], lb=[-1.0])
+    assert d.OneLayerNetwork().rates(nothing, np.zeros(1)) == [-0.5]
     qp = d.QP(np.diag([1.0, 0.0]), [0.0, 1.0], A=[[1.0, 1.0]], b=[1.0], lb=[-5.0, -5.0])
     solution = d.solve_problem(qp, solver=d.DNNSolver(d.PrimalDualNetwork()))
     assert solution.found
@@ -235,6 +238,7 @@ def test_singular_cost_settles_but_not_with_the_dual_networks() -> None:
         (Flow(lambda s: None), r"^rates of Own: has shape \(\)"),
         (Flow(lambda s: -s, lambda s: np.eye(3)), r"^jacobian: must have shape \(4, 4\)"),
         (Flow(lambda s: s), "^Own: no explicit step is known to be stable"),
+        (Flow(lambda s: -1e9 * s), "^Own: needs more than 1000000 explicit steps; give substeps"),
     ],
 )
 def test_a_network_of_wrong_shapes_or_sign_is_named(flow: Flow, problem: str) -> None:
@@ -248,6 +252,12 @@ def test_a_state_without_x_is_not_disturbed() -> None:
     for network in (d.DualNetwork(), SOURCES["activated"][0]):
         with pytest.raises(d.InvalidInputError, match="network"):
             d.DNNSolver(network).disturb(np.zeros(4))
+    solver = d.DNNSolver()
+    solver.solve(MANY_BOUNDS)
+    solver.disturb(np.zeros(4))  # of five variables the first ones may be the joints
+    for noise in (np.zeros(6), np.zeros((1, 5)), "loud"):
+        with pytest.raises(d.InvalidInputError, match="noise"):
+            solver.disturb(noise)
 
 
 @pytest.mark.parametrize(
@@ -263,6 +273,22 @@ def test_a_state_without_x_is_not_disturbed() -> None:
         (lambda: d.ExplicitEuler(substeps=0), "substeps"),
         (lambda: d.ImplicitEuler(step=0.0), "step"),
         (lambda: d.ImplicitEuler(max_steps=0), "max_steps"),
+        (lambda: TrackingSolver(formula="euler"), "formula"),
+        (lambda: d.DNNSolver(network=d.ExplicitEuler()), "network"),
+        (lambda: d.DNNSolver(settler=d.ExplicitEuler()), "settler"),
+        (lambda: d.DNNSolver().solve(MANY_BOUNDS.to_qpsolvers()), "qp"),
+        (lambda: d.DNNSolver().advance(MANY_BOUNDS.to_qpsolvers(), 1e-4), "qp"),
+        *[
+            (partial(call, value), name)
+            for value in (0.0, -1.0, np.nan, np.inf, None, "a")
+            for call, name in (
+                (lambda value: d.DNNSolver(tol=value), "tol"),
+                (lambda value: d.DNNSolver().advance(MANY_BOUNDS, value), "duration"),
+                (lambda value: TrackingSolver().advance(MANY_BOUNDS, value), "duration"),
+                (lambda value: d.CrossCheck(tolerance=value), "tolerance"),
+                (lambda value: d.CrossCheck(reference_tolerance=value), "reference_tolerance"),
+            )
+        ],
     ],
 )  # fmt: skip
 def test_wrong_parameters_are_named(make: Callable[[], object], argument: str) -> None:

@@ -9,10 +9,6 @@ from iiwa_dnn.networks.zeroing import EPSILON
 GAMMA, ETA = 30.0, 20.0
 
 
-def clipped(values: np.ndarray) -> np.ndarray:
-    return np.array([min(max(value, -1.0), 1.0) for value in values])
-
-
 def programs_rates(qp: QP, rate: QP, state: np.ndarray) -> np.ndarray:
     """Equation (12) with M, N, H of (11), block by block, as the authors' program has it."""
     n, p, k = 4, 2, 8
@@ -37,8 +33,8 @@ def programs_rates(qp: QP, rate: QP, state: np.ndarray) -> np.ndarray:
         qp.P @ x + qp.q + qp.A.T @ y + C.T @ mu, qp.A @ x - qp.b, slack + mu - root
     ])  # fmt: skip
     moved = N @ state[: n + p + k] + np.concatenate([rate.q, -rate.b, none(k)])
-    wanted = -moved - ETA * clipped(error)
-    wanted += -GAMMA * clipped(error + ETA * clipped(summed))
+    wanted = -moved - ETA * np.clip(error, -1.0, 1.0)
+    wanted += -GAMMA * np.clip(error + ETA * np.clip(summed, -1.0, 1.0), -1.0, 1.0)
     return np.concatenate([np.linalg.solve(M, wanted), error])
 
 
@@ -46,15 +42,13 @@ def test_rates_are_those_of_the_authors_equations() -> None:
     rng = np.random.default_rng(0)
     network = NoiseSuppressingNetwork(rho=1.0, integral=GAMMA, proportional=ETA)
     for _ in range(20):
-        qp = QP(
-            np.diag(rng.uniform(0.5, 2.0, 4)), rng.standard_normal(4),
-            A=rng.standard_normal((2, 4)), b=rng.standard_normal(2),
-            lb=-rng.uniform(0.5, 1.0, 4), ub=rng.uniform(0.5, 1.0, 4),
-        )  # fmt: skip
-        rate = QP(
-            np.diag(rng.standard_normal(4)), rng.standard_normal(4),
-            A=rng.standard_normal((2, 4)), b=rng.standard_normal(2),
-            lb=np.zeros(4), ub=np.zeros(4),
+        qp, rate = (
+            QP(np.diag(P), rng.standard_normal(4), None, None,
+               rng.standard_normal((2, 4)), rng.standard_normal(2), lb, ub)
+            for P, lb, ub in (
+                (rng.uniform(0.5, 2.0, 4), -rng.uniform(0.5, 1.0, 4), rng.uniform(0.5, 1.0, 4)),
+                (rng.standard_normal(4), np.zeros(4), np.zeros(4)),
+            )
         )  # fmt: skip
         state = 0.3 * rng.standard_normal(network.state_size(qp))
         found = network.flow(qp, rate).rates(state)

@@ -7,7 +7,7 @@ from qpsolvers import problems
 
 import iiwa_dnn as d
 from helpers_qp import known_qp
-from iiwa_dnn.networks.integrators.base import BUDGET, SUBSTEPS, TOLERANCE
+from iiwa_dnn.networks.integrators.base import BUDGET, SUBSTEPS, TOLERANCE, answer_program
 
 DENSE = [name for name in dir(problems) if name.startswith("get_") and "sparse" not in name]
 
@@ -16,11 +16,7 @@ DENSE = [name for name in dir(problems) if name.startswith("get_") and "sparse" 
 def test_every_dense_problem_of_qpsolvers(name: str) -> None:
     made = getattr(problems, name)()
     problem = made if isinstance(made, qpsolvers.Problem) else made[0]
-    solution = d.solve_problem(problem)
-    assert solution.found
-    assert solution.primal_residual() <= 1e-8
-    assert solution.dual_residual() <= 1e-8
-    assert solution.duality_gap() <= 1e-8
+    assert d.solve_problem(problem).is_optimal(1e-8)
 
 
 def test_warm_start_needs_fewer_systems_and_reset_forgets() -> None:
@@ -28,8 +24,7 @@ def test_warm_start_needs_fewer_systems_and_reset_forgets() -> None:
     qp, _ = known_qp(rng, 7, 3, 3)
     solver = d.DNNSolver()
     cold = solver.solve(qp).iterations
-    warm = solver.solve(qp).iterations
-    assert warm == 0
+    assert solver.solve(qp).iterations == 0
     solver.reset()
     assert solver.solve(qp).iterations == cold
     other, _ = known_qp(rng, 5, 1, 1)
@@ -65,13 +60,7 @@ def test_a_program_without_an_answer_does_not_spoil_the_next() -> None:
     assert solver.solve(good).found
 
 
-def test_settings_are_frozen_and_checked_and_reach_the_compiled_answer() -> None:
-    for tol in (0.0, -1.0, float("nan"), float("inf")):
-        with pytest.raises(d.InvalidInputError, match="tol"):
-            d.DNNSolver(tol=tol)
-    for name in ("network", "settler"):
-        with pytest.raises(d.InvalidInputError, match=name):
-            d.DNNSolver(**{name: d.ExplicitEuler()})
+def test_settings_are_frozen_and_reach_the_compiled_answer() -> None:
     solver = d.DNNSolver(
         tol=1e-12, settler=d.ImplicitEuler(max_steps=7), follower=d.ExplicitEuler(substeps=9)
     )
@@ -81,12 +70,10 @@ def test_settings_are_frozen_and_checked_and_reach_the_compiled_answer() -> None
     assert answer is not None
     assert answer.constants[[TOLERANCE, BUDGET, SUBSTEPS]].tolist() == [1e-12, 7, 9]
     assert d.DNNSolver(d.DualNetwork()).compiled_answer((7, 0, 3)) is None
-
-
-@pytest.mark.parametrize("call", [d.DNNSolver.solve, lambda *own: d.DNNSolver.advance(*own, 1e-4)])
-def test_a_problem_of_qpsolvers_is_for_another_function(call) -> None:
-    with pytest.raises(d.InvalidInputError, match=r"qp: must be an iiwa_dnn\.QP"):
-        call(d.DNNSolver(), qpsolvers.Problem(np.eye(2), np.zeros(2)))
+    compiled = d.DNNSolver().compiled_answer((1, 0, 0), 1e-3)
+    for curvature, steps in ((1e2, 585), (1e9, 0)):  # 0: more than a million
+        data = d.QP([[curvature]], [1.0]).data
+        assert answer_program(data, (1, 0, 0), *compiled, np.zeros(3), np.empty(2))[0] == steps
 
 
 def test_sharpened_answers_are_daqps_where_the_cost_is_nearly_flat() -> None:
@@ -135,6 +122,8 @@ def test_a_slight_cost_counts_as_any_other(size: float) -> None:
     qp = d.QP(size * np.eye(1), np.array([-size]), **bounds)
     solution = d.solve_problem(qp)
     assert solution.found
+    batch = d.solve_batch(qp.P, qp.q, **bounds)
+    np.testing.assert_array_equal([batch.x[0], batch.z_box[0]], [solution.x, solution.z_box])
     np.testing.assert_allclose(solution.x, [0.5], rtol=1e-9)
     np.testing.assert_allclose(solution.z_box, [0.5 * size], rtol=1e-6)
     nothing = d.solve_problem(d.QP(np.zeros((1, 1)), np.zeros(1), **bounds))

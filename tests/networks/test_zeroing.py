@@ -29,14 +29,12 @@ LINEAR = QP(np.diag([1.0, 2.0, 4.0]), [1.0, -1.0, 0.5], A=[[1.0, 1.0, 1.0]], b=[
 MATRIX = np.block([[LINEAR.P, LINEAR.A.T], [LINEAR.A, np.zeros((1, 1))]])
 
 
-class MovingProgram:
-    """Equality rows only: P, q, A and b are sinusoids of the time."""
-
-    def at(self, t: float) -> QP:
-        P = np.diag([2.0 + 0.5 * np.sin(t), 3.0, 2.0 + 0.5 * np.cos(2 * t)])
-        q = [np.sin(t), np.cos(3 * t), np.sin(2 * t + 1)]
-        A = [[1.0, np.cos(t), np.sin(t)]]
-        return QP(P, q, A=A, b=[0.5 * np.cos(2 * t)])
+def moving(t: float) -> QP:
+    """A program with equality rows only: P, q, A and b are sinusoids of the time."""
+    P = np.diag([2.0 + 0.5 * np.sin(t), 3.0, 2.0 + 0.5 * np.cos(2 * t)])
+    q = [np.sin(t), np.cos(3 * t), np.sin(2 * t + 1)]
+    A = [[1.0, np.cos(t), np.sin(t)]]
+    return QP(P, q, A=A, b=[0.5 * np.cos(2 * t)])
 
 
 def error_of(qp: QP, state: np.ndarray) -> np.ndarray:
@@ -164,15 +162,15 @@ def test_formulas_are_consistent_stable_and_of_their_order(formula) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("formula", FORMULAS)
 def test_the_residual_is_of_the_declared_order(formula) -> None:
-    program, periods, largest = MovingProgram(), [], []
+    periods, largest = [], []
     for count in (250, 400, 640):
         tau = 2.0 / count
         network = ZeroingNetwork(rho=tau / (0.4 * formula.limit))
         solver, worst = TrackingSolver(network, formula=formula), 0.0
         for k in range(count):
-            solver.advance(program.at(k * tau), tau)
+            solver.advance(moving(k * tau), tau)
             if k > 0.75 * count:
-                worst = max(worst, np.abs(error_of(program.at(k * tau), solver.state)).max())
+                worst = max(worst, np.abs(error_of(moving(k * tau), solver.state)).max())
         periods.append(tau)
         largest.append(worst)
     slope = np.polyfit(np.log(periods), np.log(largest), 1)[0]
@@ -180,13 +178,13 @@ def test_the_residual_is_of_the_declared_order(formula) -> None:
 
 
 def test_a_moving_program_leaves_no_error_where_another_network_lags() -> None:
-    program, network = MovingProgram(), ZeroingNetwork(rho=0.05)
+    network = ZeroingNetwork(rho=0.05)
     still = type("Still", (ZeroingNetwork,), {"flow": lambda s, q, r=None: network.flow(q)})
     solver, blind = TrackingSolver(network), TrackingSolver(still(rho=0.05))
     for k in range(1000):
         for one in (solver, blind):
-            one.advance(program.at(1e-3 * k), 1e-3)
-    last = program.at(1e-3 * 999)
+            one.advance(moving(1e-3 * k), 1e-3)
+    last = moving(1e-3 * 999)
     ours, lag = (np.abs(error_of(last, one.state)).max() for one in (solver, blind))
     assert ours < 1e-3
     assert lag > 100.0 * ours

@@ -17,7 +17,6 @@ from iiwa_dnn.qp.crosscheck import Agreement, CheckPool, CrossCheck
 SOLVERS = ("proxqp", "osqp")
 BOTH = CrossCheck(SOLVERS)
 EACH = [CrossCheck((name,)) for name in SOLVERS]
-IDS = list(SOLVERS)
 
 
 def value(qp: QP, x: np.ndarray) -> float:
@@ -52,7 +51,7 @@ def test_a_block_of_programs_is_judged_one_by_one() -> None:
             np.testing.assert_allclose(together[i], alone[0], rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("check", EACH, ids=IDS)
+@pytest.mark.parametrize("check", EACH, ids=SOLVERS)
 def test_an_infeasible_program_has_no_reference(check: CrossCheck) -> None:
     qp = QP(np.eye(3), np.zeros(3), A=[[1.0, 1.0, 0.0]] * 2, b=[0.0, 1.0])
     with warnings.catch_warnings():
@@ -118,11 +117,10 @@ def test_any_solver_of_qpsolvers_judges(name: str) -> None:
 def test_a_solver_that_is_not_installed_is_refused_with_those_that_are() -> None:
     with pytest.raises(d.InvalidInputError, match=r"daqp.*proof, not 'gurobi'"):
         CrossCheck(("gurobi",))
-    with pytest.raises(d.InvalidInputError, match=r"^solvers\b"):
-        CrossCheck("proxqp")  # a text is a sequence too
     d.qp.register()
-    with pytest.raises(d.InvalidInputError, match="not 'iiwa_dnn'"):
-        CrossCheck(("iiwa_dnn",))
+    for wrong in (("iiwa_dnn",), "proxqp", 3):  # a text is a sequence too
+        with pytest.raises(d.InvalidInputError, match=r"^solvers\b"):
+            CrossCheck(wrong)
 
 
 @pytest.mark.parametrize(
@@ -153,14 +151,6 @@ def test_the_worst_of_the_stages_of_each_step() -> None:
     np.testing.assert_array_equal(worst.reference_residual, [[1e-9, 1e-9], [1e-9, np.inf]])
 
 
-@pytest.mark.parametrize("argument", ["tolerance", "reference_tolerance"])
-@pytest.mark.parametrize("value", [0.0, -1e-6, np.nan, np.inf, None, "tight"])
-def test_a_bad_argument_is_named(argument: str, value: object) -> None:
-    with pytest.raises(d.InvalidInputError, match=rf"^{argument}\b") as caught:
-        CrossCheck(**{argument: value})
-    assert caught.value.argument == argument
-
-
 class Liar(d.DNNSolver):
     """Claims to have solved everything, and has not at one call."""
 
@@ -178,7 +168,7 @@ class Liar(d.DNNSolver):
         return solution._replace(point=point)
 
 
-@pytest.mark.parametrize("check", [*EACH, BOTH], ids=[*IDS, "both"])
+@pytest.mark.parametrize("check", [*EACH, BOTH], ids=[*SOLVERS, "both"])
 def test_a_run_with_one_wrong_answer_names_step_and_solver(check: CrossCheck) -> None:
     record = run(solver=Liar(wrong_at=17), check=check, duration=0.03)
     assert np.flatnonzero(record.crosscheck_gap > 1e-6).tolist() == [17]

@@ -16,12 +16,10 @@ from iiwa_dnn.qp.residuals import kkt_point
 
 def test_missing_parts_become_empty_rows_and_infinite_bounds() -> None:
     qp = QP(np.eye(3), np.zeros(3))
-    assert qp.G.shape == (0, 3)
-    assert qp.A.shape == (0, 3)
+    assert qp.G.shape == qp.A.shape == (0, 3)
     assert (qp.lb == -np.inf).all()
     assert (qp.ub == np.inf).all()
-    problem = qp.to_qpsolvers()
-    assert problem.is_unconstrained
+    assert qp.to_qpsolvers().is_unconstrained
 
 
 def test_sparse_and_single_row_problems_are_taken() -> None:
@@ -136,6 +134,9 @@ def test_multipliers_of_absent_limits_leave_the_gap_alone() -> None:
         ([0.0, -0.25], (0.0, 0.25, 1.0)),
     ):
         assert qp.residuals(np.array([0.0, 0.0, 0.0, *z_box])) == expected
+    # The multiplier of a row that was active before it lost its limit.
+    state = np.array([0.0, 0.0, 4e-129, *np.zeros(4)])
+    assert kkt_point(qp.views, state, np.empty(5)) == (0.0, 0.0, 0.0)
 
 
 def test_data_of_another_size_is_refused() -> None:
@@ -170,6 +171,5 @@ def test_multipliers_without_constraints_are_empty_as_those_of_qpsolvers() -> No
         ours = DNNSolver().solve(QP.from_qpsolvers(problem)).to_qpsolvers(problem)
         theirs = qpsolvers.solve_problem(problem, solver="osqp", raise_error=False)
         for name in ("x", "y", "z", "z_box"):
-            one_size, other_size = getattr(ours, name).size, getattr(theirs, name).size
-            assert one_size == other_size, (name, arguments)
+            assert getattr(ours, name).size == getattr(theirs, name).size, (name, arguments)
         assert ours.is_optimal(1e-8)

@@ -18,6 +18,9 @@ from iiwa_dnn.qp.residuals import kkt_point
 SAFETY = 0.95
 """Share of the computed stable step that is used: the bound itself is only marginally stable."""
 
+MOST = 1_000_000
+"""Largest number of sub-steps that stability may ask for in one `advance`."""
+
 
 @dataclass(frozen=True)
 class ExplicitEuler(Integrator):
@@ -45,16 +48,18 @@ class ExplicitEuler(Integrator):
             Sub-steps taken.
 
         Raises:
-            InvalidInputError: No step is known to be stable, as where P is singular, and
-                `substeps` was not given. The message names the network.
+            InvalidInputError: No step is known to be stable, as where P is singular, or more than
+                `MOST` steps are needed, and `substeps` was not given. The message names the
+                network.
         """
         check_size("state", state, network.state_size(qp))
         rates = network.flow(qp).rates
         count = self.substeps
         if count is None:
             stable = SAFETY * network.stable_step(qp, state)
-            if not stable > 0.0:
-                problem = "no explicit step is known to be stable (is P singular?)"
+            if not (stable > 0.0 and duration <= MOST * stable):
+                unknown = "no explicit step is known to be stable (is P singular?)"
+                problem = f"needs more than {MOST} explicit steps" if stable > 0.0 else unknown
                 raise InvalidInputError(
                     type(network).__name__, f"{problem}; give substeps, or integrate implicitly"
                 )
@@ -73,7 +78,8 @@ def follow(qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vec
     It reads constants (k,), advances the state (size,) and writes the point (2n + m + p,).
 
     Returns:
-        Sub-steps, 0 if none are stable; time [rho]; and the residuals of the point.
+        Sub-steps, 0 if none are stable, or more than `MOST` needed; time [rho]; and the residuals
+        of the point.
     """
     duration = constants[DURATION]
     count = int(constants[SUBSTEPS])
@@ -84,7 +90,7 @@ def follow(qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vec
         enter_rates(rates, qp, own, state, values)
         mark_active(qp, state, values, active)
         stable = SAFETY * stable_step(qp, active)
-        if not stable > 0.0:
+        if not (stable > 0.0 and duration <= MOST * stable):
             return 0, 0.0, np.inf, np.inf, np.inf
         count = max(1, int(np.ceil(duration / stable)))
     step = duration / count

@@ -39,12 +39,11 @@ from iiwa_dnn.networks.integrators.base import (
 from iiwa_dnn.networks.integrators.implicit_steps import (
     Condensed,
     backward_euler,
-    copy_into,
     linear_step,
 )
 from iiwa_dnn.networks.integrators.pseudo_transient import LONGEST
 from iiwa_dnn.networks.projection import field, is_projection, mark_active
-from iiwa_dnn.qp.layout import QPViews, Vector, check_size, qp_views
+from iiwa_dnn.qp.layout import QPViews, Vector, check_size, copied, qp_views
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point, within
 
@@ -125,7 +124,7 @@ def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -
     new = np.empty(s.size)
     systems = backward_euler(qp_views(data, n, m, p), s, step, new, 1e-12, 2 * MAX_NEWTON, matrix)
     if systems >= 0:
-        copy_into(s, new)
+        copied(s, new)
     return systems
 
 
@@ -169,8 +168,8 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         if linear_step(qp, s, now, LONGEST, matrix, new):
             new_rate = field(qp, new, then)
             if new_rate < 0.5 * rate:
-                copy_into(s, new)
-                copy_into(now, then)
+                copied(s, new)
+                copied(now, then)
                 rate = new_rate
                 time += LONGEST
                 continue
@@ -184,7 +183,7 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
             continue
         systems += taken
         time += step
-        copy_into(s, new)
+        copied(s, new)
         rate = field(qp, s, now)
         if step < LONGEST:
             step *= GROWTH

@@ -36,7 +36,7 @@ import numpy as np
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.projection import add_transposed, rows_times, write_slacks
 from iiwa_dnn.qp.dense import add_outer, cholesky_factor, factor_solve, times
-from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, larger
+from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, copied, larger
 
 SLOPE = 0.3
 """Slope at which a line search may end, relative to that at its start."""
@@ -118,13 +118,6 @@ def linear_step(
 
 
 @compiled
-def copy_into(out: Vector, values: Vector) -> None:
-    """Copy all values (k,) into the first entries of `out`."""
-    for k in range(values.size):
-        out[k] = values[k]
-
-
-@compiled
 def backward_euler(
     qp: QPViews,
     s: Vector,
@@ -146,7 +139,7 @@ def backward_euler(
     descent = np.empty(n)
     direction = np.empty(n)
     slacks = np.empty(matrix.values.size)
-    copy_into(new, s)
+    copied(new, s)
     # A slack is known to its rounding, and its multiplier to `step` times that.
     largest = 1.0
     for i in range(n):

@@ -34,8 +34,7 @@ def settle_scaled(
     n, m, p = qp.sizes
     rows = np.vstack([qp.A, qp.G])
     units = balanced(np.block([[qp.P, rows.T], [rows, np.zeros((m + p, m + p))]]))
-    own = units[:n]
-    of_rows = units[n:]
+    own, of_rows = np.split(units, [n])
     rows = of_rows[:, np.newaxis] * rows * own
     limits = of_rows * np.concatenate([qp.b, qp.h])
     P = own[:, np.newaxis] * qp.P * own
