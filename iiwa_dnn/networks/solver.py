@@ -104,16 +104,27 @@ class DNNSolver:
         own = ExplicitEuler if duration > 0.0 else ImplicitEuler
         if type(integrator) is not own or not (is_projection(network) or substeps):
             return None
-        constants = [self.tol, self.settler.max_steps, duration / network.rho, substeps or 0]
         address = enter_answer.address(follow if duration > 0.0 else settle)
         rates = enter_rates.address(function) if duration > 0.0 else 0
-        return CompiledAnswer(address, rates, np.array([*constants, *network.constants(sizes)]))
+        return CompiledAnswer(
+            address,
+            rates,
+            np.array(
+                [
+                    self.tol,
+                    self.settler.max_steps,
+                    duration / network.rho,
+                    substeps or 0,
+                    *network.constants(sizes),
+                ]
+            ),
+        )
 
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and judge the point it has reached.
 
         Where it does not settle and no certificate is found, it starts once more, from zero, in
-        coordinates in which nothing of the program stands out.
+        coordinates in which nothing of the program stands out, and then again with shorter steps.
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).
@@ -122,17 +133,18 @@ class DNNSolver:
             The solution; `found` only if every residual is at most `tol` and P is convex.
         """
         state = self._take(qp)
-        n, m, p = qp.sizes
-        point = np.empty(2 * n + m + p)
+        point = np.empty(qp.q.size + sum(qp.sizes))
         settled = self.settler.settle(self.network, qp, state, point, self.tol)
         status = self._status(qp, settled)
         certificate = None
         if status is Status.NOT_SETTLED:
             status, certificate = find_certificate(qp, point)
-        if status is Status.NOT_SETTLED and is_projection(self.network):
-            left = self.settler.max_steps - settled[0]
-            settled = settle_scaled(qp, state, point, self.tol, left, settled)
-            status = self._status(qp, settled)
+        for gently in (False, True) if is_projection(self.network) else ():
+            if status is Status.NOT_SETTLED and settled[0] < self.settler.max_steps:
+                settled = settle_scaled(
+                    qp, state, point, self.tol, self.settler.max_steps, settled, gently
+                )
+                status = self._status(qp, settled)
         # Without a solution the state is not kept: the multipliers grow without bound then, and
         # would spoil every later call.
         if status is Status.SOLVED:
@@ -201,8 +213,7 @@ class DNNSolver:
 
     def _advanced(self, qp: QP, state: Vector, iterations: int, time: float) -> Solution:
         """Judge the point of a state that was advanced by a time [rho]; keep it if it is finite."""
-        n, m, p = qp.sizes
-        point = np.empty(2 * n + m + p)
+        point = np.empty(qp.q.size + sum(qp.sizes))
         residuals = self.network.flow(qp).read(qp, state, point)
         status = Status.NOT_FINITE
         # The point of an infinite state is finite, since it is clipped to the bounds.
