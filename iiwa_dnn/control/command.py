@@ -10,7 +10,7 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.policies import Action, ProgramKind
-from iiwa_dnn.naming import DONE
+from iiwa_dnn.naming import DONE, describe, in_the_way
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.layout import IntVector, Sizes, data_size, offsets
 from iiwa_dnn.schemes.program import ACCELERATION, LimitNames
@@ -217,7 +217,9 @@ class Command:
         sides, rows = np.split(self.blocking, [self._layout.sizes[0]])
         if self.action is Action.NONE:
             sides, rows = self._layout.multipliers(self.row, ACTIVE)
-        return tuple(self._layout.names.in_words(self.bounds, sides, rows, self.past))
+        names = self._layout.names
+        codes = names.codes(self.bounds, sides, self.past)
+        return tuple(map(describe, in_the_way(names.settings, codes, rows)))
 
     @property
     def qp(self) -> QP:

@@ -43,7 +43,7 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.integrators.base import TOLERANCE
 from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import row_dot
+from iiwa_dnn.qp.dense import all_finite, row_dot
 from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, copied, data_size, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.schemes.program import add_soft
@@ -333,7 +333,8 @@ def _move_within(
     _copy_limits(qp, nearest)
     point = np.empty(2 * n + m + equalities)
     found = settled(nearest, yielding.settings, np.zeros(3 * n + m + equalities), point, figures)
-    if found:
+    # Bounds that are off by rounding may contradict the equalities: as near as they allow, then.
+    if found or (equalities > 0 and all_finite(point, 0, n)):
         copied(x, point[:n])
     return found
 

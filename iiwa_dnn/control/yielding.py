@@ -149,7 +149,7 @@ def yield_step(
             copied(qp.ub, own.ub)
     if kind == STOPPED:
         copied(views.program, data)
-        rest = _brake(own, past, yielding, x)
+        rest = _brake(own, past, yielding, views.figures, x)
         views.point[:] = 0.0
         copied(views.point, x)
     views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
@@ -362,7 +362,7 @@ def _make_stoppable(
         _step_straight(past, yielding, wanted)
         nearest_within(limits, wanted, yielding, views.figures)
     brake = np.zeros(x.size)
-    left = _brake(limits, past, yielding, brake)
+    left = _brake(limits, past, yielding, views.figures, brake)
     for k in range(len(TOWARDS)):
         for i in range(dof):
             x[i] = brake[i] + TOWARDS[k] * (wanted[i] - brake[i])
@@ -374,10 +374,10 @@ def _make_stoppable(
 
 
 @compiled
-def _brake(limits: QPViews, past: Matrix, yielding: Yielding, dq: Vector) -> float:
+def _brake(limits: QPViews, past: Matrix, yielding: Yielding, figures: Vector, dq: Vector) -> float:
     """Write the next command (n,) of the braking motion in hand, or of the quickest one.
 
-    It is zero without acceleration limits.
+    It is zero without acceleration limits. The figures (5,) are those of `settled`.
 
     Returns:
         Periods that are left afterwards; 0 if the motion was not in hand.
@@ -393,12 +393,17 @@ def _brake(limits: QPViews, past: Matrix, yielding: Yielding, dq: Vector) -> flo
         )
     for i in range(past.shape[1]):
         if periods < np.inf:
-            fastest = max(yielding.limits[2 * past.shape[1] + i], abs(past[LAST, i]))
-            dq[i] = next_velocity(past[LAST, i], past[BEFORE, i], periods, yielding.cubic)
+            last = past[LAST, i]
+            fastest = max(yielding.limits[2 * past.shape[1] + i], abs(last))
+            change = yielding.limits[3 * past.shape[1] + i] * yielding.dt
+            dq[i] = next_velocity(last, past[BEFORE, i], periods, yielding.cubic)
             # Where the control period has changed, the curve has too.
+            dq[i] = min(max(dq[i], last - change), last + change)
             dq[i] = min(max(dq[i], -fastest), fastest)
         if rest == 0.0:
             dq[i] = min(max(dq[i], limits.lb[i]), limits.ub[i])
+    if rest == 0.0 and yielding.coupled:
+        nearest_within(limits, dq, yielding, figures)
     return max(rest - 1.0, 0.0)
 
 

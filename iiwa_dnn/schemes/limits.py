@@ -50,8 +50,9 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references.rotations import combined, dot, scaled
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.schemes.parts import Checks, Limit
+from iiwa_dnn.schemes.parts import Checks, Limit, Task
 from iiwa_dnn.schemes.step import StepViews, point_rate, rate_along, vector_at
+from iiwa_dnn.schemes.tasks import JointCouplingTask
 
 NEGLIGIBLE = 1e-6
 """Contribution of a joint to the speed that is rounding, as of one whose axis meets the tip [m]."""
@@ -236,10 +237,13 @@ class MotionLimits(Limit):
 
     Attributes:
         limits: The scheme's `AccelerationLimits` and `JerkLimits`; the tightest of each counts.
+        couplings: Its tasks that hold joints together. A joint is no quicker than the others of
+            its relation let it be: else one could brake where another cannot follow.
     """
 
     kernel = staticmethod(motion_limits)
     limits: tuple[_RateLimits, ...] = ()
+    couplings: tuple[JointCouplingTask, ...] = ()
 
     def constants(self, robot: Robot) -> Vector:
         """Return position, velocity, acceleration and jerk limits, and decelerations, (6 n,).
@@ -250,14 +254,19 @@ class MotionLimits(Limit):
             InvalidInputError: A limit does not fit the robot, or a joint's range is too short to
                 turn round in.
         """
-        rates = np.full((2, robot.dof), np.inf)
+        rates = np.full((3, robot.dof), np.inf)
+        lower, upper, rates[0] = robot.limits[:3]
         for limit in self.limits:
-            row = rates[limit.row - 3]
+            row = rates[limit.row - 2]
             np.minimum(row, limit.of(robot), out=row)
-        braking, room = braking_room(robot.ramps, rates[0])
-        lower, upper, fastest = robot.limits[:3]
-        rows = [lower + room, upper - room, fastest, *rates, braking]
-        constants: Vector = np.concatenate(rows)
+        for coupling in self.couplings * len(self.couplings):  # of chains too
+            shares = np.abs(coupling.constants(robot)[1 : 1 + robot.dof])
+            joints = np.flatnonzero(shares)
+            for i in joints:
+                others = joints[joints != i]
+                rates[:, i] = np.minimum(rates[:, i], rates[:, others] @ shares[others] / shares[i])
+        braking, room = braking_room(robot.ramps, rates[1])
+        constants: Vector = np.concatenate([lower + room, upper - room, *rates, braking])
         check_ranges(constants, np.inf)
         return constants
 
@@ -320,11 +329,15 @@ def largest_gain(constants: Vector, rate: float) -> float:
     return float(1.0 / (delay.max() + 1.0 / rate))
 
 
-def merged(limits: Sequence[Limit]) -> list[Limit]:
-    """Return the limits with those on acceleration and jerk as one block, the last."""
+def merged(limits: Sequence[Limit], tasks: Sequence[Task]) -> list[Limit]:
+    """Return the limits with those on acceleration and jerk, beside tasks, as one block, the last.
+
+    Of the tasks those count that hold joints together.
+    """
     rates = tuple(limit for limit in limits if isinstance(limit, _RateLimits))
     others = [limit for limit in limits if not isinstance(limit, _RateLimits)]
-    return [*others, MotionLimits(rates)] if rates else others
+    held = tuple(t for t in tasks if isinstance(t, JointCouplingTask) and t.weight is None)
+    return [*others, MotionLimits(rates, held)] if rates else others
 
 
 @compiled

@@ -19,7 +19,6 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.qp.layout import IntMatrix, QPViews, data_size, qp_views
 from iiwa_dnn.references import Target
@@ -274,7 +273,7 @@ class StepProgram:
         self.robot = robot
         self.scheme = scheme
         tasks = list(scheme.tasks)
-        limits = merged(scheme.limits)
+        limits = merged(scheme.limits, tasks)
         self.rate_limits = next((part for part in limits if isinstance(part, MotionLimits)), None)
         self.target_frames = _tracked(robot, tasks)
         hard = [task for task in tasks if task.weight is None]
@@ -428,21 +427,21 @@ class StepProgram:
         self.refresh(past[0], past[1], targets, t, dt)
         assemble(data, self.arrays(dt), past, targets, float(t))
 
-    def row_names(self) -> list[dict[str, object]]:
-        """Return for each inequality row its part, its number in it from 1, and its name if any."""
-        found: list[dict[str, object]] = []
-        for limit in self.scheme.limits:
-            named = [{"about": name} for name in limit.row_names(self.robot)]
-            for i in range(limit.row_count(self.robot)):
-                about = named[i] if named else {}
-                found.append({"part": type(limit).__name__, "row": i + 1} | about)
-        return found
-
     def settings(self) -> dict[str, object]:
-        """Return the inequality rows, and the names of the limits without any, as they bound."""
+        """Return what names in words need (`iiwa_dnn.naming.in_the_way`).
+
+        ``rows`` has for each inequality row its part, its number in it from 1, and its name if any,
+        and ``bounding`` the limits without rows, as they bound.
+        """
         limits = self.scheme.limits
+        rows: list[dict[str, object]] = []
+        for limit in limits:
+            named = [{"about": name} for name in limit.row_names(self.robot)]
+            count = limit.row_count(self.robot)
+            part: dict[str, object] = {"part": type(limit).__name__}
+            rows += [part | {"row": i + 1} | (named[i] if named else {}) for i in range(count)]
         names = [type(limit).__name__ for limit in limits if not limit.row_count(self.robot)]
-        return {"rows": self.row_names(), "bounding": names}
+        return {"rows": rows, "bounding": names}
 
 
 def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
@@ -517,21 +516,16 @@ class LimitNames:
     """Names of the bounds and inequality rows of a controller's programs.
 
     Attributes:
+        settings: `StepProgram.settings`.
         dt: Control period [s].
     """
 
     def __init__(self, program: StepProgram, dt: float) -> None:
         """Take the limits of a step program and its control period [s]."""
-        self._settings = program.settings()
+        self.settings = program.settings()
         self.dt = dt
         constants = (program.rate_limits or MotionLimits()).constants(program.robot)
         self._limits = constants.reshape(6, -1)
-
-    def in_words(
-        self, bounds: Matrix, sides: NDArray[Any], rows: NDArray[Any], past: Matrix
-    ) -> list[str]:
-        """Name bounds and rows of a program; arguments as `codes`, and (m,) not 0 for a row."""
-        return [*map(describe, in_the_way(self._settings, self.codes(bounds, sides, past), rows))]
 
     def codes(self, bounds: Matrix, sides: NDArray[Any], past: Matrix) -> NDArray[np.int8]:
         """Give the bounds on some sides of a program's joints their codes.
