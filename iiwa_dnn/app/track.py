@@ -319,22 +319,23 @@ def read_tables(options: Any, more: Tables) -> Tables:
 
     Raises:
         FileError: The file cannot be read.
-        InvalidInputError: There is no such table, or a name is none.
+        InvalidInputError: There is no such table, or a table or a name is none.
     """
     typical = asdict(Disturbances.typical()) if options.disturb else {}
     words = [(f"plant.disturbances.{key}", value) for key, value in typical.items()]
     words += [(place, getattr(options, name)) for name, (place, *_) in WORDS.items()]
+    empty: Tables = {name: {} for name in TABLES}
     sources = [
-        {name: {} for name in TABLES},
+        empty,
         more,
         {} if options.config is None else read_toml(options.config),
         *(_nested(place, value) for place, value in words if value is not None),
         *map(_read_setting, options.set),
+        empty,  # refuses what is no table by now
     ]
     tables = reduce(_merge, sources)
-    for name, values in tables.items():
-        if name not in TABLES or not isinstance(values, dict):
-            raise InvalidInputError(name, f"must be one of the tables {', '.join(TABLES)}", values)
+    for name in tables:
+        checks.one_of("table", name, TABLES)
     for table, key in (("robot", "name"), ("reference", "name"), ("limits", "obstacles")):
         if key in tables[table]:
             tables[table][key] = _absolute(f"{table}.{key}", tables[table][key])
@@ -362,12 +363,18 @@ def _nested(place: str, value: Any) -> Tables:
     return {table: _nested(key, value)} if key else {table: value}
 
 
-def _merge(first: Tables, second: Tables) -> Tables:
-    """Return two tables as one; tables inside of both are merged too."""
+def _merge(first: Tables, second: Tables, name: str = "") -> Tables:
+    """Return two tables of this name as one; tables inside of both are merged too.
+
+    Raises:
+        InvalidInputError: The first, or a value that a table would replace, is no table.
+    """
+    if not isinstance(first, dict):
+        raise InvalidInputError(name, f"must be a table, not {first!r}", first)
     inner = {
-        key: _merge(first[key], value)
+        key: _merge(first[key], value, key)
         for key, value in second.items()
-        if isinstance(value, dict) and isinstance(first.get(key), dict)
+        if isinstance(value, dict) and key in first
     }
     return {**first, **second, **inner}
 

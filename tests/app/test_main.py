@@ -79,10 +79,10 @@ BAD = [
     ("track --set limits.tipspeed=1", "no setting in [limits] 'tipspeed'"),
     ("physics --set plant.disturbances.fricton=1", "did you mean: friction"),
     ("track --plant franka", "plant: must be one of ideal, mujoco, not 'franka'"),
-    ("track --set robot.locked=3", "robot: 'int' object is not iterable"),
     ("track --set run.progress=3", "no setting in [run] 'progress'"),
-    ("track --set schema.weight=1", "schema: must be one of the tables"),
-    ("track --set run=1", "run: must be one of the tables"),
+    ("track --set schema.weight=1", "table: must be one of robot, reference, scheme, limits, run"),
+    ("track --set run=1", "run: must be a table, not 1"),
+    ("track --config bad.csv --dt 1e-3", "run: must be a table, not [{"),
     ("track --set limits.obstacles.distance=1", "limits.obstacles: must be a name or a file"),
     ("track --check foo", "check: must be one of both, none, clarabel, "),
     ("track --config none.toml", "none.toml: cannot be read as TOML"),
@@ -102,7 +102,7 @@ BAD = [
 @pytest.mark.parametrize(("words", "said"), BAD)
 def test_bad_input_is_one_clear_line_and_leaves_no_file(words, said, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "bad.csv").write_text("x,y,z\n0,0,0\n")
+    (tmp_path / "bad.csv").write_text("[[run]]\ndt = 1\n")  # bad TOML too
     (tmp_path / "robot.urdf").write_text("solid robot\n")
     command, *others = words.split()
     assert call(command, *others) == 2
