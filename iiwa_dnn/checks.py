@@ -5,7 +5,7 @@ which is the name of the caller's own argument.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from numbers import Integral, Real
 from typing import Any, TypeVar
 
@@ -63,6 +63,15 @@ def one_of(argument: str, value: T, choices: Sequence[str]) -> T:
             argument, f"must be one of {', '.join(choices)}, not {value!r}", value
         )
     return value
+
+
+def names(argument: str, value: str | Iterable[str]) -> list[str]:
+    """Return one name, or several, as a list; refuse any other value."""
+    several = isinstance(value, Iterable) and not isinstance(value, str)
+    found = list(value) if several else [value]
+    if not all(isinstance(each, str) for each in found):
+        raise InvalidInputError(argument, f"must be one name or several, not {value!r:.80}", value)
+    return found
 
 
 def instance(argument: str, value: T, kind: type[Any]) -> T:

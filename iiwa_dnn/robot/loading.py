@@ -12,6 +12,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from iiwa_dnn import checks
 from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.files import one_line
@@ -39,7 +40,7 @@ def load_robot(
     tip: str | None = None,
     locked: str | Iterable[str] = (),
     tool: pin.SE3 | ArrayLike | None = None,
-    frames: Iterable[str] = (),
+    frames: str | Iterable[str] = (),
 ) -> Robot:
     """Load a robot by its name, from a URDF file or from a Pinocchio model.
 
@@ -62,8 +63,9 @@ def load_robot(
     Raises:
         NotFoundError: If there is no such robot, frame or joint; the error lists those that exist.
         FileError: If the file cannot be read, is not a URDF, or its limits make no sense.
-        InvalidInputError: If the robot has several ends and no ``tip`` is given, or a joint that is
-            left free has more or less than one coordinate, or follows another.
+        InvalidInputError: If the robot has several ends and no ``tip`` is given, names are none, or
+            a joint that is left free has no axis, more or less than one coordinate, or follows
+            another.
         MissingDependencyError: If the arm of that name is in a package that is not installed.
     """
     path, tips = _find(source)
@@ -75,8 +77,8 @@ def load_robot(
     if tip is None:
         tip = tips[0] if tips else _only_end(full)
     others = tips if len(tips) > 1 else ()
-    idle = _idle_joints(full, (tip, *others, *frames))
-    chosen = [locked] if isinstance(locked, str) else list(locked)
+    idle = _idle_joints(full, (tip, *others, *checks.names("frames", frames)))
+    chosen = checks.names("locked", locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
     limits, ramps = _limits(name, path, model, root)
     robot = Robot(
@@ -226,6 +228,7 @@ def _limits(
     limits[:3] = [model.lowerPositionLimit, model.upperPositionLimit, model.velocityLimit]
     limits[np.abs(limits) > _NO_LIMIT] *= np.inf
     limits[2, limits[2] == 0.0] = np.inf
+    data = model.createData()
     for i, joint in enumerate(tuple(model.names)[1:]):
         element = joints.get(joint, root)
         mimic = element.find("mimic")
@@ -238,6 +241,8 @@ def _limits(
             raise FileError(
                 path, f"gives no range for joint {joint!r}: lower and upper are 0 or missing"
             )
+        if not pin.computeJointJacobian(model, data, pin.neutral(model), i + 1).any():
+            raise InvalidInputError("source", f"the axis of joint {joint!r} is zero", joint)
         if ramp is not None:
             ramps[0, i] = ramp.attrib["velocity_offset"]
             ramps[1, i] = ramp.attrib["deceleration_limit"]

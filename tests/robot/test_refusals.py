@@ -29,6 +29,7 @@ REFUSED = [
         for tool in ([0, 0, 0.1], [np.nan] * 6, "pen", np.eye(3))
     ],
     (d.load_robot, {"source": "iiwa7", "locked": ROBOT.joint_names}, "tip"),
+    *[(d.load_robot, {"source": "iiwa7", name: [3]}, name) for name in ("locked", "frames")],
     (d.robot_from_dh, {"table": np.zeros((2, 3))}, "table"),
     (d.robot_from_dh, {"table": [[0, 0, 1, 0]], "prismatic": [2]}, "prismatic"),
     (d.robot_from_dh, {"table": [[0, 0, 1, 0]], "convention": "classic"}, "convention"),

@@ -68,6 +68,7 @@ def test_by_name_and_by_path(robot: Robot, written) -> None:
         (one_joint(LIMIT.replace("-1", "nan")), "Pinocchio can read"),
         (one_joint(LIMIT.replace('velocity="4"', 'velocity="-4"')), "min_velocity"),
         ('<robot name="x"><link name="a"/></robot>', "^tip: no joint moves frame 'a'"),
+        (one_joint().replace("0 1 0", "0 0 0"), "the axis of joint 'j' is zero"),
         (one_joint("", "fixed"), "^tip: no joint moves frame"),
         (one_joint(LIMIT.replace("-1", "2")), "joint 'j': lower limit 2 is not below 2"),
         (one_joint("", "floating"), "'j' has 7 coordinates"),
