@@ -56,19 +56,18 @@ def integer(argument: str, value: object, least: int) -> int:
     return int(value)
 
 
-def one_of(argument: str, value: T, choices: Sequence[str]) -> T:
+def one_of(argument: str, value: T, choices: Sequence[object]) -> T:
     """Return a value that is one of the choices; refuse any other value."""
     if value not in choices:
-        raise InvalidInputError(
-            argument, f"must be one of {', '.join(choices)}, not {value!r}", value
-        )
+        known = ", ".join(map(str, choices))
+        raise InvalidInputError(argument, f"must be one of {known}, not {value!r}", value)
     return value
 
 
 def names(argument: str, value: str | Iterable[str]) -> list[str]:
     """Return one name, or several, as a list; refuse any other value."""
-    several = isinstance(value, Iterable) and not isinstance(value, str)
-    found = list(value) if several else [value]
+    alone = isinstance(value, str) or not isinstance(value, Iterable)
+    found: list[Any] = [value] if alone else list(value)
     if not all(isinstance(each, str) for each in found):
         raise InvalidInputError(argument, f"must be one name or several, not {value!r:.80}", value)
     return found
@@ -118,13 +117,15 @@ def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Arr
 
 def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     """Return a read-only copy of numbers of this shape, as `finite_array`; they may be NaN."""
-    masked: bool = np.ma.is_masked(value)  # type: ignore[no-untyped-call]
-    if masked or np.iscomplexobj(value):
-        raise InvalidInputError(argument, "must be real numbers, none of them masked", value)
     try:
-        numbers = np.array(value, dtype=np.float64)
+        # A list as objects: as numbers, its booleans would be 0 and 1.
+        given = value if isinstance(value, np.ndarray) else np.array(value, dtype=object)
+        kinds = set(map(type, given.flat)) if given.dtype == object else {given.dtype.type}
+        if kinds & {bool, np.bool_, np.complex128} or np.ma.is_masked(given):  # type: ignore[no-untyped-call]
+            raise TypeError
+        numbers = np.array(given, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InvalidInputError(argument, "must be numbers", value) from error
+        raise InvalidInputError(argument, "must be numbers, real and not masked", value) from error
     lengths = zip(shape, numbers.shape, strict=False)
     if numbers.ndim != len(shape) or not all(n in (-1, m) for n, m in lengths):
         wanted = str(shape).replace("-1", "m")

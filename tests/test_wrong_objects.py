@@ -70,6 +70,10 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
     (lambda: d.CrossCheck().check(d.QP(EYE, PAPER_Q0[:3]), EYE[:2, 0]), "answer: has shape (2,)"),
     (lambda: d.DNNSolver(d.Network()).solve(d.QP(EYE, PAPER_Q0[:3])), "Network: has neither"),
     (lambda: d.DoubleIndicator(extra_limits=d.TipSpeedLimit(1.0)), "extra_limits: must be a list"),
+    (lambda: d.DoubleIndicator(extra_limits=None), "extra_limits: must be a list"),
+    (lambda: d.Waypoints([0, 1], [[0, 0, 0], [1, 1]]), "points: must be numbers"),
+    (lambda: d.Waypoints.from_csv(None), "None: "),
+    (lambda: d.failures(None), "record: must be an iiwa_dnn.Record"),
     (lambda: drive(Builder()), "scheme: Builder overrides build_qp"),
     (lambda: drive(d.Scheme([Distant()], [d.PositionTask()])), "no target of frame 'x'"),
 ]

@@ -24,6 +24,9 @@ _COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
 _HEADERS = (_COLUMNS[:4], _COLUMNS)
 _CLOSED_WITHIN = 1e-9  # [rad]
 
+_UNIT_WITHIN = 0.01
+"""Difference of a quaternion's norm from 1 that is forgiven: rounding to few digits."""
+
 _BESIDE = 1e-10
 """Time before the start and after the end at which a path of poses rests already [s]."""
 
@@ -106,8 +109,8 @@ class Waypoints(Reference):
         points: The points [m], shape (m, 3).
         ends: "clamped": at rest at both ends. "closed": ends as it begins and repeats; the last
             point must be the first one, and m >= 3.
-        quaternions: Orientations w, x, y, z of the poses, shape (m, 4), or None. Either sign will
-            do; neighbours are less than half a turn apart.
+        quaternions: Orientations w, x, y, z of the poses, of norm 1, shape (m, 4), or None. Either
+            sign will do; neighbours are less than half a turn apart.
 
     Raises:
         InvalidInputError: If a parameter is not as said above.
@@ -157,8 +160,9 @@ class Waypoints(Reference):
         from scipy.spatial.transform import Rotation, RotationSpline
 
         quaternions = finite_array("quaternions", quaternions, (len(knots), 4))
-        if not quaternions.any(axis=1).all():
-            raise InvalidInputError("quaternions", "must not be zero", quaternions)
+        norm = max(np.linalg.norm(quaternions, axis=1), key=lambda each: abs(each - 1.0))
+        if abs(norm - 1.0) > _UNIT_WITHIN:
+            raise InvalidInputError("quaternions", f"must have norm 1, not {norm:.3g}", quaternions)
         turns = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
         if (turns[1:] * turns[:-1].inv()).magnitude().max() > np.pi - 1e-6:
             raise InvalidInputError("quaternions", "two neighbours are half a turn apart")
@@ -204,7 +208,6 @@ class Waypoints(Reference):
             InvalidInputError: If the ratio is not above zero.
         """
         positive("stretch", stretch)
-        path = Path(path)
         table = _read(path)
         quaternions = table[:, 4:] if table.shape[1] > 4 else None
         try:
@@ -241,11 +244,11 @@ class Waypoints(Reference):
         return float(self.times[-1] - self.times[0])
 
 
-def _read(path: Path) -> Array:
+def _read(path: str | os.PathLike[str]) -> Array:
     """Read a file of points (m, 4) or poses (m, 8), each with its time."""
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, ValueError) as error:  # no UTF-8, or a NUL in the path: a ValueError
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, TypeError, ValueError) as error:  # ValueError: no UTF-8, a NUL in the path
         raise FileError(path, one_line(error)) from error
     rows = [(number, line) for number, line in enumerate(lines, 1) if line.strip()]
     columns = [cell.strip().lower() for cell in rows[0][1].split(",")] if rows else []

@@ -25,7 +25,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
     Returns:
         The reasons, the gravest first; empty if there is none.
     """
-    if isinstance(run, Record):
+    if not isinstance(run, Mapping):
         return failures(compute_metrics(run))
     check = run["crosscheck"]
     judged = [*_policies(run), *_unsolved(run)] if run["settings"]["mode"] == "converged" else []

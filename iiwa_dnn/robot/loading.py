@@ -228,7 +228,6 @@ def _limits(
     limits[:3] = [model.lowerPositionLimit, model.upperPositionLimit, model.velocityLimit]
     limits[np.abs(limits) > _NO_LIMIT] *= np.inf
     limits[2, limits[2] == 0.0] = np.inf
-    data = model.createData()
     for i, joint in enumerate(tuple(model.names)[1:]):
         element = joints.get(joint, root)
         mimic = element.find("mimic")
@@ -241,7 +240,7 @@ def _limits(
             raise FileError(
                 path, f"gives no range for joint {joint!r}: lower and upper are 0 or missing"
             )
-        if not pin.computeJointJacobian(model, data, pin.neutral(model), i + 1).any():
+        if not pin.computeJointJacobian(model, model.createData(), pin.neutral(model), i + 1).any():
             raise InvalidInputError("source", f"the axis of joint {joint!r} is zero", joint)
         if ramp is not None:
             ramps[0, i] = ramp.attrib["velocity_offset"]

@@ -170,7 +170,7 @@ class Robot:
         for name, row, value in zip(_LIMITS, limits, given, strict=True):
             if value is not None:
                 try:
-                    row[:] = value
+                    row[:] = checks.array(name, value, np.shape(value))
                 except (TypeError, ValueError) as error:
                     problem = f"must be one number or {self.dof}"
                     raise InvalidInputError(name, problem, value) from error

@@ -183,6 +183,7 @@ class CollisionAvoidance(Limit):
     kernel = staticmethod(collision_rows)
     _checks: ClassVar[Checks] = {
         "obstacles": tuple_of_obstacles,
+        "self_collision": partial(checks.one_of, choices=(True, False)),
         "distance": checks.positive,
         "gain": checks.positive,
         "nearest": partial(checks.integer, least=1),

@@ -20,6 +20,7 @@ alone. Source: equations (6) and (7) of the paper.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Literal, get_args
 
@@ -85,7 +86,7 @@ class DoubleIndicator(Scheme):
         if self.ahead:
             tasks = [replace(task, gain=np.inf) for task in tasks]
         energy = KineticEnergy(weight=self.weight, kinetic=self.kinetic)
-        if isinstance(self.extra_limits, Limit):
+        if not isinstance(self.extra_limits, Iterable):
             raise InvalidInputError("extra_limits", "must be a list of limits", self.extra_limits)
         limits = [JointLimits(gain=self.limit_gain), *self.extra_limits]
         self._compose([energy, cyclic], tasks, limits)

@@ -129,7 +129,7 @@ def test_csv_dialects(tmp_path: Path, text: str) -> None:
         (GOOD + "0.5,1,1,1\n", "must increase: point 3 is at 0.5 s"),
         (GOOD.encode() + b"\xff\xfe", "'utf-8' codec"),
         (f"{POSE_HEADER}\n0,0,0,1,0,0,0\n", "the header must be"),
-        (f"t,{POSE_HEADER}\n0,0,0,0,1,0,0,0\n1,1,0,0,0,0,0,0\n", "must not be zero"),
+        (f"t,{POSE_HEADER}\n0,0,0,0,1,0,0,0\n1,1,0,0,0,0,0,0\n", "must have norm 1, not 0"),
         (None, "No such file"),
     ],
 )

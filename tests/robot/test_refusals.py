@@ -14,7 +14,7 @@ BALL = {"shape": "sphere", "center": [0.0, 0.0, 1.0], "radius": 0.1}
 REFUSED = [
     *[
         (d.Configuration, {"robot": ROBOT, "q": q}, "q")
-        for q in (np.zeros(6), np.zeros((7, 1)), 0.0, [*[0] * 6, np.nan], ["a"] * 7, None)
+        for q in (np.zeros(6), np.zeros((7, 1)), 0.0, [*[0] * 6, np.nan], [True] + [0.0] * 6, None)
     ],
     (d.Configuration, {"robot": ROBOT, "q": [np.inf, -np.inf, 0, 0, 0, 0, 0]}, "q"),
     (ROBOT.with_limits, {"lower": 3.0}, "lower"),
@@ -22,6 +22,7 @@ REFUSED = [
     (ROBOT.with_limits, {"upper": -3.0}, "lower"),
     (ROBOT.with_limits, {"upper": [1.0, 2.0]}, "upper"),
     (ROBOT.with_limits, {"velocity": [1, 1, 1, -1, 1, 1, 1]}, "velocity"),
+    (ROBOT.with_limits, {"velocity": True}, "velocity"),
     (ROBOT.with_limits, {"acceleration": np.nan}, "acceleration"),
     (ROBOT.with_limits, {"jerk": -1.0}, "jerk"),
     *[
