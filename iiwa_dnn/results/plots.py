@@ -31,9 +31,9 @@ DOUBLE_COLUMN = 7.0
 BUCKETS = 700  # stretches of a curve: one for each pixel across a column at 200 dots an inch
 STYLE = Path(__file__).with_name("style.mplstyle")
 CAPTIONS = {
-    "overview": "Path, joint angles and velocities with the joints' limits near them, errors and "
-    "kinetic index, and further quantities of the run. A line is the mean or the largest value, a "
-    "band the range, of each short stretch of time.",
+    "overview": "Path, joint angles and velocities with the joints' limits near them in their "
+    "colors, errors and kinetic index, and further quantities of the run. A line is the mean or "
+    "the largest value, a band the range, of each short stretch of time.",
     "convergence": "KKT residual of the network, and gap to the reference.",
     "moments": "The arm after each fifth of the run.",
 }
@@ -188,10 +188,9 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     low, high = axes.get_ylim()
     margin = 0.15 * (high - low)  # a limit farther off would only flatten the curves
     for i, joint in np.argwhere((low - margin <= bounds) & (bounds <= high + margin)):
-        own = f"limit of {labels[joint]}" if np.ptp(bounds[i]) else "limit"
         line = axes.axhline(bounds[i, joint], linewidth=0.8, linestyle=(0, (8, 3)))
         line.set_color(colors[joint] if np.ptp(bounds[i]) else "0.0")
-        line.set_label("_" if own in axes.get_legend_handles_labels()[1] else own)
+        line.set_label("_" if "limit" in axes.get_legend_handles_labels()[1] else "limit")
     label_time(axes, record, quantity, columns=4 if max(map(len, names)) < 8 else 2)
 
 

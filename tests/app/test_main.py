@@ -79,7 +79,6 @@ BAD = [
     ("track --set limits.tipspeed=1", "no setting in [limits] 'tipspeed'"),
     ("physics --set plant.disturbances.fricton=1", "did you mean: friction"),
     ("track --plant franka", "plant: must be one of ideal, mujoco, not 'franka'"),
-    ("track --set robot.locked=3", "locked: must be one name or several, not 3"),
     ("track --set run.progress=3", "no setting in [run] 'progress'"),
     ("track --set schema.weight=1", "table: must be one of robot, reference, scheme, limits, run"),
     ("track --set run=1", "run: must be a table, not 1"),

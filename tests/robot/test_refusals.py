@@ -21,8 +21,7 @@ REFUSED = [
     (ROBOT.with_limits, {"lower": np.nan}, "lower"),
     (ROBOT.with_limits, {"upper": -3.0}, "lower"),
     (ROBOT.with_limits, {"upper": [1.0, 2.0]}, "upper"),
-    (ROBOT.with_limits, {"velocity": [1, 1, 1, -1, 1, 1, 1]}, "velocity"),
-    (ROBOT.with_limits, {"velocity": True}, "velocity"),
+    *[(ROBOT.with_limits, {"velocity": v}, "velocity") for v in (True, [1, 1, 1, -1, 1, 1, 1])],
     (ROBOT.with_limits, {"acceleration": np.nan}, "acceleration"),
     (ROBOT.with_limits, {"jerk": -1.0}, "jerk"),
     *[

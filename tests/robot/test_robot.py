@@ -94,13 +94,6 @@ def test_the_reach_bounds_the_tips_distance(robot: Robot) -> None:
     assert slide.reach == pytest.approx(0.8)
 
 
-def test_files_that_are_not_read() -> None:
-    with pytest.raises(FileError, match=r"none.urdf: No such file"):
-        load_robot("none.urdf")
-    with pytest.raises(FileError, match=r"make a URDF of it: xacro a.xacro -o a.urdf"):
-        load_robot("a.xacro")
-
-
 @pytest.mark.parametrize(
     ("limit", "velocity"), [("", np.inf), (LIMIT, 4.0), (LIMIT.replace("4", "0"), np.inf)]
 )
