@@ -81,6 +81,7 @@ PATHS: dict[str, Callable[..., Any]] = {
     "tilting-circle": Tilting,
 }
 PARTS: Choices = {
+    "reference.along": Circle,
     "limits.acceleration": AccelerationLimits,
     "limits.jerk": JerkLimits,
     "limits.tip_speed": TipSpeedLimit,
@@ -101,7 +102,12 @@ WORDS: dict[str, tuple[str, Any, str, str]] = {
     "robot": ("robot.name", str | None, "NAME", "iiwa7, panda, ... or a URDF file (iiwa7)"),
     "tip": ("robot.tip", str | None, "FRAME", "frame that follows the path"),
     "lock": ("robot.locked", tuple[str, ...] | None, "JOINT ...", "joints held still; after PATH"),
-    "q0": ("robot.q0", tuple[float, ...] | None, "X ...", "joint positions at the start [rad]"),
+    "q0": (
+        "robot.q0",
+        tuple[float, ...] | None,
+        "X ...",
+        "joint positions at the start [rad]; after PATH",
+    ),
     "reference": ("reference.name", str | None, "NAME", "the path, as PATH"),
     "scale": (
         "reference.scale",

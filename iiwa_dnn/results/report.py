@@ -21,7 +21,7 @@ from iiwa_dnn.results.record import Record
 
 _RESULTS = (
     ("largest position error", "max_position_error_m", "m"),
-    ("mean squared position error", "mse_position_error_m2", "m²"),
+    ("mean squared position error per axis", "mse_position_error_m2", "m²"),
     ("largest orientation error", "max_orientation_error_rad", "rad"),
     ("joint drift, start to end", "joint_drift_rad", "rad"),
     ("largest kinetic index", "max_kinetic_index", "rad²/s² (J with kinetic = inertia)"),

@@ -36,7 +36,7 @@ def test_the_reports_numbers_are_the_metrics(run):
     table = rows_of(text)
     check = metrics["crosscheck"]
     for row, name, unit in [
-        ("mean squared position error", "mse_position_error_m2", "m²"),
+        ("mean squared position error per axis", "mse_position_error_m2", "m²"),
         ("largest orientation error", "max_orientation_error_rad", "rad"),
         ("largest kinetic index", "max_kinetic_index", "rad²/s² (J with kinetic = inertia)"),
         ("wall time", "wall_time_s", "s"),
