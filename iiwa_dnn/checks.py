@@ -120,11 +120,12 @@ def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     try:
         # A list as objects: as numbers, its booleans would be 0 and 1.
         given = value if isinstance(value, np.ndarray) else np.array(value, dtype=object)
-        kinds = set(map(type, given.flat)) if given.dtype == object else {given.dtype.type}
-        if kinds & {bool, np.bool_, np.complex128} or np.ma.is_masked(given):  # type: ignore[no-untyped-call]
+        is_object = given.dtype == object
+        booleans = is_object and not {bool, np.bool_}.isdisjoint(map(type, given.flat))
+        if booleans or given.dtype.kind in "bc" or np.ma.is_masked(given):  # type: ignore[no-untyped-call]
             raise TypeError
         numbers = np.array(given, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InvalidInputError(argument, "must be numbers, real and not masked", value) from error
     lengths = zip(shape, numbers.shape, strict=False)
     if numbers.ndim != len(shape) or not all(n in (-1, m) for n, m in lengths):

@@ -9,14 +9,15 @@ import iiwa_dnn as d
 from iiwa_dnn.robot.obstacles import make_obstacles
 
 ROBOT = d.load_robot("iiwa7")
+ODD = (np.nan, np.inf, True, "a", 1j, 10**400)
 BALL = {"shape": "sphere", "center": [0.0, 0.0, 1.0], "radius": 0.1}
 
 REFUSED = [
     *[
         (d.Configuration, {"robot": ROBOT, "q": q}, "q")
-        for q in (np.zeros(6), np.zeros((7, 1)), 0.0, [*[0] * 6, np.nan], [True] + [0.0] * 6, None)
+        for q in (np.zeros(6), np.zeros((7, 1)), 0.0, None, *([0] * 6 + [x] for x in ODD))
     ],
-    (d.Configuration, {"robot": ROBOT, "q": [np.inf, -np.inf, 0, 0, 0, 0, 0]}, "q"),
+    (d.Configuration, {"robot": ROBOT, "q": np.zeros(7, np.complex64)}, "q"),
     (ROBOT.with_limits, {"lower": 3.0}, "lower"),
     (ROBOT.with_limits, {"lower": np.nan}, "lower"),
     (ROBOT.with_limits, {"upper": -3.0}, "lower"),
@@ -24,10 +25,7 @@ REFUSED = [
     *[(ROBOT.with_limits, {"velocity": v}, "velocity") for v in (True, [1, 1, 1, -1, 1, 1, 1])],
     (ROBOT.with_limits, {"acceleration": np.nan}, "acceleration"),
     (ROBOT.with_limits, {"jerk": -1.0}, "jerk"),
-    *[
-        (ROBOT.with_tool, {"tool": tool}, "tool")
-        for tool in ([0, 0, 0.1], [np.nan] * 6, "pen", np.eye(3))
-    ],
+    *[(ROBOT.with_tool, {"tool": t}, "tool") for t in ([0, 0, 1], [np.nan] * 6, "pen", np.eye(3))],
     (d.load_robot, {"source": "iiwa7", "locked": ROBOT.joint_names}, "tip"),
     *[(d.load_robot, {"source": "iiwa7", name: [3]}, name) for name in ("locked", "frames")],
     (d.robot_from_dh, {"table": np.zeros((2, 3))}, "table"),

@@ -47,7 +47,7 @@ def test_by_name_and_by_path(robot: Robot, written) -> None:
     assert "iiwa7" in available_robots()
     assert robot.joint_names == tuple(f"iiwa7_joint_{i}" for i in range(1, 8))
     assert repr(robot) == "<Robot iiwa7: 7 joints, tip iiwa7_flange>"
-    locked = load_robot("iiwa7", locked=["iiwa7_joint_3", "iiwa7_joint_7"])
+    locked = load_robot("iiwa7", locked=["iiwa7_joint_3", "iiwa7_joint_7"], frames="iiwa7_link_2")
     assert "locked: iiwa7_joint_3, iiwa7_joint_7" in repr(locked)
     for path in (written(one_joint()), str(written(one_joint()))):
         robot = load_robot(path)
