@@ -127,7 +127,7 @@ SETTINGS: dict[str, Callable[[], Made]] = {
     "block form, next target, cone": lambda: drawing(
         d.DoubleIndicator(orientation="block", tracking="next"), d.Cone()
     ),
-    "continuous": lambda: drawing(mode="continuous", dt=1e-4),
+    "continuous": lambda: drawing(mode="continuous", dt=np.float64(1e-4)),
     "tilting poses": tilting,
     "ur5": lambda: drawing(robot=d.load_robot("ur5")),
     "a network of one's own": own_network,

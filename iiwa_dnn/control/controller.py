@@ -120,7 +120,8 @@ class Controller:
         elif not name.startswith("_"):
             raise AttributeError(f"Controller has no setting {name!r}")
         before = vars(self).get(name)
-        object.__setattr__(self, name, value)
+        # A number of numpy's names its type where it is written into C.
+        object.__setattr__(self, name, float(value) if name == "dt" else value)
         if name == "robot" and self._state.past.shape[1] != value.dof:
             self._state = ControllerState(value.dof)
         # A braking motion in hand keeps the limits of before.

@@ -85,7 +85,7 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
         "frames": len(program.target_frames),
         "frame_names": ", ".join(program.target_frames),
         "joint_names": ", ".join(robot.joint_names),
-        "dt": repr(float(controller.dt)),  # numpy names its type
+        "dt": repr(controller.dt),
         "code": code.text(),
         "fields": "\n".join(f"    double {name}[{k}];" for name, k in lengths.items() if k),
         "size": 8 * sum(lengths.values()),

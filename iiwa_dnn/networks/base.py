@@ -13,7 +13,7 @@ from iiwa_dnn.compiling.library import entry
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Triple, Vector, check_size
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import kkt_point
+from iiwa_dnn.qp.residuals import point_of_state
 
 Rates = Callable[[QPViews, Vector, Vector, Vector], None]
 """Compiled function ``(qp, constants, state, rates)`` that writes rho ds/dt into `rates`."""
@@ -75,7 +75,7 @@ class Flow(NamedTuple):
         check_size("point", point, 2 * n + m + p)
         unknowns = state if self.unknowns is None else self.unknowns(state)
         check_size("state", unknowns[: n + m + p], n + m + p)
-        return kkt_point(qp.views, unknowns, point)
+        return point_of_state(qp.data, n, m, p, unknowns, point)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -72,9 +72,8 @@ class DualNetwork(Network):
         try:
             inverse = np.linalg.inv(np.linalg.cholesky(qp.P))
         except np.linalg.LinAlgError:
-            raise InvalidInputError(
-                "P", "is singular, and a dual network needs its inverse; take another network"
-            ) from None
+            problem = "is singular, and a dual network needs its inverse; take another network"
+            raise InvalidInputError("P", problem) from None
         M = inverse.T @ inverse
         offset = -M @ qp.q
         equalities = np.empty((n, 0))

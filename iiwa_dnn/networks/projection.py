@@ -198,8 +198,5 @@ class ProjectionNetwork(Network):
 def is_projection(network: Network) -> TypeGuard[ProjectionNetwork]:
     """Check that the compiled loops for the projection network integrate exactly this network."""
     kind = type(network)
-    return (kind.flow, kind.state_size, kind.compiled_rates) == (
-        Network.flow,
-        ProjectionNetwork.state_size,
-        projection_rates,
-    )
+    own = (kind.flow, kind.state_size, kind.compiled_rates)
+    return own == (Network.flow, ProjectionNetwork.state_size, projection_rates)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network, enter_rates
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
@@ -24,6 +25,14 @@ from iiwa_dnn.qp.solution import Solution, Status
 SHARPENED = 1e-14
 SHARPENING = 20
 """Tolerance of `DNNSolver.sharpen`, and the linear systems of each of its two rounds."""
+
+
+@compiled
+def is_answer(data: Vector, n: int, primal: float, dual: float, gap: float, tol: float) -> bool:
+    """Check that residuals are `within` a tolerance and the cost of `QP.data` is convex."""
+    return within(primal, dual, gap, tol) and is_convex(
+        data[: n * n].reshape(n, n), np.empty((n, n))
+    )
 
 
 @dataclass(frozen=True)
@@ -104,27 +113,16 @@ class DNNSolver:
         own = ExplicitEuler if duration > 0.0 else ImplicitEuler
         if type(integrator) is not own or not (is_projection(network) or substeps):
             return None
+        constants = [self.tol, self.settler.max_steps, duration / network.rho, substeps or 0]
         address = enter_answer.address(follow if duration > 0.0 else settle)
         rates = enter_rates.address(function) if duration > 0.0 else 0
-        return CompiledAnswer(
-            address,
-            rates,
-            np.array(
-                [
-                    self.tol,
-                    self.settler.max_steps,
-                    duration / network.rho,
-                    substeps or 0,
-                    *network.constants(sizes),
-                ]
-            ),
-        )
+        return CompiledAnswer(address, rates, np.array([*constants, *network.constants(sizes)]))
 
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and judge the point it has reached.
 
         Where it does not settle and no certificate is found, it starts once more, from zero, in
-        coordinates in which nothing of the program stands out, and then again with shorter steps.
+        coordinates in which nothing of the program stands out.
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).
@@ -133,18 +131,17 @@ class DNNSolver:
             The solution; `found` only if every residual is at most `tol` and P is convex.
         """
         state = self._take(qp)
-        point = np.empty(qp.q.size + sum(qp.sizes))
+        n, m, p = qp.sizes
+        point = np.empty(2 * n + m + p)
         settled = self.settler.settle(self.network, qp, state, point, self.tol)
         status = self._status(qp, settled)
         certificate = None
         if status is Status.NOT_SETTLED:
             status, certificate = find_certificate(qp, point)
-        for gently in (False, True) if is_projection(self.network) else ():
-            if status is Status.NOT_SETTLED and settled[0] < self.settler.max_steps:
-                settled = settle_scaled(
-                    qp, state, point, self.tol, self.settler.max_steps, settled, gently
-                )
-                status = self._status(qp, settled)
+        if status is Status.NOT_SETTLED and is_projection(self.network):
+            left = self.settler.max_steps - settled[0]
+            settled = settle_scaled(qp, state, point, self.tol, left, settled)
+            status = self._status(qp, settled)
         # Without a solution the state is not kept: the multipliers grow without bound then, and
         # would spoil every later call.
         if status is Status.SOLVED:
@@ -153,11 +150,11 @@ class DNNSolver:
 
     def _status(self, qp: QP, settled: Settled) -> Status:
         """Judge a point by its residuals, and the cost by a Cholesky factor."""
+        if is_answer(qp.data, qp.sizes[0], *settled[2:], self.tol):
+            return Status.SOLVED
         if not math.isfinite(sum(settled[2:])):
             return Status.NOT_FINITE
-        if not is_convex(qp.P, np.empty_like(qp.P)):
-            return Status.NOT_CONVEX
-        return Status.SOLVED if within(*settled[2:], self.tol) else Status.NOT_SETTLED
+        return Status.NOT_SETTLED if is_convex(qp.P, np.empty_like(qp.P)) else Status.NOT_CONVEX
 
     def sharpen(self, qp: QP, solution: Solution) -> Solution:
         """Go on from the state that the last call left, for a few linear systems.
@@ -213,7 +210,8 @@ class DNNSolver:
 
     def _advanced(self, qp: QP, state: Vector, iterations: int, time: float) -> Solution:
         """Judge the point of a state that was advanced by a time [rho]; keep it if it is finite."""
-        point = np.empty(qp.q.size + sum(qp.sizes))
+        n, m, p = qp.sizes
+        point = np.empty(2 * n + m + p)
         residuals = self.network.flow(qp).read(qp, state, point)
         status = Status.NOT_FINITE
         # The point of an infinite state is finite, since it is clipped to the bounds.

@@ -242,7 +242,8 @@ def _ask_proxqp(qp: QP) -> Vector:
 def _proven(name: str, qp: QP, point: Vector) -> tuple[float, float, float, int]:
     """Prove a point (2 n + m + p,); returns the bound, and the other entries of `Agreement`."""
     bound = prove_point(qp, point).bound
-    return (bound, np.nan, 0.0, 0) if bound < np.inf else (bound, np.nan, np.inf, -1)
+    proven = bound < np.inf
+    return bound, np.nan, 0.0 if proven else np.inf, 0 if proven else -1
 
 
 class CheckPool:

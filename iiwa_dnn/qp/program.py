@@ -35,7 +35,7 @@ from iiwa_dnn.qp.layout import (
     offsets,
     qp_views,
 )
-from iiwa_dnn.qp.residuals import point_residuals
+from iiwa_dnn.qp.residuals import residuals_of
 from iiwa_dnn.qp.solution import Residuals
 
 if TYPE_CHECKING:
@@ -63,9 +63,10 @@ def _places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
 @lru_cache
 def absent_fields(n: int) -> list[NDArray[np.float64]]:
     """Return an empty array, or infinite bounds (n,), for each field that is left out."""
+    no_rows = np.empty((0, n))
     nothing = np.empty(0)
     free = np.full(n, np.inf)
-    return [nothing, nothing, np.empty((0, n)), nothing, np.empty((0, n)), nothing, -free, free]
+    return [nothing, nothing, no_rows, nothing, no_rows, nothing, -free, free]
 
 
 class _Field:
@@ -131,11 +132,10 @@ class QP:
             InvalidInputError: An array has the wrong shape; the message names it.
         """
         n = q.size if type(q) is np.ndarray else np.size(q)
+        arguments = (P, q, G, h, A, b, lb, ub)
         arrays = [
             absent if argument is None else real_array(name, argument)
-            for name, argument, absent in zip(
-                FIELDS, (P, q, G, h, A, b, lb, ub), absent_fields(n), strict=True
-            )
+            for name, argument, absent in zip(FIELDS, arguments, absent_fields(n), strict=True)
         ]
         self.sizes = sizes = n, arrays[3].size, arrays[5].size
         if n == 0 or [v.shape for v in arrays] != field_shapes(sizes):  # rarely
@@ -199,7 +199,7 @@ class QP:
         """Compute qpsolvers' residuals of a point ``[x | y | z | z_box]``, (2 n + m + p,)."""
         n, m, p = self.sizes
         check_size("point", point, 2 * n + m + p)
-        return Residuals(*point_residuals(self.views, point))
+        return Residuals(*residuals_of(self.data, n, m, p, point))
 
     def check_values(self) -> None:
         """Check for values that no convex solver could make sense of.

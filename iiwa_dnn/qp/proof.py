@@ -233,7 +233,8 @@ def _enclose(
     Returns:
         Center and radii, (n + k,) both; None if it is not shown that there is exactly one solution.
     """
-    K = np.block([[S, C.T], [C, np.zeros((d.size, d.size))]])
+    k = d.size
+    K = np.block([[S, C.T], [C, np.zeros((k, k))]])
     r = np.concatenate([-q, d])
     try:
         R = np.linalg.inv(K)
@@ -258,11 +259,12 @@ def _bound(qp: QP, rows: _Rows, distance: float, missing: float, weak: bool) -> 
 
     Where a multiplier is `weak`, `missing` bounds the change of the cost vector that makes it none.
     """
-    curvature = _curvature(rows.S, qp.A, rows.unit, _SHARE if weak else 0.0)
+    unit = rows.unit
+    curvature = _curvature(rows.S, qp.A, unit, _SHARE if weak else 0.0)
     if not curvature > 0.0:
         return np.inf, FLAT if weak else NOT_CONVEX
     if weak:
-        distance = (1.0 + 2.0 * rows.unit) * (distance + (1.0 + rows.unit) * missing / curvature)
+        distance = (1.0 + 2.0 * unit) * (distance + (1.0 + unit) * missing / curvature)
     if not distance < np.inf:
         return np.inf, FAR
     return distance, WEAK if weak else ""
@@ -289,9 +291,8 @@ def _curvature(S: Matrix, A: Matrix, unit: float, share: float) -> float:
         empty = (share == 0.0) & ~np.any(taking_part != 0.0, axis=0)
         filling = np.where(empty, trace + (trace == 0.0), 0.0)
         M = S + weight * (A.T @ A) + np.diag(filling)
-        loss = _TINY + 2.0 * unit * float(
-            np.abs(S).sum() + weight * (np.abs(A).sum(axis=1) ** 2).sum() + filling.sum()
-        )
+        size = np.abs(S).sum() + weight * (np.abs(A).sum(axis=1) ** 2).sum() + filling.sum()
+        loss = 2.0 * unit * float(size) + _TINY
         shift = 2.0 * loss
         try:
             if share > 0.0:

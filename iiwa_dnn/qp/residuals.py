@@ -4,7 +4,7 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp.dense import add_row, row_dot
-from iiwa_dnn.qp.layout import QPViews, Triple, Vector, copied, larger
+from iiwa_dnn.qp.layout import QPViews, Triple, Vector, copied, larger, qp_views
 
 
 @compiled
@@ -46,6 +46,12 @@ def point_residuals(qp: QPViews, point: Vector) -> Triple:
 
 
 @compiled
+def residuals_of(data: Vector, n: int, m: int, p: int, point: Vector) -> Triple:
+    """Compute `point_residuals` of a point (2n + m + p,), for a program's flat array, `QP.data`."""
+    return point_residuals(qp_views(data, n, m, p), point)
+
+
+@compiled
 def kkt_point(qp: QPViews, s: Vector, point: Vector) -> Triple:
     """Write the point [x | y | z | z_box] of a state [x | y | z | ...] into `point`.
 
@@ -81,6 +87,12 @@ def kkt_point(qp: QPViews, s: Vector, point: Vector) -> Triple:
         below = point[i] - qp.lb[i] + descent[i]
         descent[i] = max(above, 0.0) + min(below, 0.0)
     return point_residuals(qp, point)
+
+
+@compiled
+def point_of_state(data: Vector, n: int, m: int, p: int, s: Vector, point: Vector) -> Triple:
+    """Write the `kkt_point` (2n + m + p,) of a state, for a program's flat array, `QP.data`."""
+    return kkt_point(qp_views(data, n, m, p), s, point)
 
 
 @compiled

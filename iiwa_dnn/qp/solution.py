@@ -69,8 +69,9 @@ class Residuals(NamedTuple):
     @property
     def largest(self) -> float:
         """The largest of the three: the KKT residual that records and reports show."""
+        total = self.primal + self.dual + self.gap
         # max() would drop a NaN that does not come first.
-        return float(np.max(self))
+        return max(self) if total == total else total
 
 
 class Solution(NamedTuple):

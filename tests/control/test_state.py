@@ -134,8 +134,14 @@ DISTURBED: dict[str, Any] = {
         "halts": k == 300,
         "dt": DT * random.uniform(0.7, 1.3),
     },
+    "single long periods beside a ball": lambda k, random: {
+        "scheme": NEAR,
+        "way": JUMPS[k // 150],
+        "dt": 4.0 * DT * random.choice([0.1, 1.0, 10.0], p=[0.05, 0.9, 0.05]),
+    },
     "less jerk in motion": lambda k, random: {"scheme": SMOOTH if k > 30 else RATED},
 }
+JUMPS = np.random.default_rng(2).uniform(-0.4, 0.4, (7, 3))
 RATED, SMOOTH = (
     d.DoubleIndicator(extra_limits=(d.AccelerationLimits(10.0), d.JerkLimits(jerk)), home=PAPER_Q0)
     for jerk in (500.0, 20.0)
@@ -143,6 +149,8 @@ RATED, SMOOTH = (
 # Far from the ball; it stops along a motion that was in hand.
 AWAY = d.CollisionAvoidance(d.Sphere((5.0, 0.0, 0.0), 0.1), self_collision=False)
 BESIDE = d.DoubleIndicator(extra_limits=(d.AccelerationLimits(10.0), AWAY), home=PAPER_Q0)
+BALL = d.Sphere(paper_start().position + [0.0, 0.2, 0.0], 0.05)
+NEAR = replace(RATED, extra_limits=(*RATED.extra_limits, replace(AWAY, obstacles=BALL)))
 
 
 @pytest.mark.parametrize("disturbed", DISTURBED.values(), ids=DISTURBED)
@@ -151,12 +159,14 @@ def test_velocity_and_acceleration_hold_whatever_comes_upon_a_loop(disturbed: An
     # twenty times what it was, and the jerk limit held it there.
     random = np.random.default_rng(0)
     controller = d.Controller(paper_robot(), RATED, dt=DT, policy="relax")
-    target = d.Target(paper_start().position + [0.0, 0.2, 0.0], paper_start().rotation)
+    start = paper_start()
     q = np.array(PAPER_Q0)
     last = np.zeros(7)
     rates, jerks = [np.zeros(7)], []
     for k in range(1000):
-        asked = {"scheme": RATED, "sent": 0.0, "dt": DT, "halts": False} | disturbed(k, random)
+        asked = {"scheme": RATED, "sent": 0.0, "dt": DT, "halts": False, "way": [0.0, 0.2, 0.0]}
+        asked |= disturbed(k, random)
+        target = d.Target(start.position + asked["way"], start.rotation)
         controller.scheme = asked["scheme"]
         if asked["halts"]:
             controller.halt()

@@ -20,7 +20,8 @@ def test_qpsolvers_lists_the_network_once_and_solves_with_it() -> None:
         options = {"solver": "iiwa_dnn", "eps_abs": 1e-8}
         x = qpsolvers.solve_qp(*problem.unpack(), initvals=known, **options)
         np.testing.assert_allclose(x, known, atol=1e-5)
-        assert qpsolvers.solve_problem(problem, solver="iiwa_dnn").is_optimal(2e-9)
+        solution = qpsolvers.solve_problem(problem, solver="iiwa_dnn")
+        assert solution.is_optimal(2e-9)
 
 
 def test_no_solution_and_bad_input_are_told_as_qpsolvers_does() -> None:

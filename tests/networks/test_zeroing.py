@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from helpers_kinematics import finite_difference
 from helpers_qp import known_qp
-from iiwa_dnn import QP, DNNSolver, ExplicitEuler
+from iiwa_dnn import QP, DNNSolver, ExplicitEuler, NoSolutionError
 from iiwa_dnn.networks import ZeroingNetwork
 from iiwa_dnn.networks.activations import (
     SIGN_BI_POWER,
@@ -188,3 +188,9 @@ def test_a_moving_program_leaves_no_error_where_another_network_lags() -> None:
     ours, lag = (np.abs(error_of(last, one.state)).max() for one in (solver, blind))
     assert ours < 1e-3
     assert lag > 100.0 * ours
+
+
+def test_a_singular_program_is_told() -> None:
+    network, singular = ZeroingNetwork(), QP(np.zeros((2, 2)), [1.0, 1.0])
+    with pytest.raises(NoSolutionError, match="is singular"):
+        network.rates(singular, np.zeros(2))

@@ -51,10 +51,6 @@ SHORTEST = 30.0
 """Length of the first backward Euler step [rho]."""
 GROWTH = 10.0
 """Growth of that length from round to round."""
-GENTLE = 3e4
-"""Longest backward Euler step of the last start [rho]: a multiplier is known to the length of a
-step times the rounding of its slack, so that in a large degenerate program long steps undo what
-they gain."""
 STUCK = 15
 """Rounds in which the smallest rate so far is not halved, before the end: there is no solution, or
 rounding keeps the residuals above the tolerance."""
@@ -137,21 +133,6 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
     """Advance `s` (size,) in place until the residuals of `point` (size,) are small enough.
 
     A compiled answer (`enter_answer`), of the projection network alone: `rates` is not used.
-    """
-    return settle_up_to(qp, constants, LONGEST, s, point)
-
-
-@compiled
-def settle_gently(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector) -> Answered:
-    """Advance `s` (size,) as `settle` does, with backward Euler steps of at most `GENTLE`."""
-    return settle_up_to(qp, constants, GENTLE, s, point)
-
-
-@compiled
-def settle_up_to(
-    qp: QPViews, constants: Vector, longest: float, s: Vector, point: Vector
-) -> Answered:
-    """Advance `s` (size,) with backward Euler steps that grow up to a longest one [rho].
 
     Returns:
         ``(systems, time, primal, dual, gap)``: linear systems solved, network time that passed
@@ -204,26 +185,18 @@ def settle_up_to(
         time += step
         copied(s, new)
         rate = field(qp, s, now)
-        if step < longest:
+        if step < LONGEST:
             step *= GROWTH
     primal, dual, gap = kkt_point(qp, s, point)
     return systems, time, primal, dual, gap
 
 
-def settle_program(
-    qp: QP,
-    state: Vector,
-    point: Vector,
-    tol: float,
-    max_systems: int,
-    gently: bool = False,
-) -> Settled:
-    """Settle the projection network from `state` (size,); see `settle` and `settle_gently`."""
+def settle_program(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -> Settled:
+    """Settle the projection network from `state` (size,); see `settle`."""
     n, m, p = qp.sizes
     check_size("state", state, 3 * n + m + p)
     check_size("point", point, 2 * n + m + p)
-    address = enter_answer.address(settle_gently if gently else settle)
-    answered = answer_program(
-        qp.data, qp.sizes, address, 0, np.array([tol, max_systems]), state, point
-    )
+    constants = np.array([tol, max_systems])
+    address = enter_answer.address(settle)
+    answered = answer_program(qp.data, qp.sizes, address, 0, constants, state, point)
     return int(answered[0]), *answered[1:]

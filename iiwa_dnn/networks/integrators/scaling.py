@@ -1,4 +1,4 @@
-"""Settling in other units: further starts in which nothing stands out, and a steeper cost.
+"""Settling in other units: a second start in which nothing stands out, and a steeper cost.
 
 The variables and the rows of A and G get factors with which all rows of the KKT matrix have a size
 near 1, and the cost is divided by its largest entry. For the network that is another time constant
@@ -24,18 +24,12 @@ STEEP = 1e5
 
 
 def settle_scaled(
-    qp: QP,
-    state: Vector,
-    point: Vector,
-    tol: float,
-    budget: int,
-    before: Settled,
-    gently: bool,
+    qp: QP, state: Vector, point: Vector, tol: float, budget: int, before: Settled
 ) -> Settled:
-    """Settle a program from zero in scaled units, gently or not, then in its own.
+    """Settle a program from zero in scaled units, then in its own.
 
-    The state is (3 n + m + p,), the point (2 n + m + p,); the systems and the time of the progress
-    `before` are added, and the systems count in the budget.
+    The state is (3 n + m + p,), the point (2 n + m + p,); systems and time of the progress `before`
+    are added.
     """
     n, m, p = qp.sizes
     rows = np.vstack([qp.A, qp.G])
@@ -50,11 +44,10 @@ def settle_scaled(
         P / cost, q / cost, rows[p:], limits[p:], rows[:p], limits[:p], qp.lb / own, qp.ub / own
     )
     state[:] = 0.0
-    left = budget - before[0]
-    first = settle_program(scaled, state, point, STRICTER * tol / max(1.0, cost), left, gently)
+    first = settle_program(scaled, state, point, STRICTER * tol / max(1.0, cost), budget)
     state[n:] *= cost
     state *= np.concatenate([own, of_rows, 1.0 / own, 1.0 / own])
-    second = settle_program(qp, state, point, tol, left - first[0])
+    second = settle_program(qp, state, point, tol, budget - first[0])
     return before[0] + first[0] + second[0], before[1] + first[1] + second[1], *second[2:]
 
 
