@@ -95,11 +95,11 @@ def _incomplete(metrics: Mapping[str, Any]) -> Iterator[str]:
 
 def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
     """Name the steps without the network's answer; clipping and active bounds are no failures."""
-    incidents = metrics.get("incidents", {})
+    incidents = metrics["incidents"]
     done = {
         word: incidents[f"{action}_steps"]
         for action, word in DONE.items()
-        if action != "euler" and incidents.get(f"{action}_steps")
+        if action != "euler" and incidents[f"{action}_steps"]
     }
     if not done:
         return
@@ -108,7 +108,7 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
         "no bound: a singular pose, a path out of reach or tasks against each other; another start "
         "(--q0) may help"
     )
-    unblocked = incidents.get("unblocked_steps", 0)
+    unblocked = incidents["unblocked_steps"]
     limits = [limit for limit in incidents["blocking"][:3] if limit["steps"] >= unblocked]
     blocking = ", ".join(map(describe, limits)) or pose
     kind = limits[0].get("limit") if limits else None

@@ -1,16 +1,16 @@
 """The numbers that sum up a run: pure functions of its record."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn import checks
+from iiwa_dnn.checks import Array, instance
 from iiwa_dnn.files import plain
 from iiwa_dnn.naming import ACTIONS, in_the_way
-from iiwa_dnn.results.record import RATES, FloatArray, Record
+from iiwa_dnn.results.record import RATES, Record
 
 PROGRAMS = ("own", "scaled", "softened", "held", "stopped")
 """Kinds of a step by their codes in `Record.kind`."""
@@ -37,24 +37,24 @@ JOINT_LIMITS = {
 _AT_LIMIT = 1.0 - 1e-9
 
 
-def position_error(record: Record) -> FloatArray:
+def position_error(record: Record) -> Array:
     """Compute the tip position minus the desired tip position [m], (N+1, 3)."""
     return record.position - record.position_desired
 
 
-def orientation_error(record: Record) -> FloatArray:
+def orientation_error(record: Record) -> Array:
     """Compute the angle between the tip's orientation and the desired one [rad], (N+1,)."""
     return rotation_angle(record.rotation, record.rotation_desired)
 
 
-def frame_errors(record: Record) -> tuple[FloatArray, FloatArray]:
+def frame_errors(record: Record) -> tuple[Array, Array]:
     """Compute distances [m] and angles [rad] of the f further frames to their targets, (N+1, f)."""
     offset = record.frame_position - record.frame_position_desired
     angle = rotation_angle(record.frame_rotation, record.frame_rotation_desired)
     return np.linalg.norm(offset, axis=2), angle
 
 
-def rotation_angle(rotation: FloatArray, desired: FloatArray) -> FloatArray:
+def rotation_angle(rotation: Array, desired: Array) -> Array:
     """Compute the angle between two orientations (..., 3, 3) [rad], (...), in [0, π].
 
     With R_e = R_desiredᵀ R the angle is atan2(‖vee((R_e − R_eᵀ)/2)‖, (tr R_e − 1)/2). The usual
@@ -64,17 +64,17 @@ def rotation_angle(rotation: FloatArray, desired: FloatArray) -> FloatArray:
     skew = 0.5 * (relative - np.swapaxes(relative, -1, -2))
     sine = np.linalg.norm(skew[..., [2, 0, 1], [1, 2, 0]], axis=-1)
     cosine = 0.5 * (np.trace(relative, axis1=-1, axis2=-2) - 1.0)
-    angle: FloatArray = np.arctan2(sine, cosine)
+    angle: Array = np.arctan2(sine, cosine)
     return angle
 
 
-def limits(record: Record, key: str, unlimited: float = np.inf) -> FloatArray:
+def limits(record: Record, key: str, unlimited: float = np.inf) -> Array:
     """Return a limit of each joint out of the settings, (n,); None there stands for no limit."""
     values = record.settings[key]
     return np.array([unlimited if value is None else value for value in values], dtype=float)
 
 
-def _rate_excess(record: Record, order: int) -> FloatArray:
+def _rate_excess(record: Record, order: int) -> Array:
     """Compute the excess of each joint's acceleration or jerk over its limit, (N, n).
 
     Finite differences of the commands, from rest, less the rounding that they carry on; the order
@@ -84,11 +84,11 @@ def _rate_excess(record: Record, order: int) -> FloatArray:
     from_rest = np.vstack([np.zeros((order, record.dof)), record.dq])
     rates = np.diff(from_rest, order, axis=0) / dt**order
     rounding = 8.0 * np.finfo(float).eps * np.abs(record.dq).max(initial=1.0) * (2.0 / dt) ** order
-    excess: FloatArray = np.abs(rates) - (limits(record, RATES[order - 1]) + rounding)
+    excess: Array = np.abs(rates) - (limits(record, RATES[order - 1]) + rounding)
     return excess
 
 
-def _excesses(record: Record) -> dict[str, FloatArray]:
+def _excesses(record: Record) -> dict[str, Array]:
     """Compute the excess over each joint limit of the run at each step or sample, by its metric."""
     below = limits(record, "q_lower", -np.inf) - record.q
     above = record.q - limits(record, "q_upper")
@@ -113,10 +113,10 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     ``mse_position_error_m2`` is the mean over the N+1 samples *and* the three axes, which is most
     likely the paper's MSE: a third of the mean squared distance. ``duration_s`` is the time
     simulated; ``settings["duration"]`` was asked for. ``violations`` says of each broken limit
-    where its excess is largest, ``unsolved`` of the answers above the tolerance which is the first.
-    A run in physics also has ``physics`` (torques, settled error), one that tracks several frames
-    ``frames`` (largest errors of those beside the first), a run in which a bound, an inequality
-    row, a policy or clipping acted ``incidents``, one that avoids collisions ``collisions`` (the
+    where its excess is largest, ``unsolved`` of the answers above the tolerance which is the first,
+    ``incidents`` which bounds, inequality rows and policies acted, and for how many steps. A run in
+    physics also has ``physics`` (torques, settled error), one that tracks several frames ``frames``
+    (largest errors of those beside the first), one that avoids collisions ``collisions`` (the
     nearest pair, and by how much it came nearer than it may).
 
     Args:
@@ -126,18 +126,12 @@ def compute_metrics(record: Record) -> dict[str, Any]:
         The metrics, units in their names. A number that does not exist is None: an overflow, an
         unknown wall time, a maximum over no steps.
     """
-    checks.instance("record", record, Record)
+    instance("record", record, Record)
     settings = record.settings
     error = position_error(record)
     distance = np.linalg.norm(error, axis=1)
     duration = float(record.t[-1] - record.t[0])
     excesses = _excesses(record)
-    further = {
-        "physics": _physics(record, distance),
-        "incidents": _incidents(record),
-        "frames": _frames(record),
-        "collisions": _collisions(record),
-    }
     metrics: dict[str, Any] = plain(
         {
             "path_completed": record.path_completed,
@@ -163,7 +157,12 @@ def compute_metrics(record: Record) -> dict[str, Any]:
                 "max": _max(record.iterations),
             },
             "crosscheck": _crosscheck(record),
-            **{name: sums for name, sums in further.items() if sums},
+            "incidents": _incidents(record),
+            **{
+                name: sum_up(record)
+                for name, (column, sum_up) in FURTHER.items()
+                if len(getattr(record, column))
+            },
             "settings": {key: value for key, value in settings.items() if key != "versions"},
             "versions": settings.get("versions", {}),
         }
@@ -190,7 +189,7 @@ def _unsolved(record: Record) -> dict[str, Any] | None:
     return first and first | {"residual": record.kkt_residual[first["step"]]}
 
 
-def _worst(record: Record, excess: FloatArray) -> dict[str, Any] | None:
+def _worst(record: Record, excess: Array) -> dict[str, Any] | None:
     """Name the joint and the step of the largest excess (k, n) above zero."""
     if not excess.max(initial=0.0) > 0.0:
         return None
@@ -198,7 +197,7 @@ def _worst(record: Record, excess: FloatArray) -> dict[str, Any] | None:
     return {"joint": record.settings["joints"][joint], "step": step, "time_s": record.t[step]}
 
 
-def _active(record: Record) -> FloatArray:
+def _active(record: Record) -> Array:
     """Return the multipliers of the n bounds and the m inequality rows, (N, n + m)."""
     return np.hstack([record.filled(name) for name in ("bound_multiplier", "row_multiplier")])
 
@@ -263,10 +262,9 @@ def _judged_by(record: Record, asked: NDArray[np.bool_]) -> dict[str, int]:
     return dict(counts)  # a sum has no counts of zero
 
 
-def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
-    """Sum up the torques and the settled error; the distance is that to the path [m], (N+1,)."""
-    if not len(record.torque):
-        return {}
+def _physics(record: Record) -> dict[str, Any]:
+    """Sum up the torques and the settled error."""
+    distance = np.linalg.norm(position_error(record), axis=1)
     torque = np.abs(record.torque)
     limit = limits(record, "torque_max")
     reached = ~(torque < limit)
@@ -283,8 +281,6 @@ def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
 
 def _frames(record: Record) -> dict[str, Any]:
     """Sum up the errors of the tracked frames beside the first."""
-    if not len(record.frame_position):
-        return {}
     largest = [errors.max(axis=0) for errors in frame_errors(record)]
     return {
         name: {"max_position_error_m": distance, "max_orientation_error_rad": angle}
@@ -294,8 +290,6 @@ def _frames(record: Record) -> dict[str, Any]:
 
 def _collisions(record: Record) -> dict[str, Any]:
     """Name the nearest pair of a run, and the distance by which it was too near."""
-    if not len(record.distance):
-        return {}
     least = int(record.distance.argmin())
     stated = record.settings["collisions"]
     first, second = stated["pairs"][record.nearest[least]]
@@ -314,8 +308,6 @@ def _incidents(record: Record) -> dict[str, Any]:
     multipliers = _active(record)
     action = record.filled("action")
     clipped = record.filled("clipped").any(axis=1)
-    if not (multipliers.any() or action.any() or clipped.any()):
-        return {}
     kinds = np.abs(record.bound_kind)
     if not len(kinds):
         # A bound is the velocity limit itself, or the tighter one near a position limit.
@@ -338,7 +330,15 @@ def _limits(record: Record, codes: NDArray[Any]) -> list[Mapping[str, Any]]:
     """Count the steps of each limit, the longest first; codes of bounds and rows (N, n + m)."""
     found = []
     for column, one in zip(codes.T, np.eye(codes.shape[1], dtype=int), strict=True):
-        for code in np.unique(column):
+        for code in np.unique(column[column != 0]):
             limit = in_the_way(record.settings, code * one[: record.dof], code * one[record.dof :])
             found += [name | (_first(record, column == code) or {}) for name in limit]
     return sorted(found, key=lambda limit: (-limit["steps"], "joint" in limit))
+
+
+FURTHER: dict[str, tuple[str, Callable[[Record], dict[str, Any]]]] = {
+    "physics": ("torque", _physics),
+    "frames": ("frame_position", _frames),
+    "collisions": ("distance", _collisions),
+}
+"""Metrics that not every run has: the column that they are of, and what sums it up."""

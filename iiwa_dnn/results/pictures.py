@@ -11,15 +11,16 @@ from collections.abc import Iterable, Iterator
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import import_extra
 from iiwa_dnn.files import write_atomically
-from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
-from iiwa_dnn.results.record import FloatArray, Record
+from iiwa_dnn.results.plots import COLUMN, new_figure, write_figures
+from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.mujoco_model import (
     VISUAL_GROUP,
     build_spec,
@@ -32,8 +33,6 @@ from iiwa_dnn.robot.shapes import visual_meshes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-Image = NDArray[np.uint8]
 
 MOMENTS = 5
 """Pictures in the figure: after each fifth of the run, so at 2, 4, 6, 8 and 10 s of the paper's."""
@@ -89,7 +88,7 @@ def moments_figure(robot: Robot, record: Record, pixels: int = 560) -> Figure:
     Raises:
         MissingDependencyError: MuJoCo or an OpenGL library is not installed.
     """
-    figure = new_figure(DOUBLE_COLUMN, DOUBLE_COLUMN / MOMENTS + 0.2)
+    figure = new_figure(2 * COLUMN, 2 * COLUMN / MOMENTS + 0.2)
     samples = np.linspace(0, record.steps, MOMENTS + 1).astype(int)[1:]
     images = draw_arm(robot, record, samples, (pixels, pixels))
     for panel, sample, image in zip(figure.subplots(1, MOMENTS), samples, images, strict=True):
@@ -108,23 +107,22 @@ def save_video(robot: Robot, record: Record, path: str | os.PathLike[str]) -> No
         MissingDependencyError: MuJoCo, an OpenGL library or the encoder is not installed.
         FileError: The file cannot be written.
     """
-    encoder = import_extra("imageio.v2", "pip install 'iiwa-dnn[sim]'")
+    imageio = import_extra("imageio.v3", "pip install 'iiwa-dnn[sim]'")
     count = max(1, round(float(record.t[-1] - record.t[0]) * FRAME_RATE)) + 1
     samples = np.linspace(0, record.steps, count).astype(int)
     # The index at the front, so that a page can start to play it at once.
-    options = {"macro_block_size": 2, "output_params": ["-movflags", "+faststart"]}
-
-    def encode(file: BinaryIO) -> None:
-        with encoder.get_writer(file, format="mp4", fps=FRAME_RATE, **options) as writer:
-            for image in draw_arm(robot, record, samples, SIZE):
-                writer.append_data(image)
-
-    write_atomically(path, encode)
+    options = {
+        "fps": FRAME_RATE,
+        "macro_block_size": 2,
+        "output_params": ["-movflags", "+faststart"],
+    }
+    mp4 = partial(imageio.imwrite, plugin="FFMPEG", extension=".mp4", is_batch=True, **options)
+    write_atomically(path, partial(mp4, image=draw_arm(robot, record, samples, SIZE)))
 
 
 def draw_arm(
     robot: Robot, record: Record, samples: Iterable[int], size: tuple[int, int]
-) -> Iterator[Image]:
+) -> Iterator[NDArray[np.uint8]]:
     """Yield pictures of the arm, with the path so far, at samples of a record, 0 to N each.
 
     A picture has the shape (height, width, 3) and colors to 255; the size is width by height
@@ -151,8 +149,7 @@ def draw_arm(
             data.qpos[:] = record.q[sample]
             for i, obstacle in enumerate(obstacles):
                 data.mocap_pos[i] = obstacle.shift(float(record.t[sample]))
-            mujoco.mj_kinematics(model, data)
-            mujoco.mj_camlight(model, data)
+            mujoco.mj_forward(model, data)
             renderer.update_scene(data, camera, options)
             # A little farther off than what is drawn, so that it never shows through that.
             behind = 2e-3 * camera.distance * renderer.scene.camera[0].forward
@@ -174,12 +171,11 @@ def _scene(mujoco: Any, robot: Robot, obstacles: Iterable[Obstacle]) -> Any:
         "contype": 0,
         "conaffinity": 0,
     }
-    joints = {joint.name: joint.parent for joint in arm.joints}
     for i, mesh in enumerate(visual_meshes(robot)):
         faces = mesh.faces.ravel()
         name = f"mesh_{i}"
         arm.add_mesh(name=name, uservert=mesh.corners.ravel(), userface=faces, inertia=shell)
-        body = joints[robot.model.names[mesh.joint]] if mesh.joint else arm.worldbody
+        body = arm.joint(robot.model.names[mesh.joint]).parent if mesh.joint else arm.worldbody
         body.add_geom(meshname=name, rgba=[*mesh.color, 1.0], **shape)
     spec.attach(arm, prefix="arm_", frame=spec.worldbody.add_frame())
     for i, obstacle in enumerate(obstacles):
@@ -191,7 +187,7 @@ def _scene(mujoco: Any, robot: Robot, obstacles: Iterable[Obstacle]) -> Any:
 
 
 def _add_line(
-    mujoco: Any, scene: Any, points: FloatArray, width: float, color: tuple[float, ...]
+    mujoco: Any, scene: Any, points: Array, width: float, color: tuple[float, ...]
 ) -> None:
     """Add a path (M, 3) [m] to the scene as lines of this width [pixel]."""
     kind = mujoco.mjtGeom.mjGEOM_LINE

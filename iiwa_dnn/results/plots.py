@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from iiwa_dnn.checks import Array
 from iiwa_dnn.files import prepare_folder, write_atomically
 from iiwa_dnn.naming import short_names
 from iiwa_dnn.results.metrics import frame_errors, limits, orientation_error, position_error
-from iiwa_dnn.results.record import FloatArray, Record
+from iiwa_dnn.results.record import Record
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     Panel = Callable[[Axes, Record], None]
 
 COLUMN = 3.5  # width in a two-column journal [in]
-DOUBLE_COLUMN = 7.0
 BUCKETS = 700  # stretches of a curve: one for each pixel across a column at 200 dots an inch
 STYLE = Path(__file__).with_name("style.mplstyle")
 CAPTIONS = {
@@ -94,17 +93,13 @@ def new_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def envelope(
-    t: FloatArray, curve: FloatArray, buckets: int = BUCKETS
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def envelope(t: Array, curve: Array, buckets: int = BUCKETS) -> tuple[Array, Array, Array, Array]:
     """Sum up a curve (M,) over times [s] (M,) in stretches of equal length; no spike is lost.
 
     Returns:
         Mean time, and mean, least and greatest value of each stretch, (min(M, buckets),) each.
     """
-    if len(curve) <= buckets:
-        return t, curve, curve, curve
-    starts = np.linspace(0, len(curve), buckets, endpoint=False).astype(int)
+    starts = np.linspace(0, len(curve), min(len(curve), buckets), endpoint=False).astype(int)
     counts = np.diff(starts, append=len(curve))
     times, mean = (np.add.reduceat(values, starts) / counts for values in (t, curve))
     return times, mean, np.minimum.reduceat(curve, starts), np.maximum.reduceat(curve, starts)
@@ -116,7 +111,7 @@ def overview_figure(record: Record) -> Figure:
     A run in physics, one that avoids collisions and one that tracks several frames have further
     panels.
     """
-    further: dict[Panel, NDArray[Any]] = {
+    further: dict[Panel, Array] = {
         partial(draw_joints, name="torque"): record.torque,
         draw_frames: record.frame_position,
         draw_distance: record.distance,
@@ -194,7 +189,7 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     label_time(axes, record, quantity, columns=4 if max(map(len, names)) < 8 else 2)
 
 
-def _draw_curve(axes: Axes, t: FloatArray, curve: FloatArray, **line: Any) -> None:
+def _draw_curve(axes: Axes, t: Array, curve: Array, **line: Any) -> None:
     """Draw the mean of each stretch as a line, and in a pale band its extremes."""
     times, mean, least, greatest = envelope(t, curve)
     axes.plot(times, mean, **line)
@@ -217,9 +212,8 @@ def draw_orientation_error(axes: Axes, record: Record) -> None:
     """Draw the angle between the tool's orientation and the desired one over time."""
     error = orientation_error(record)
     # Without the start, where it is rounding.
-    shown = np.where(error > 1e-5 * np.nanmax(error), error, 0.0)
-    draw_log(axes, record.t, shown[:, np.newaxis], ["angle to the target"])
-    label_time(axes, record, "Orientation error [rad]")
+    shown = np.where(error > 1e-5 * np.nanmax(error), error, 0.0)[:, np.newaxis]
+    draw_log(axes, record, shown, ["angle to the target"], "Orientation error [rad]")
 
 
 def draw_kinetic_index(axes: Axes, record: Record) -> None:
@@ -230,24 +224,33 @@ def draw_kinetic_index(axes: Axes, record: Record) -> None:
 
 def draw_residual(axes: Axes, record: Record) -> None:
     """Draw the KKT residual of the network's answers over time, and its tolerance."""
-    # In continuous mode it is a lag, which no tolerance is meant for.
-    tolerance = record.settings["tol"] if record.settings["mode"] == "converged" else None
-    draw_log(axes, record.t[:-1], record.kkt_residual[:, np.newaxis], ["network"], tolerance)
-    label_time(axes, record, "KKT residual")
+    draw_log(
+        axes,
+        record,
+        record.kkt_residual[:, np.newaxis],
+        ["network"],
+        "KKT residual",
+        record.settings["tol"],
+    )
 
 
 def draw_gap(axes: Axes, record: Record) -> None:
     """Draw the gap to each reference over time, and its tolerance; missing answers are gaps."""
     check = record.settings["check"]
-    tolerance = check["tolerance"] if record.settings["mode"] == "converged" else None
-    draw_log(axes, record.t[:-1], record.solution_gap, check["solvers"], tolerance)
-    label_time(axes, record, "Gap to reference [rad/s]")
+    draw_log(
+        axes,
+        record,
+        record.solution_gap,
+        check["solvers"],
+        "Gap to reference [rad/s]",
+        check["tolerance"],
+    )
 
 
 def draw_frames(axes: Axes, record: Record) -> None:
     """Draw the position error of each further tracked frame over time."""
-    draw_log(axes, record.t, frame_errors(record)[0], record.settings["frames"])
-    label_time(axes, record, "Position error [m]")
+    distances = frame_errors(record)[0]
+    draw_log(axes, record, distances, record.settings["frames"], "Position error [m]")
 
 
 def draw_distance(axes: Axes, record: Record) -> None:
@@ -261,23 +264,26 @@ def draw_distance(axes: Axes, record: Record) -> None:
 
 def draw_log(
     axes: Axes,
-    t: FloatArray,
-    values: FloatArray,
+    record: Record,
+    values: Array,
     names: Sequence[str],
+    quantity: str,
     tolerance: float | None = None,
 ) -> None:
-    """Draw positive values on a log scale, of each stretch the largest.
+    """Draw positive values over time on a log scale, of each stretch the largest.
 
-    The times (N,) are in [s], the values (N, k) have k names. A tolerance is a dashed line.
-    Zero and infinity have no point there.
+    The values, one a sample or one a step of the record, (N, k), have k names. Zero and infinity
+    have no point there. A tolerance is a dashed line, but not in continuous mode: what lags behind
+    is not judged by it.
     """
     axes.set_yscale("log", nonpositive="mask")
     for name, curve in zip(names, values.T, strict=True):
         shown = (curve > 0.0) & np.isfinite(curve)
-        times, _, _, greatest = envelope(t[shown], curve[shown])
+        times, _, _, greatest = envelope(record.t[: len(curve)][shown], curve[shown])
         axes.plot(times, greatest, ".-", markersize=1.0, linewidth=0.8, label=name)
-    if tolerance is not None:
+    if tolerance is not None and record.settings["mode"] == "converged":
         axes.axhline(tolerance, color="0.0", linestyle="--", label="tolerance")
+    label_time(axes, record, quantity)
 
 
 def label_time(axes: Axes, record: Record, quantity: str, columns: int = 4) -> None:

@@ -9,10 +9,10 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from iiwa_dnn.checks import Array, read_only
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line, percent, plain, write_atomically
 
-FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 CodeArray = NDArray[np.int8]
 
@@ -60,9 +60,7 @@ class Column(NamedTuple):
             symbols = f"({', '.join(map(str, self.shape))}) = {expected}"
             problem = f"{array.dtype} of shape {array.shape}, expected numbers {symbols}"
             raise InvalidInputError(name, problem, value)
-        array = array.astype(self.dtype, order="C", copy=False)
-        array.flags.writeable = False
-        return array
+        return read_only(array.astype(self.dtype, order="C", copy=False))
 
 
 ABSENT: Any = ()
@@ -84,44 +82,40 @@ class Record:
         wall_time_s: Wall time of the run [s]. Not saved: the same seed gives the same file.
     """
 
-    t: Annotated[FloatArray, Column("Time [s], increasing", ("N+1",))]
-    q: Annotated[FloatArray, Column("Joint positions [rad]", ("N+1", "n"))]
-    dq: Annotated[FloatArray, Column("Joint velocities that moved the robot [rad/s]", ("N", "n"))]
+    t: Annotated[Array, Column("Time [s], increasing", ("N+1",))]
+    q: Annotated[Array, Column("Joint positions [rad]", ("N+1", "n"))]
+    dq: Annotated[Array, Column("Joint velocities that moved the robot [rad/s]", ("N", "n"))]
     dq_solver: Annotated[
-        FloatArray, Column("Joint velocities that the controller answered [rad/s]", ("N", "n"))
+        Array, Column("Joint velocities that the controller answered [rad/s]", ("N", "n"))
     ]
-    position: Annotated[FloatArray, Column("Tip position [m]", ("N+1", 3))]
-    rotation: Annotated[
-        FloatArray, Column("Tip orientation, tip axes to world axes", ("N+1", 3, 3))
-    ]
-    position_desired: Annotated[FloatArray, Column("Desired tip position [m]", ("N+1", 3))]
-    rotation_desired: Annotated[FloatArray, Column("Desired tip orientation", ("N+1", 3, 3))]
+    position: Annotated[Array, Column("Tip position [m]", ("N+1", 3))]
+    rotation: Annotated[Array, Column("Tip orientation, tip axes to world axes", ("N+1", 3, 3))]
+    position_desired: Annotated[Array, Column("Desired tip position [m]", ("N+1", 3))]
+    rotation_desired: Annotated[Array, Column("Desired tip orientation", ("N+1", 3, 3))]
     kinetic_index: Annotated[
-        FloatArray, Column("dqᵀ G(q) dq: [rad²/s²] with G = I, [J] with inertia", ("N",))
+        Array, Column("dqᵀ G(q) dq: [rad²/s²] with G = I, [J] with inertia", ("N",))
     ]
-    kkt_residual: Annotated[
-        FloatArray, Column("Largest KKT residual of the network's answer", ("N",))
-    ]
+    kkt_residual: Annotated[Array, Column("Largest KKT residual of the network's answer", ("N",))]
     iterations: Annotated[
         IntArray, Column("Network iterations (sub-steps) spent on each step", ("N",), np.int64)
     ]
     solution_gap: Annotated[
-        FloatArray,
+        Array,
         Column("Largest joint velocity difference to each reference [rad/s]", ("N", "k")),
     ]
     objective_gap: Annotated[
-        FloatArray, Column("Difference in the objective to each reference", ("N", "k"))
+        Array, Column("Difference in the objective to each reference", ("N", "k"))
     ]
     reference_residual: Annotated[
-        FloatArray, Column("Largest KKT residual of each reference's own answer", ("N", "k"))
+        Array, Column("Largest KKT residual of each reference's own answer", ("N", "k"))
     ]
     settings: dict[str, Any]
     torque: Annotated[
-        FloatArray,
+        Array,
         Column("Joint torques of a run in physics [N m], the largest of each step", ("N", "n")),
     ] = ABSENT
     bound_multiplier: Annotated[
-        FloatArray,
+        Array,
         Column(
             "Multipliers of the joint velocity bounds: positive at an upper one, negative at a "
             "lower one, 0 at an inactive one (`RowLayout.multipliers`); the decrease of the "
@@ -147,7 +141,7 @@ class Record:
         ),
     ] = ABSENT
     fraction: Annotated[
-        FloatArray,
+        Array,
         Column(
             "Fraction of a control period by which the reference's clock advanced", ("N",), fill=1.0
         ),
@@ -172,7 +166,7 @@ class Record:
         ),
     ] = ABSENT
     row_multiplier: Annotated[
-        FloatArray,
+        Array,
         Column(
             'Multipliers z >= 0 of the m inequality rows that ``settings["rows"]`` names '
             '(``{"part": ..., "row": ...}``, row from 1), 0 of an inactive one',
@@ -195,7 +189,7 @@ class Record:
         ),
     ] = ABSENT
     excess: Annotated[
-        FloatArray,
+        Array,
         Column(
             "Largest excess of each command over the bounds of its own step, and, unless it is "
             "held back, over its inequality rows",
@@ -212,21 +206,21 @@ class Record:
         ),
     ] = ABSENT
     frame_position: Annotated[
-        FloatArray,
+        Array,
         Column('Positions of the tracked frames ``settings["frames"]`` [m]', ("N+1", "f", 3)),
     ] = ABSENT
-    frame_rotation: Annotated[
-        FloatArray, Column("Orientations of these frames", ("N+1", "f", 3, 3))
-    ] = ABSENT
+    frame_rotation: Annotated[Array, Column("Orientations of these frames", ("N+1", "f", 3, 3))] = (
+        ABSENT
+    )
     frame_position_desired: Annotated[
-        FloatArray, Column("Desired positions of these frames [m]", ("N+1", "f", 3))
+        Array, Column("Desired positions of these frames [m]", ("N+1", "f", 3))
     ] = ABSENT
     frame_rotation_desired: Annotated[
-        FloatArray, Column("Desired orientations of these frames", ("N+1", "f", 3, 3))
+        Array, Column("Desired orientations of these frames", ("N+1", "f", 3, 3))
     ] = ABSENT
-    distance: Annotated[
-        FloatArray, Column("Distance of the nearest pair of bodies [m]", ("N+1",))
-    ] = ABSENT
+    distance: Annotated[Array, Column("Distance of the nearest pair of bodies [m]", ("N+1",))] = (
+        ABSENT
+    )
     nearest: Annotated[
         IntArray,
         Column('Index of that pair in ``settings["collisions"]["pairs"]``', ("N+1",), np.int64),
@@ -261,10 +255,10 @@ class Record:
         return int(self.q.shape[1])
 
     @property
-    def crosscheck_gap(self) -> FloatArray:
+    def crosscheck_gap(self) -> Array:
         """Largest `solution_gap` over the references [rad/s], (N,); NaN where none was asked."""
         # One solver's NaN does not hide another's answer.
-        gap: FloatArray = np.fmax.reduce(self.solution_gap, axis=1, initial=np.nan)
+        gap: Array = np.fmax.reduce(self.solution_gap, axis=1, initial=np.nan)
         return gap
 
     @property

@@ -37,10 +37,14 @@ _RESULTS = (
     ("largest position error, settled", "physics.max_position_error_settled_m", "m"),
     ("largest torque of each joint", "physics.max_torque_n_m", "N m"),
     ("largest torque, of its limit", "physics.max_torque_share", ""),
+    ("least distance", "collisions.least_distance_m", "m"),
+    ("least distance allowed", "collisions.allowed_m", "m"),
+    ("nearest pair, one body", "collisions.first", ""),
+    ("nearest pair, other body", "collisions.second", ""),
     ("steps with a clipped command", "incidents.clipped_steps", ""),
     *((f"steps {word}", f"incidents.{own}_steps", "") for own, word in DONE.items()),
 )
-"""Rows of numbers: quantity, place in the metrics, and unit."""
+"""Rows of results: quantity, place in the metrics, and unit."""
 
 _MOST = 6
 """Limits of each kind that have a row of their own, and entries of a long list that are shown."""
@@ -127,31 +131,27 @@ def rows(
 
     Numbers that do not exist are left out, and counts of no steps.
     """
-    settings = metrics["settings"]
-    steps = f"{counted(metrics['steps'])} of {_text(metrics['dt_s'])} s"
-    yield "run", f"{settings['robot']}, {settings['mode']}, {steps}", ""
-    yield "cross-check", _checked(metrics["crosscheck"]), ""
+    check = metrics["crosscheck"]
+    judges = " or ".join(check["judged_by"]) or check["solver"]
+    checked = f"{judges}: {programs_checked(check)}"
+    yield "cross-check", checked if check["judged"] else f"{checked}, not judged", ""
     yield "path completed", completed(metrics), ""
     for name, place, unit in _RESULTS:
         value = _at(metrics, place)
         if value is not None and (value or not place.startswith("incidents.")):
             beside = f" (the paper's {_text(paper[place])})" if paper and place in paper else ""
             yield name, _text(value) + beside, unit
-    near = metrics.get("collisions")
-    if near is not None:
-        least = f"{_text(near['least_distance_m'])}, allowed {_text(near['allowed_m'])}"
-        yield f"nearest pair: {near['second']} and {near['first']}", least, "m"
     for frame, errors in metrics.get("frames", {}).items():
         for name, place, unit in _RESULTS:
             if place in errors:
                 yield f"{name}, {frame}", _text(errors[place]), unit
-    yield from _limits(metrics.get("incidents", {}))
+    yield from _limits(metrics["incidents"])
 
 
 def _limits(incidents: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
     """Yield the limits that were active and those that were in the way, as `rows` does."""
     for verb, key in (("active", "active"), ("in the way", "blocking")):
-        for limit in incidents.get(key, ())[:_MOST]:
+        for limit in incidents[key][:_MOST]:
             since = f"{counted(limit['steps'])}, from {_text(limit['time_s'])} s on"
             yield f"{describe(limit)} {verb}", since, ""
 
@@ -164,31 +164,16 @@ def _at(metrics: Mapping[str, Any], place: str) -> Any:
     return found
 
 
-def _checked(check: Mapping[str, Any]) -> str:
-    """State what was checked, by whom, and with what result."""
-    if not check["judged"]:
-        return f"{check['solver']}: {check['steps_checked']:,} own programs compared, not judged"
-    counts = f"{check['disagreements']:,} disagreements, {check['reference_failures']:,} failures"
-    judges = " or ".join(check["judged_by"]) or check["solver"]
-    return f"{judges}: {programs_checked(check)}, {counts}"
-
-
 def _verdict(metrics: Mapping[str, Any]) -> list[str]:
     """State the reasons of a failure, or the success no stronger than the check; and warn."""
-    said = failures(metrics) or [_success(metrics)]
+    check = metrics["crosscheck"]
+    success = "completed within all limits; not judged by a reference"
+    if check["judged"]:
+        solved = f"all {counted(metrics['steps'])} solved, within all limits"
+        success = f"{solved} and in agreement with {' or '.join(check['judged_by'])}"
+    said = failures(metrics) or [success]
     links = (metrics["settings"].get("collisions") or {}).get("unwatched")
     return [*said, f"Beware: {unwatched(links)}."] if links else said
-
-
-def _success(metrics: Mapping[str, Any]) -> str:
-    """State the verdict on a run without failures, no stronger than the check."""
-    check = metrics["crosscheck"]
-    if not check["judged"]:
-        return "completed within all limits; not judged by a reference"
-    judges = " or ".join(check["judged_by"])
-    return (
-        f"all {counted(metrics['steps'])} solved, within all limits and in agreement with {judges}"
-    )
 
 
 def _text(value: object) -> str:

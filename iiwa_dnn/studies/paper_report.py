@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from iiwa_dnn.results.plots import DOUBLE_COLUMN, draw_error, new_figure
+from iiwa_dnn.results.plots import COLUMN, draw_error, new_figure
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import markdown_table
 
@@ -180,7 +180,7 @@ def _short(value: float | None) -> str:
 
 def error_figure(records: Mapping[str, Record]) -> Figure:
     """Draw the position error of the four cases on one scale: the paper's Fig. 2 (a)-(d)."""
-    figure = new_figure(DOUBLE_COLUMN, 5.0)
+    figure = new_figure(2 * COLUMN, 5.0)
     panels = zip(figure.subplots(2, 2, sharey=True).flat, "abcd", records.items(), strict=True)
     for axes, letter, (case, record) in panels:
         draw_error(axes, record)
