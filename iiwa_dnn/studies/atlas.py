@@ -550,9 +550,12 @@ def _run(cell: Cell, seed: int) -> dict[str, Any]:
     if not error.max() < 1.0:
         raise IiwaDnnError(f"the tool is {error.max():.2g} m away")
     half = slice(record.steps // 2, record.steps)
+    residual = float(np.sqrt(np.mean(record.kkt_residual[half] ** 2)))
+    if not np.isfinite(residual):
+        raise IiwaDnnError(f"the network diverged: a residual is {record.kkt_residual.max():.2g}")
     setup, each = entry.work(sizes)
     return {
-        "residual": float(np.sqrt(np.mean(record.kkt_residual[half] ** 2))),
+        "residual": residual,
         "rms_error_m": float(np.sqrt(np.mean(error[half] ** 2))),
         "taken": [count, setup + count * each],
     }

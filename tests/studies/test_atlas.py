@@ -60,6 +60,9 @@ def test_a_network_that_diverges_is_a_number_less_and_a_reason_more() -> None:
     values = atlas.measure(atlas.Cell("zeroing, growing gain"))
     assert values["residual"] == [None]
     assert "the network diverged" in values["failures"][0]
+    # A residual whose square is beyond all floats ended a whole league in a traceback.
+    values = atlas.measure(atlas.Cell("dual, finite time", "minimum kinetic energy", "ramp"))
+    assert values["failures"][0].startswith("the network diverged: a residual is ")
     unpaid = atlas.measure(atlas.Cell("zeroing, Euler", work=100.0))
     assert unpaid["rms_error_m"] == [None]
     assert "one evaluation takes" in unpaid["failures"][0]
