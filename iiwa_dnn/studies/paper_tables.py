@@ -53,12 +53,6 @@ MODES: dict[str, HeartRun] = {
 ORIENTATIONS: tuple[Orientation, ...] = ("block", "so3")
 SUBSTEPS: tuple[int | Literal["implicit"], ...] = (1, 2, 4, 7, 8, 16, "implicit")
 
-_PAPER = {
-    "max_position_error_m": paper.MAX_ERROR,
-    "joint_drift_rad": paper.DRIFT,
-    "max_kinetic_index_times_dt": paper.KINETIC_INDEX,
-}
-_CASES = {"max_position_error_m": paper.CASES_MAX_ERROR, "mse_position_error_m2": paper.CASES_MSE}
 _WINDOWS = (1, paper.WINDOW)
 
 
@@ -77,7 +71,7 @@ def table1(scope: Scope, results: Results) -> Table:
     The drift of less than a whole heart has none.
     """
     columns = [paper.WEIGHTS.index(weight) for weight in scope.weights]
-    printed = {key: [row[column] for column in columns] for key, row in _PAPER.items()}
+    printed = {key: [row[column] for column in columns] for key, row in paper.TABLE1.items()}
     is_whole = scope.duration >= HeartRun().reference().period
     variants = {}
     for name in VARIANTS:
@@ -124,11 +118,11 @@ def table2(scope: Scope, results: Results) -> Table:
             [results[name, window, entry, seed] for seed in range(scope.seeds)]
             for window in _WINDOWS
         ]
-        modes[name][entry] = {key: _measure(key, quiet, noisy) for key in _CASES}
+        modes[name][entry] = {key: _measure(key, quiet, noisy) for key in paper.TABLE2}
     return {
         "cases": list(paper.CASES),
-        "paper": {key: list(values) for key, values in _CASES.items()},
-        "paper_changes": {key: _changes_of_paper(values) for key, values in _CASES.items()},
+        "paper": {key: list(values) for key, values in paper.TABLE2.items()},
+        "paper_changes": {key: _changes_of_paper(values) for key, values in paper.TABLE2.items()},
         "modes": modes,
     }
 
@@ -146,11 +140,11 @@ def _measure(
         "filter, without noise": Estimate(silent[1] / silent[0] - 1.0),
         "noise, without filter": _relative(estimate(plain - silent[0]), silent[0]),
     }
-    printed = _changes_of_paper(_CASES[key])
+    printed = _changes_of_paper(paper.TABLE2[key])
     return {
         "cases": [case.to_json() for case in cases],
         # The cases have no order, so that there is no trend over them.
-        "verdict": judge_row([0.0] * 4, _CASES[key], [case.mean for case in cases]),
+        "verdict": judge_row([0.0] * 4, paper.TABLE2[key], [case.mean for case in cases]),
         "difference": difference.to_json(),
         "changes": {
             name: change.to_json() | judge_change(printed[name], change)

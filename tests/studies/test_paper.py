@@ -36,11 +36,8 @@ def by_weight(run: HeartRun) -> dict[str, Any]:
     if run.weight not in paper.WEIGHTS or run.motion != "euler":
         return values()
     i = paper.WEIGHTS.index(run.weight)
-    drift = paper.DRIFT[i]
-    return values(
-        max_position_error_m=paper.MAX_ERROR[i],
-        joint_drift_rad=1e-4 * run.weight if drift is None else drift,
-    )
+    printed = {name: row[i] for name, row in paper.TABLE1.items() if row[i] is not None}
+    return values(joint_drift_rad=1e-4 * run.weight) | printed
 
 
 def noisy_case(run: HeartRun) -> dict[str, Any]:
