@@ -131,7 +131,6 @@ def atlas(
     *,
     whole: Flag = False,
     seeds: Count = None,
-    other_seeds: Count = None,
     networks: Names = (),
     schemes: Names = (),
     disturbances: Names = (),
@@ -145,10 +144,9 @@ def atlas(
     Args:
         sweep: words of all sweeps
         whole: run 100 seeds and all schemes: hours in place of minutes
-        seeds: number of noises with the first scheme (5, whole: 100)
-        other_seeds: number of noises with the other schemes (3)
+        seeds: number of noises, two or more (5, whole: 100)
         networks: networks (every one; beside your own too)
-        schemes: schemes (the first; whole: every one)
+        schemes: schemes, all but the first undisturbed (the first; whole: every one)
         disturbances: disturbances beside the undisturbed runs (every one)
         work: work a control period [operations] (1e4)
     """
@@ -161,7 +159,6 @@ def atlas(
         "disturbances": disturbances or None,
         "work": work,
         "seeds": 100 if whole and seeds is None else seeds,
-        "others": other_seeds,
     }
     size = league.Size(**_chosen(given))
     folder, compute = start_sweep(sweep, "atlas")
@@ -171,8 +168,8 @@ def atlas(
     write_json(folder / "atlas.json", rows)
     head = (
         f"{sum(cell.seeds for cell in cells) + len(trials)} runs of {league.DURATION:g} s; "
-        f"{size.seeds} seeds with the first scheme, {size.others} with the others, "
-        "on heart, circle and Lissajous figure in turn; errors of each run's second half."
+        f"{size.seeds} seeds on heart, circle and Lissajous figure in turn, at most 3 "
+        "undisturbed; errors of each run's second half."
     )
     text = atlas_report.report(folder, size, rows, head)
     write_text(folder / "report.md", text)

@@ -17,7 +17,7 @@ from importlib import import_module
 from itertools import product
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -68,8 +68,6 @@ from iiwa_dnn.results.metrics import position_error
 from iiwa_dnn.schemes import literature
 from iiwa_dnn.studies.paper import START
 from iiwa_dnn.studies.runs import paper_robot
-
-T = TypeVar("T")
 
 DT = 2e-3
 """Control period [s]."""
@@ -182,11 +180,9 @@ class Paced(ExplicitEuler):
         """Advance `state` (size,) in place, whatever the duration; returns the steps taken.
 
         Raises:
-            InvalidInputError: The rates are not finite numbers (size,), or no step is stable.
+            InvalidInputError: No step is stable.
         """
-        flow = network.flow(qp)
-        checks.finite_array("rates", flow.rates(state), state.shape)
-        step = self.share * flow.linear_limit(state)
+        step = self.share * network.flow(qp).linear_limit(state)
         if not step > 0.0:
             raise InvalidInputError(
                 "network", "no explicit step is stable; `settled` would integrate it implicitly"
@@ -308,13 +304,6 @@ NETWORKS: dict[str, Entry] = {
 MEASURES = ("residual", "rms_error_m")
 
 
-def _look_up(kind: str, name: str, known: Mapping[str, T]) -> T:
-    """Return a part by its name; raises NotFoundError."""
-    if name not in known:
-        raise NotFoundError(kind, name, known)
-    return known[name]
-
-
 def entry_of(name: str) -> Entry:
     """Return the entry of a network by its name, or of one from outside.
 
@@ -322,8 +311,10 @@ def entry_of(name: str) -> Entry:
         InvalidInputError: The module cannot be imported, or it has no network of that name.
         NotFoundError: There is no network of that name.
     """
+    if name in NETWORKS:
+        return NETWORKS[name]
     if ":" not in name:
-        return _look_up("network", name, NETWORKS)
+        raise NotFoundError("network", name, NETWORKS)
     try:
         found = getattr(_imported(name), name.rpartition(":")[2])
         found = found() if isinstance(found, type) else found
@@ -388,11 +379,10 @@ class Size:
 
     Attributes:
         networks: Names of the networks.
-        schemes: Names of the schemes; the first is the league's.
+        schemes: Names of the schemes; the first is the league's, the others run undisturbed.
         disturbances: Names of the disturbances, ``none`` among them.
         work: Operations a control period.
-        seeds: Runs of each cell with chance in it, with the first scheme.
-        others: Runs of each such cell with another scheme.
+        seeds: Runs of each cell with chance in it, two or more: one has no interval.
     """
 
     networks: Sequence[str] = tuple(NETWORKS)
@@ -400,23 +390,23 @@ class Size:
     disturbances: Sequence[str] = tuple(NOISES)
     work: float = 1e4
     seeds: int = 5
-    others: int = 3
 
     def __post_init__(self) -> None:
         """Check that all parts are there; undisturbed runs are, since gains are chosen by them.
 
         Raises:
-            NotFoundError: There is no part of a name.
-            InvalidInputError: A number is out of range, or a network from outside is none.
+            NotFoundError: There is no network of a name.
+            InvalidInputError: There is no scheme or disturbance of a name, a number is out of
+                range, or a network from outside is none.
         """
         for name in self.schemes:
-            _look_up("scheme", name, SCHEMES)
+            checks.one_of("schemes", name, tuple(SCHEMES))
         for name in self.disturbances:
-            _look_up("disturbance", name, NOISES)
+            checks.one_of("disturbances", name, tuple(NOISES))
         for name in self.networks:
             entry_of(name)
         checks.positive("work", self.work)
-        checks.integer("seeds", self.seeds, 1)
+        checks.integer("seeds", self.seeds, 2)
         kinds = tuple(dict.fromkeys(("none", *self.disturbances)))
         object.__setattr__(self, "disturbances", kinds)
 
@@ -455,16 +445,14 @@ def best_gains(
 def cells(size: Size, gains: Mapping[str, Mapping[str, Any]]) -> list[Cell]:
     """List the cells of a league whose gains are known.
 
-    Every network with every disturbance, each scheme in turn; and the control periods for the
-    zeroing networks.
+    Every network with every disturbance; undisturbed with the schemes but the first; and the
+    control periods for the zeroing networks.
     """
-    first = size.schemes[0]
     found = []
     for network in size.networks:
-        own = Cell(network, first, work=size.work, seeds=size.others, **gains[network])
-        for scheme, kind in product(size.schemes, size.disturbances):
-            seeds = size.seeds if scheme == first else size.others
-            found.append(replace(own, scheme=scheme, disturbance=kind, seeds=seeds))
+        own = Cell(network, size.schemes[0], work=size.work, seeds=size.seeds, **gains[network])
+        found += [replace(own, disturbance=kind) for kind in size.disturbances]
+        found += [replace(own, scheme=scheme) for scheme in size.schemes[1:]]
         if isinstance(entry_of(network).network, ZeroingNetwork):
             once = replace(own, work=UNLIMITED, most=1, seeds=1)
             found += [replace(once, dt=dt) for dt in PERIODS]

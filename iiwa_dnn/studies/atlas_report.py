@@ -12,7 +12,8 @@ import numpy as np
 from tabulate import tabulate as lay_out
 
 from iiwa_dnn.files import write_text
-from iiwa_dnn.studies.atlas import MEASURES, SOLVED, UNLIMITED, Cell, Size
+from iiwa_dnn.results.report import markdown_table
+from iiwa_dnn.studies.atlas import MEASURES, PERIODS, SOLVED, UNLIMITED, Cell, Size
 from iiwa_dnn.studies.statistics import paired_difference
 
 if TYPE_CHECKING:
@@ -131,8 +132,6 @@ def compare(one: Vector, other: Vector) -> int:
     """Compare paired numbers, (k,) both: -1 if the first are smaller, 1 if larger, 0 for a tie."""
     if abs(float(np.mean(one - other))) < MARGIN:
         return 0
-    if len(one) < 2:
-        return int(np.sign(one[0] - other[0]))
     return paired_difference(one, other).sign
 
 
@@ -196,17 +195,14 @@ class Table(NamedTuple):
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
 
-    def show(self, form: str) -> str:
-        """Lay the table out in a format of tabulate."""
-        return str(lay_out(self.rows, self.head, form, disable_numparse=True))
-
 
 def report(folder: Path, size: Size, rows: Sequence[Row], head: str) -> str:
     """Write each table as NAME.tex into a folder; return the report in Markdown."""
     parts = ["# Atlas of neurodynamic control", head]
     for table in _tables(size, rows):
-        write_text(folder / f"{table.name}.tex", table.show("latex_booktabs") + "\n")
-        parts += [f"## {table.caption}", table.show("pipe")]
+        latex = lay_out(table.rows, table.head, "latex_booktabs", disable_numparse=True)
+        write_text(folder / f"{table.name}.tex", latex + "\n")
+        parts += [f"## {table.caption}", markdown_table(table.head, table.rows)]
     return "\n\n".join([*parts, _REMARKS]) + "\n"
 
 
@@ -221,7 +217,6 @@ def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
         if {claim.better, claim.worse} <= set(size.networks)
         and claim.disturbance in size.disturbances
     ]
-    periods = sorted({row["dt"] for row in rows if row["work"] == UNLIMITED}, reverse=True)
     position = partial(_shown, measure="rms_error_m")
     tables = [
         Table("league", f"RMS KKT residual: {of}", head, _league(rows, ranking, _shown)),
@@ -250,7 +245,7 @@ def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
         Table(
             "orders",
             "RMS KKT residual against the control period, one evaluation each",
-            ["network", *(f"{1e3 * dt:g} ms" for dt in periods), "slope"],
+            ["network", *(f"{1e3 * dt:g} ms" for dt in PERIODS), "slope"],
             orders(rows),
         ),
         Table(

@@ -94,7 +94,7 @@ BAD = [
     ("atlas --networks nowhere:My", "network: nowhere:My cannot be had in "),
     ("atlas --networks math:pi", "network: math:pi is no Network: 3.14"),
     ("atlas --networks zeroing,Eular", "no network 'zeroing,Eular'; did you mean: 'zeroing, E"),
-    ("atlas --disturbances wihte", "no disturbance 'wihte'; did you mean: white"),
+    ("atlas --disturbances wihte", "disturbances: must be one of none, constant, ramp"),
     ("atlas --work -1", "work: must be a finite number above 0"),
     ("view nowhere", "nowhere: cannot be read as a record: No such file"),
 ]
