@@ -37,7 +37,7 @@ def make(task: Task, variant: str) -> Loop:
 
     def euler(k: int) -> None:
         nonlocal q
-        q = q + dt * controller.step(q, k * dt).dq
+        q = controller.step(q, k * dt).next_q
 
     if variant == "command":
         return only_command, integrated

@@ -10,6 +10,7 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.policies import Action, ProgramKind
+from iiwa_dnn.control.state import LAST, Q
 from iiwa_dnn.naming import DONE, describe, in_the_way
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.layout import IntVector, Sizes, data_size, offsets
@@ -46,6 +47,7 @@ class RowViews(NamedTuple):
         past: Joint positions that the program was built at [rad], last command and the one before
             it [rad/s], (3, dof).
         dq: Command [rad/s], (dof,).
+        next_q: Joint positions at the end of the period, q + dt dq [rad], (dof,).
         decision: Action, share of the period by which the reference's clock advances, number of
             the answer's status in `STATUSES`, and `ProgramKind` of the program, (4,).
         bounds: Bounds of the step that the command keeps [rad/s], (2, dof). Those of the program
@@ -61,6 +63,7 @@ class RowViews(NamedTuple):
     placement: Vector
     past: Matrix
     dq: Vector
+    next_q: Vector
     decision: Vector
     bounds: Matrix
     blocking: Vector
@@ -78,10 +81,27 @@ def row_views(row: Vector, ends: IntVector, dof: int) -> RowViews:
         row[ends[3] : ends[4]].reshape(PAST, dof),
         row[ends[4] : ends[5]],
         row[ends[5] : ends[6]],
-        row[ends[6] : ends[7]].reshape(BOUNDS, dof),
-        row[ends[7] : ends[8]],
-        row[ends[8] :].reshape((ends[9] - ends[8]) // TARGET_SIZE, TARGET_SIZE),
+        row[ends[6] : ends[7]],
+        row[ends[7] : ends[8]].reshape(BOUNDS, dof),
+        row[ends[8] : ends[9]],
+        row[ends[9] :].reshape((ends[10] - ends[9]) // TARGET_SIZE, TARGET_SIZE),
     )
+
+
+@compiled
+def note_command(views: RowViews, following: Matrix, dq: Vector, dt: float) -> None:
+    """Note the command of a step, and where the arm is after it.
+
+    Args:
+        views: The step's row.
+        following: `ControllerState.past` for the next step, (8, dof).
+        dq: The command [rad/s], (dof,) or longer.
+        dt: Control period [s].
+    """
+    for i in range(views.dq.size):
+        views.dq[i] = dq[i]
+        following[LAST, i] = dq[i]
+        views.next_q[i] = views.past[Q, i] + dt * dq[i]
 
 
 class RowLayout:
@@ -89,11 +109,12 @@ class RowLayout:
 
     Attributes:
         sizes: ``(n, m, p)`` of the programs.
-        ends: Columns at which the parts of `RowViews` end, (10,).
+        ends: Columns at which the parts of `RowViews` end, (11,).
         width: Length of a row.
         columns: Columns by the names of `RowViews`.
         shape: Shape of joint positions, (dof,).
         dq: Columns of the command.
+        next_q: Those of the joint positions after it.
         names: Names of the limits, `LimitNames`; None where nobody asks for them.
     """
 
@@ -112,6 +133,7 @@ class RowLayout:
             PLACEMENT,
             PAST * dof,
             dof,
+            dof,
             DECISION,
             BOUNDS * dof,
             n + m,
@@ -123,6 +145,7 @@ class RowLayout:
         columns = map(slice, [0, *ends], ends)
         self.columns = dict(zip(RowViews._fields, columns, strict=True))
         self.dq = self.columns["dq"]
+        self.next_q = self.columns["next_q"]
 
     def view(self, rows: Matrix, name: str) -> Matrix:
         """Return the columns of a name of rows (..., width)."""
@@ -200,6 +223,11 @@ class Command:
         self.dq = row[layout.dq]
         self.action = action
         self._layout = layout
+
+    @property
+    def next_q(self) -> Vector:
+        """Joint positions at the end of the period, q + dt dq [rad], (n,), a view."""
+        return self.row[self._layout.next_q]
 
     @property
     def fraction(self) -> float:

@@ -20,6 +20,7 @@ from iiwa_dnn.control.command import (
     SOLVED,
     RowLayout,
     RowViews,
+    note_command,
     row_views,
 )
 from iiwa_dnn.control.relaxed import Yielding, relaxed_size
@@ -70,7 +71,7 @@ class StepPlan(NamedTuple):
 
     Attributes:
         arrays: Arrays with which the program is written.
-        ends: `RowLayout.ends`, (10,).
+        ends: `RowLayout.ends`, (11,).
         yielding: What relaxed programs need beside them.
         relaxed: States of the networks of relaxed programs, (`relaxed_size`,), warm starts.
         policy: Action that the policy asks for at a step without a solution; `BRAKE`: none.
@@ -242,7 +243,7 @@ def take_step(
     _note_instant(views, arrays, past)
     halted = past[HALTED, 0] != 0.0
     if past[YIELDS, 0] == 0.0 and not halted and _answer(views, arrays, state):
-        copied(following[LAST], views.dq)
+        note_command(views, following, views.point, plan.yielding.dt)
         if guard_step(arrays, past, following, plan.yielding):
             return NONE
     first = row.size - views.targets.size
@@ -289,7 +290,6 @@ def _answer(views: RowViews, arrays: ProgramArrays, state: Vector) -> bool:
     if views.decision[2] >= NOT_SETTLED:
         copied(state, before)
         return False
-    copied(views.dq, views.point[: views.dq.size])
     return True
 
 

@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.command import NOT_SETTLED, SOLVED, RowViews
+from iiwa_dnn.control.command import NOT_SETTLED, SOLVED, RowViews, note_command
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.relaxed import (
     MOST_SYSTEMS,
@@ -157,8 +157,7 @@ def yield_step(
     following[REST, 0] = rest
     following[DELAY, 0] += yielding.dt * (1.0 - views.decision[1])
     following[YIELDS, 0] = kind != OWN and action != BRAKE
-    copied(views.dq, x[:dof])
-    copied(following[LAST], x[:dof])
+    note_command(views, following, x, yielding.dt)
     return int(views.decision[0])
 
 
