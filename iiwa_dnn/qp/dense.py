@@ -29,19 +29,8 @@ def row_dot(rows: Matrix, j: int, x: Vector) -> float:
 
 @compiled
 def times(rows: Matrix, x: Vector, out: Vector) -> None:
-    """Write the product of a matrix (k, n) and the first n entries of x into the first k of `out`.
-
-    Two sums at once do not wait for each other; each is that of `row_dot`.
-    """
-    for pair in range(rows.shape[0] // 2):
-        one = 0.0
-        two = 0.0
-        for k in range(rows.shape[1]):
-            one += rows[2 * pair, k] * x[k]
-            two += rows[2 * pair + 1, k] * x[k]
-        out[2 * pair] = one
-        out[2 * pair + 1] = two
-    for j in range(rows.shape[0] // 2 * 2, rows.shape[0]):
+    """Write the product of a matrix (k, n) and the first n entries of x into the first k of `out`."""
+    for j in range(rows.shape[0]):
         out[j] = row_dot(rows, j, x)
 
 
