@@ -29,7 +29,7 @@ def row_dot(rows: Matrix, j: int, x: Vector) -> float:
 
 @compiled
 def times(rows: Matrix, x: Vector, out: Vector) -> None:
-    """Write the product of a matrix (k, n) and the first n entries of x into the first k of `out`."""
+    """Write the product of a matrix (k, n) and the first n entries of x into k entries of `out`."""
     for j in range(rows.shape[0]):
         out[j] = row_dot(rows, j, x)
 

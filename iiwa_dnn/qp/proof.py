@@ -144,9 +144,7 @@ class _Rows:
         equal: Rows that hold as equations: those of A, and upper bounds that are lower ones too.
         usable: Rows that limit anything: a lower bound that is an upper one is counted there.
         unit: Bound on the relative rounding of all sums, (k + n + 16) 2^-53.
-        exponent: Binary exponent of the largest entry of P, by which the cost is divided.
-        S: Symmetric part of P, divided, (n, n).
-        q: Cost vector, divided, (n,).
+        S: Symmetric part of P, (n, n).
     """
 
     def __init__(self, qp: QP) -> None:
@@ -159,15 +157,7 @@ class _Rows:
         self.usable = self.limits != np.inf
         self.usable[p + m + n :] &= ~fixed
         self.unit = (self.limits.size + n + 16) * _ROUNDING
-        self.exponent = int(np.frexp(np.abs(qp.P).max())[1])
-        self.S = _divided(qp.P + qp.P.T, self.exponent + 1)
-        self.q = _divided(qp.q, self.exponent)
-
-
-def _divided(values: Matrix, exponent: int) -> Matrix:
-    """Divide by a power of two; an entry for which that is not exact becomes NaN: no proof then."""
-    divided = np.ldexp(values, -exponent)
-    return np.where(np.ldexp(divided, exponent) == values, divided, np.nan)
+        self.S = 0.5 * (qp.P + qp.P.T)
 
 
 @np.errstate(all="ignore")
@@ -176,14 +166,14 @@ def prove_point(qp: QP, point: Vector) -> Proof:
     n, m, p = qp.sizes
     rows = _Rows(qp)
     x = point[:n]
-    multipliers = np.ldexp(np.concatenate([point[n:], -point[n + p + m :]]), -rows.exponent)
+    multipliers = np.concatenate([point[n:], -point[n + p + m :]])
     active = rows.equal | (rows.usable & (multipliers > rows.limits - rows.rows @ x))
     active[p + m + n :] &= ~active[p + m : p + m + n]
     bound = np.inf
     reason = UNDECIDED
     for attempt in range(ROUNDS):
         kept = _independent(rows, active)
-        enclosure = _enclose(rows.S, rows.q, rows.rows[kept], rows.limits[kept], rows.unit)
+        enclosure = _enclose(rows.S, qp.q, rows.rows[kept], rows.limits[kept], rows.unit)
         if enclosure is None:
             reason = DEPENDENT
             break
