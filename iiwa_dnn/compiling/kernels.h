@@ -7,7 +7,6 @@
 
 typedef struct { double *data; int64_t size0; } Vector;
 typedef struct { double *data; int64_t size0, size1; } Matrix;
-typedef struct { double *data; int64_t size0, size1, size2; } Cube;
 typedef struct { int64_t *data; int64_t size0; } IntVector;
 typedef struct { int64_t *data; int64_t size0, size1; } IntMatrix;
 

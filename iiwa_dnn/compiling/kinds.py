@@ -50,7 +50,6 @@ _KINDS = {
     "Vector": Kind("Vector", "v", FLOAT, 1),
     "Array": Kind("Vector", "v", FLOAT, 1),
     "Matrix": Kind("Matrix", "m", FLOAT, 2),
-    "Cube": Kind("Cube", "c", FLOAT, 3),
     "IntVector": Kind("IntVector", "V", INT, 1),
     "IntMatrix": Kind("IntMatrix", "M", INT, 2),
 }

@@ -160,7 +160,6 @@ _FLAT: dict[str, list[Any]] = {
     "b": [ctypes.c_bool],
     **{letter: [ctypes.c_void_p, ctypes.c_int64] for letter in "vV"},
     **{letter: [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64] for letter in "mM"},
-    "c": [ctypes.c_void_p, *3 * [ctypes.c_int64]],
 }
 
 
@@ -173,6 +172,6 @@ def _rebuilt(hint: Any, codes: Iterator[str], values: Iterator[Any]) -> Any:
     if code in "idb":
         return first
     shape = [next(values) for _ in _FLAT[code][1:]]
-    kind = ctypes.c_double if code in "vmc" else ctypes.c_int64
+    kind = ctypes.c_double if code in "vm" else ctypes.c_int64
     memory: Any = (kind * math.prod(shape)).from_address(first)
     return np.ctypeslib.as_array(memory).reshape(shape)

@@ -114,7 +114,6 @@ class RowLayout:
         columns: Columns by the names of `RowViews`.
         shape: Shape of joint positions, (dof,).
         dq: Columns of the command.
-        next_q: Those of the joint positions after it.
         names: Names of the limits, `LimitNames`; None where nobody asks for them.
     """
 
@@ -145,7 +144,6 @@ class RowLayout:
         columns = map(slice, [0, *ends], ends)
         self.columns = dict(zip(RowViews._fields, columns, strict=True))
         self.dq = self.columns["dq"]
-        self.next_q = self.columns["next_q"]
 
     def view(self, rows: Matrix, name: str) -> Matrix:
         """Return the columns of a name of rows (..., width)."""
@@ -227,7 +225,7 @@ class Command:
     @property
     def next_q(self) -> Vector:
         """Joint positions at the end of the period, q + dt dq [rad], (n,), a view."""
-        return self.row[self._layout.next_q]
+        return self.row[self._layout.columns["next_q"]]
 
     @property
     def fraction(self) -> float:

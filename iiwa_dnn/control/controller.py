@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.command import Command, RowLayout
+from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.paths import (
     References,
     beyond_reach,
@@ -299,11 +299,6 @@ class Controller:
     def program(self) -> StepProgram:
         """The scheme laid out for the robot."""
         return self.control_step.program
-
-    @property
-    def layout(self) -> RowLayout:
-        """Columns of the commands' rows."""
-        return self.control_step.layout
 
     def halt(self) -> None:
         """Brake at every step from now on."""

@@ -92,8 +92,10 @@ def _doubts_of_tasks(program: StepProgram, dt: float) -> Iterator[str]:
     blocks = sum(getattr(task, "form", "") == "block" for task in tasks)
     rows = sum(task.row_count(program.robot) for task in tasks) - blocks
     if rows > variables:
-        fault = f"{variables} joints cannot fulfil the {rows} rows of the tasks"
-        yield f"{fault}; orientation='none' leaves the orientation free"
+        yield (
+            f"{variables} joints cannot fulfil the {rows} rows of the tasks; orientation='none' "
+            "leaves the orientation free"
+        )
     gains = [min(task.gain, 1.0 / dt) for task in tasks if isinstance(task, GainTask)]
     if program.rate_limits is None or not gains:
         return

@@ -427,7 +427,7 @@ class Shield:
             v = np.clip(self._state.wish[:TWIST], -FASTEST, FASTEST)
             return Target(np.zeros(3), linear_velocity=v[:3], angular_velocity=v[3:])
         # From here a network that has nothing to do hands the aim out as it is.
-        state = controller.solver.state_for(controller.layout.sizes)
+        state = controller.solver.state_for(controller.program.sizes)
         state[:] = 0.0
         past = self._kept.past
         aim = state[: self.robot.dof]

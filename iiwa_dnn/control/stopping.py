@@ -61,9 +61,6 @@ GROWTH = 1.1
 SLACK = 1e-12
 """Relative excess of a limit that is rounding."""
 
-ROUNDING = 1e-12
-"""Part of a velocity that is rounding."""
-
 
 class Motion(NamedTuple):
     """A motion to rest, or to a wanted velocity that is taken off.

@@ -15,13 +15,13 @@ from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Triple, Vector, check_siz
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import point_of_state
 
-Rates = Callable[[QPViews, Vector, Vector, Vector], None]
-"""Compiled function ``(qp, constants, state, rates)`` that writes rho ds/dt into `rates`."""
-
 
 @entry
 def enter_rates(address: int, qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
-    """Enter a network's function, `Rates`, of states (size,) and constants (k,), at an address."""
+    """Enter a network's function, which writes rho ds/dt into `rates` (size,), at an address.
+
+    The state is (size,), the network's constants are (k,).
+    """
 
 
 class Flow(NamedTuple):
@@ -88,7 +88,7 @@ class Network:
         rho: Time constant [s].
         carries_x: True if the state begins with x; otherwise x is computed from it.
         compiled_rates: The right-hand side, rates (size,) at a state (size,), as a static compiled
-            function (`Rates`), if it has one.
+            function of the type `enter_rates`, if it has one.
     """
 
     rho: float = 9e-5

@@ -20,7 +20,6 @@ from iiwa_dnn.errors import InvalidInputError
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-Cube = NDArray[np.float64]
 IntVector = NDArray[np.int64]
 IntMatrix = NDArray[np.int64]
 Sizes = tuple[int, int, int]

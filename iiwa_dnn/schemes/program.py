@@ -252,6 +252,7 @@ class StepProgram:
     Attributes:
         robot: The robot.
         scheme: The scheme.
+        tasks: Hard tasks, in the order of the equality rows.
         blocks: The parts in the order costs, hard tasks, soft tasks, limits.
         sizes: ``(n, m, p)`` of the programs.
         target_frames: Names of the frames that tasks track, in the order of the targets; the
@@ -276,14 +277,14 @@ class StepProgram:
         limits = merged(scheme.limits, tasks)
         self.rate_limits = next((part for part in limits if isinstance(part, MotionLimits)), None)
         self.target_frames = _tracked(robot, tasks)
-        hard = [task for task in tasks if task.weight is None]
+        self.tasks = [task for task in tasks if task.weight is None]
         soft = [task for task in tasks if task.weight is not None]
         n = robot.dof + scheme.slack
         self.blocks: list[Block] = []
         self.constants: Vector = np.zeros(0)
         rows = [
             self._add(kind, parts, n)
-            for kind, parts in enumerate((scheme.costs, hard, soft, limits))
+            for kind, parts in enumerate((scheme.costs, self.tasks, soft, limits))
         ]
         self.sizes = (n, rows[LIMITS], rows[TASKS])
         tip = robot.frame_id(self.target_frames[0])
@@ -339,11 +340,6 @@ class StepProgram:
     def needs_inertia(self) -> bool:
         """Test whether a cost takes the inertia matrix."""
         return any(getattr(part, "kinetic", "") == "inertia" for part in self.parts)
-
-    @property
-    def tasks(self) -> list[Task]:
-        """Hard tasks, in the order of the equality rows."""
-        return [part for part in self.parts if isinstance(part, Task) and part.weight is None]
 
     @property
     def row_weights(self) -> Vector:

@@ -49,7 +49,7 @@ class Recorder:
         self._kinematics = Kinematics(program.robot, program.target_frames)
         self._outcomes: list[Outcome] = []
         self.last_step: int | None = None
-        self.layout = controller.layout
+        self.layout = controller.control_step.layout
         self.infeasible: int | None = None
         self._names = LimitNames(program, controller.dt)
         self._done = 0

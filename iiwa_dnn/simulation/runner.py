@@ -133,7 +133,7 @@ def simulate(
     progress(0)
     stages = MOTIONS[motion].stages
     pool = CheckPool(check, steps * stages)
-    layout = controller.layout
+    layout = controller.control_step.layout
     for first in range(0, steps, BLOCK):
         taken = loop.run(first, min(BLOCK, steps - first), recorder.observe)
         rows = recorder.flush()

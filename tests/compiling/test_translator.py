@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-Vector = Matrix = Cube = IntVector = IntMatrix = np.ndarray
+Vector = Matrix = IntVector = IntMatrix = np.ndarray
 Pair = tuple[float, float]
 
 

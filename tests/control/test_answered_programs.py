@@ -33,10 +33,10 @@ def yielding_steps(arm: str, limits: str, policy: Policy) -> tuple[RowLayout, np
     circle = d.Circle(0.06, 1.5).anchored(start)
     controller = d.Controller(slow, scheme, circle, policy=policy)
     taken = np.array([command.row for command in driven(controller, q, STEPS)[1]])
-    kinds = controller.layout.view(taken, "decision")[:, 3]
+    kinds = controller.control_step.layout.view(taken, "decision")[:, 3]
     taken = taken[(kinds > ProgramKind.OWN) & (kinds < ProgramKind.STOPPED)]
     assert len(taken) > 20
-    return controller.layout, taken
+    return controller.control_step.layout, taken
 
 
 CASES = [

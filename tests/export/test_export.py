@@ -78,7 +78,7 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
     exported = loaded(c99(controller, tmp_path, q0))
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
     take_kernels_kinematics(controller)
-    layout = controller.layout
+    layout = controller.control_step.layout
     dt = controller.dt
     q = q0.copy()
     active = 0

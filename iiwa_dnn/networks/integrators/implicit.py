@@ -24,7 +24,6 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators import pseudo_transient
 from iiwa_dnn.networks.integrators.base import (
@@ -81,19 +80,13 @@ class ImplicitEuler(Integrator):
         """Advance `state` in place by `duration` [rho] in equal steps no longer than `step`.
 
         Returns:
-            Linear systems solved.
-
-        Raises:
-            NoSolutionError: A step could not be solved to working precision.
+            Linear systems solved; the state is NaN where one could not be.
         """
         count = max(1, math.ceil(duration / self.step))
         check_size("state", state, network.state_size(qp))
         length = duration / count
         if is_projection(network) and not network.primal_projection:
-            taken = [step_program(qp.data, *qp.sizes, state, length) for _ in range(count)]
-            if min(taken) < 0:
-                raise NoSolutionError("an implicit step cannot be solved to working precision")
-            return sum(taken)
+            return sum(step_program(qp.data, *qp.sizes, state, length) for _ in range(count))
         flow = network.flow(qp)
         for _ in range(count):
             state += pseudo_transient.linear_change(flow, state, length, flow.rates(state))
@@ -115,7 +108,7 @@ def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -
     """Advance a state `s` (size,) in place by one backward Euler step of a program, `QP.data`.
 
     Returns:
-        Linear systems solved, or -1 if one could not be.
+        Linear systems solved; none and a state of NaN if one could not be.
     """
     rows = s.size - n
     matrix = Condensed(
@@ -123,9 +116,10 @@ def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -
     )
     new = np.empty(s.size)
     systems = backward_euler(qp_views(data, n, m, p), s, step, new, 1e-12, 2 * MAX_NEWTON, matrix)
-    if systems >= 0:
-        copied(s, new)
-    return systems
+    if systems < 0:
+        new[:] = np.nan
+    copied(s, new)
+    return max(systems, 0)
 
 
 @compiled
