@@ -111,19 +111,11 @@ def write_kinematics(
     """
     placed = np.zeros((q.size + 1, 12))
     start = np.empty(12)
-    motion = np.zeros(12)
-    motion[8] = 1.0
     for i in range(3):
         placed[0, 4 * i] = 1.0
     for j in range(q.size):
-        angle = model.kinds[j, 1] * q[j]
-        motion[0] = math.cos(angle)
-        motion[1] = math.sin(angle)
-        motion[3] = -motion[1]
-        motion[4] = motion[0]
-        motion[11] = model.kinds[j, 0] * q[j]
         compose(placed[model.parents[j]], model.joints[j], start)
-        compose(start, motion, placed[j + 1])
+        _move(start, model.kinds[j], q[j], placed[j + 1])
         _write_twist(placed[j + 1], model.kinds[j], jacobian[j])
     for k in range(len(model.frames)):
         carrier = placed[model.frames[k, 1]]
@@ -144,6 +136,18 @@ def compose(first: Array, second: Array, product: Array) -> None:
             )
     for i in range(3):
         product[9 + i] += first[9 + i]
+
+
+@compiled
+def _move(start: Array, kind: Array, q: float, moved: Array) -> None:
+    """Write the placement (12,) at position q of a joint of a kind (2,) from that at 0, (12,)."""
+    cosine = math.cos(kind[1] * q)
+    sine = math.sin(kind[1] * q)
+    for i in range(3):
+        moved[i] = start[i] * cosine + start[3 + i] * sine
+        moved[3 + i] = start[3 + i] * cosine - start[i] * sine
+        moved[6 + i] = start[6 + i]
+        moved[9 + i] = start[9 + i] + start[6 + i] * (kind[0] * q)
 
 
 @compiled
