@@ -63,7 +63,7 @@ def driven(
     for k in range(steps):
         t = k * controller.dt
         commands.append(controller.step(path[-1], t, target(t) if callable(target) else target))
-        path.append(path[-1] + controller.dt * commands[-1].dq)
+        path.append(commands[-1].next_q)
     return np.array(path), commands
 
 

@@ -257,7 +257,8 @@ def test_a_loop_that_jitters_says_the_period_of_each_step(mode) -> None:
         command = told.step(q, t, dt=period)
         expected = anew.step(q, t)
         np.testing.assert_allclose(command.dq, expected.dq, rtol=0, atol=1e-12)
-        q = q + period * command.dq
+        np.testing.assert_array_equal(command.next_q, q + period * command.dq)
+        q = command.next_q
         t += period
     assert told.control_step is laid_out
     assert np.linalg.norm(dh_pose(q)[0] - heart().at(t).position) < 5e-5
