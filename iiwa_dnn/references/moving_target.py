@@ -1,6 +1,5 @@
 """A target that is set from outside: by a person's hand, a camera, another program."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -31,7 +30,7 @@ class MovingTarget(Reference):
     """
 
     name: str = "moving target"
-    period: float = math.inf
+    period: float = np.inf
 
     def __init__(self, pose: Pose, speed: float = 0.25, rate: float = 1.0) -> None:
         """Begin at rest at a pose, for example an ``iiwa_dnn.Configuration``.
@@ -44,7 +43,7 @@ class MovingTarget(Reference):
         self.rate = not_negative("rate", rate)
         self._goal = Target(pose.position, pose.rotation)
         self._end = self._goal
-        self._shown = (math.inf, self._goal.data)
+        self._shown = (np.inf, self._goal.data)
         self._start = self._shown
 
     def set(self, position: ArrayLike, rotation: ArrayLike | None = None) -> None:

@@ -7,7 +7,6 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.checks import finite_array, read_only
 
 _IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -50,10 +49,10 @@ class Target:
         if isinstance(position, pin.SE3):
             rotation = position.rotation
             position = position.translation
-        checked = finite_array("position", position, (3,))
+        checked = checks.finite_array("position", position, (3,))
         turn = checks.rotation("rotation", rotation).ravel()
-        linear = finite_array("linear_velocity", linear_velocity, (3,))
-        angular = finite_array("angular_velocity", angular_velocity, (3,))
+        linear = checks.finite_array("linear_velocity", linear_velocity, (3,))
+        angular = checks.finite_array("angular_velocity", angular_velocity, (3,))
         self.data = np.concatenate([checked, turn, linear, angular])
 
     @classmethod
@@ -66,22 +65,22 @@ class Target:
     @property
     def position(self) -> NDArray[np.float64]:
         """Desired position [m], shape (3,), a read-only view like the next three."""
-        return read_only(self.data[..., :3])
+        return checks.read_only(self.data[..., :3])
 
     @property
     def rotation(self) -> NDArray[np.float64]:
         """Desired orientation, shape (3, 3)."""
-        return read_only(self.data[..., 3:12].reshape(*self.data.shape[:-1], 3, 3))
+        return checks.read_only(self.data[..., 3:12].reshape(*self.data.shape[:-1], 3, 3))
 
     @property
     def linear_velocity(self) -> NDArray[np.float64]:
         """Desired linear velocity [m/s], shape (3,)."""
-        return read_only(self.data[..., 12:15])
+        return checks.read_only(self.data[..., 12:15])
 
     @property
     def angular_velocity(self) -> NDArray[np.float64]:
         """Desired angular velocity [rad/s], shape (3,)."""
-        return read_only(self.data[..., 15:])
+        return checks.read_only(self.data[..., 15:])
 
     def __getitem__(self, i: int) -> Target:
         return Target.from_data(self.data[i])

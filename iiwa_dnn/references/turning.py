@@ -6,8 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from iiwa_dnn import checks
-from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
+from iiwa_dnn.checks import Array, Vector3, direction, integer, positive, vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Reference
@@ -126,7 +125,7 @@ class Tilting(Reference):
         if type(self.along) not in _ALONG:
             problem = f"must be one of {', '.join(kind.__name__ for kind in _ALONG)}"
             raise InvalidInputError("along", problem, self.along)
-        rate = 2.0 * np.pi * checks.integer("turns", self.turns, 1) / self.along.duration
+        rate = 2.0 * np.pi * integer("turns", self.turns, 1) / self.along.duration
         self._set(angle=_acute(self.angle), axis=vector3("axis", self.axis))
         kind = float(_ALONG.index(type(self.along)))
         own = [kind, self.angle, rate, *direction("axis", self.axis)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import warnings
 from dataclasses import dataclass
@@ -21,7 +20,6 @@ from iiwa_dnn.references.rotations import added, combined, scaled, turn_target
 Ends = Literal["clamped", "closed"]
 
 _COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
-_HEADERS = (_COLUMNS[:4], _COLUMNS)
 _CLOSED_WITHIN = 1e-9  # [rad]
 
 _UNIT_WITHIN = 0.01
@@ -236,7 +234,7 @@ class Waypoints(Reference):
     @property
     def period(self) -> float:
         """Time after which a closed path repeats [s]; inf for an open one."""
-        return self.duration if self.ends == "closed" else math.inf
+        return self.duration if self.ends == "closed" else np.inf
 
     @property
     def duration(self) -> float:
@@ -252,7 +250,7 @@ def _read(path: str | os.PathLike[str]) -> Array:
         raise FileError(path, one_line(error)) from error
     rows = [(number, line) for number, line in enumerate(lines, 1) if line.strip()]
     columns = [cell.strip().lower() for cell in rows[0][1].split(",")] if rows else []
-    if columns not in _HEADERS:
+    if columns not in (_COLUMNS[:4], _COLUMNS):
         raise FileError(path, "the header must be t,x,y,z or t,x,y,z,qw,qx,qy,qz")
     table = np.empty((len(rows) - 1, len(columns)))
     for values, (number, line) in zip(table, rows[1:], strict=True):
