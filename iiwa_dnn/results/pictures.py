@@ -171,12 +171,12 @@ def _scene(mujoco: Any, robot: Robot, obstacles: Iterable[Obstacle]) -> Any:
         "contype": 0,
         "conaffinity": 0,
     }
-    for i, mesh in enumerate(visual_meshes(robot)):
-        faces = mesh.faces.ravel()
+    for i, (part, corners, faces) in enumerate(visual_meshes(robot)):
         name = f"mesh_{i}"
-        arm.add_mesh(name=name, uservert=mesh.corners.ravel(), userface=faces, inertia=shell)
-        body = arm.joint(robot.model.names[mesh.joint]).parent if mesh.joint else arm.worldbody
-        body.add_geom(meshname=name, rgba=[*mesh.color, 1.0], **shape)
+        arm.add_mesh(name=name, uservert=corners.ravel(), userface=faces.ravel(), inertia=shell)
+        joint = robot.model.names[part.parentJoint]
+        body = arm.joint(joint).parent if part.parentJoint else arm.worldbody
+        body.add_geom(meshname=name, rgba=[*part.meshColor[:3], 1.0], **shape)
     spec.attach(arm, prefix="arm_", frame=spec.worldbody.add_frame())
     for i, obstacle in enumerate(obstacles):
         body = spec.worldbody.add_body(name=f"obstacle_{i}", mocap=True)

@@ -140,13 +140,11 @@ def unwatched_links(robot: Robot) -> tuple[str, ...]:
 def make_collision_model(robot: Robot, samples: int = SAMPLES) -> CollisionModel:
     """Fit the capsules of a robot's URDF and find the pairs that may meet by sampling.
 
-    Postures are drawn uniformly within the URDF's limits, with a fixed seed.
+    Postures are drawn evenly within the robot's limits, with a fixed seed.
     """
     whole = CollisionModel(tuple(_capsules(robot)), ())
     pairs = whole.pairs(robot)
-    lower = np.maximum(robot.model.lowerPositionLimit, -np.pi)
-    upper = np.minimum(robot.model.upperPositionLimit, np.pi)
-    postures = np.random.default_rng(0).uniform(lower, upper, (samples, robot.dof))
+    postures = robot.draw(np.random.default_rng(0), samples)
     distances = _distances(robot, whole, pairs, np.vstack([robot.start_posture(), postures]))
     of_links: dict[tuple[str, str], checks.Array] = {}
     for (i, k), column in zip(pairs, distances.T, strict=True):

@@ -17,13 +17,11 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot.loading import load_robot
 from iiwa_dnn.robot.robot import Robot
 
-Convention = Literal["standard", "modified"]
-
 
 def robot_from_dh(
     table: ArrayLike,
     *,
-    convention: Convention = "standard",
+    convention: Literal["standard", "modified"] = "standard",
     prismatic: Iterable[int] = (),
     lower: ArrayLike = -np.inf,
     upper: ArrayLike = np.inf,

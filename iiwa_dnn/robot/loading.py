@@ -245,7 +245,6 @@ def _limits(
         if ramp is not None:
             ramps[0, i] = ramp.attrib["velocity_offset"]
             ramps[1, i] = ramp.attrib["deceleration_limit"]
-    if name in RATES and np.size(RATES[name][0]) in (1, model.nv):
-        limits[3] = RATES[name][0]
-        limits[4] = RATES[name][1]
+    if name in RATES and len(RATES[name][0]) in (1, model.nv):
+        limits[3:] = RATES[name]
     return limits, ramps

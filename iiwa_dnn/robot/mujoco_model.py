@@ -146,21 +146,20 @@ def _quaternion(pose: pin.SE3) -> Any:
 def compile_model(
     robot: Robot,
     timestep: float,
-    dynamics: JointDynamics | None = None,
+    dynamics: JointDynamics,
     friction: float | checks.Array = 0.0,
     mass_factors: float | checks.Array = 1.0,
 ) -> Any:
     """Compile MuJoCo's ``MjModel`` of a robot (`build_spec`) with an implicit method for damping.
 
-    Drives without `dynamics` have the estimates, joints Coulomb friction (n,) [N m]; masses and
-    inertias of the links that each joint carries are multiplied by `mass_factors` (n,).
+    Joints have Coulomb friction (n,) [N m]; masses and inertias of the links that each joint
+    carries are multiplied by `mass_factors` (n,).
 
     Raises:
         MissingDependencyError: If MuJoCo is not installed.
         InvalidInputError: If the robot has no file, or MuJoCo refuses the URDF.
     """
     mj = import_mujoco()
-    dynamics = JointDynamics() if dynamics is None else dynamics
     try:
         spec = build_spec(robot)
         spec.option.timestep = timestep

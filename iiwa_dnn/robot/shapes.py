@@ -2,7 +2,6 @@
 
 from contextlib import suppress
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -10,21 +9,9 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.robot.robot import Robot, source_of
 
-
-class Mesh(NamedTuple):
-    """A mesh, fixed to a joint's frame.
-
-    Attributes:
-        joint: Index of Pinocchio's joint that carries it; 0 is the base.
-        corners: Corners in the joint's frame [m], (k, 3).
-        faces: Triangles of corners, from 0, (t, 3).
-        color: Red, green, blue, 0 to 1.
-    """
-
-    joint: int
-    corners: NDArray[np.float64]
-    faces: NDArray[np.int32]
-    color: tuple[float, ...]
+Mesh = tuple[pin.GeometryObject, NDArray[np.float64], NDArray[np.int32]]
+"""A shape with its corners in the frame of the joint that carries it [m], (k, 3), and triangles of
+these, (t, 3)."""
 
 
 def read_shapes(robot: Robot, kind: pin.GeometryType) -> list[pin.GeometryObject]:
@@ -54,6 +41,5 @@ def visual_meshes(robot: Robot) -> tuple[Mesh, ...]:
             corners = np.array(body.vertices()) @ turn.T + shape.placement.translation
             triangles = map(body.tri_indices, range(body.num_tris))
             faces = np.array([(at[0], at[1], at[2]) for at in triangles], dtype=np.int32)
-            color = tuple(shape.meshColor[:3].tolist())
-            meshes.append(Mesh(int(shape.parentJoint), corners, faces, color))
+            meshes.append((shape, corners, faces))
     return tuple(meshes)

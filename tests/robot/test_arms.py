@@ -172,12 +172,9 @@ def test_meshes_are_where_yourdfpy_has_them(name: str) -> None:
     other.update_cfg(dict(zip(robot.joint_names, q, strict=True)))
     data = robot.model.createData()
     pin.forwardKinematics(robot.model, data, q)
-    places = [data.oMi[mesh.joint] for mesh in visual_meshes(robot)]
-    corners = np.vstack(
-        [
-            mesh.corners @ place.rotation.T + place.translation
-            for mesh, place in zip(visual_meshes(robot), places, strict=True)
-        ]
-    )
-    bounds = [corners.min(axis=0), corners.max(axis=0)]
+    found = []
+    for part, corners, _ in visual_meshes(robot):
+        place = data.oMi[part.parentJoint]
+        found += [*(corners @ place.rotation.T + place.translation)]
+    bounds = [np.min(found, axis=0), np.max(found, axis=0)]
     np.testing.assert_allclose(bounds, other.scene.bounds, atol=1e-5)

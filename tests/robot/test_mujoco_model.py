@@ -60,7 +60,7 @@ def test_kinematics_and_dynamics_are_pinocchios(robot):
 def test_motors_and_stops_are_the_data_sheets_and_links_do_not_collide(robot):
     limit = np.array([176.0, 176.0, 110.0, 110.0, 110.0, 40.0, 40.0])
     np.testing.assert_array_equal(torque_limits(robot), limit)
-    model = compile_model(robot.with_limits(lower=-1.0, upper=1.0), 1e-3)
+    model = compile_model(robot.with_limits(lower=-1.0, upper=1.0), 1e-3, DYNAMICS)
     np.testing.assert_allclose(model.jnt_range, robot.limits[:2].T)  # whatever a controller keeps
     assert model.jnt_limited.all()
     data = mujoco.MjData(model)
@@ -115,4 +115,4 @@ def test_robots_that_cannot_be_had_in_physics(robot, tmp_path):
         '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>'
     )
     with pytest.raises(InvalidInputError, match=r"MuJoCo refuses its URDF: .*mjMINVAL"):
-        compile_model(load_robot(tmp_path / "light.urdf"), 1e-3)
+        compile_model(load_robot(tmp_path / "light.urdf"), 1e-3, DYNAMICS)

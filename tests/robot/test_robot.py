@@ -13,7 +13,7 @@ from helpers_kinematics import example_urdf, finite_difference
 from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 from iiwa_dnn.robot.collision import make_collision_model
-from iiwa_dnn.robot.mujoco_model import compile_model
+from iiwa_dnn.robot.mujoco_model import JointDynamics, compile_model
 from iiwa_dnn.robot.shapes import visual_meshes
 
 LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
@@ -215,4 +215,4 @@ def test_a_robot_does_not_need_its_file_any_more(written) -> None:
         (capsule,) = make_collision_model(left, samples=1).capsules
         assert capsule.link == "b"
         assert visual_meshes(left) == ()
-        assert compile_model(left, 1e-3).nq == 1
+        assert compile_model(left, 1e-3, JointDynamics()).nq == 1
