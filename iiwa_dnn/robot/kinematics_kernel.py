@@ -35,8 +35,8 @@ class ModelTables(NamedTuple):
         kinds: For each joint 1 and 0 if it slides, 0 and 1 if it turns, (n, 2).
         frames: For each frame its row among the placements, and the joint that carries it, (k, 2).
         offsets: Placement of each frame in its joint's, (k, 12).
-        bodies: For what each joint carries the placement of its principal axes, and the roots of
-            its mass and of its moments about them, (n, 16); none without the inertia matrix.
+        bodies: For what each joint carries the placement of its principal axes, and for each of
+            them the root of its mass, then of its moment, (n, 18); none without the inertia matrix.
         supports: 1 where joint j moves body i, else 0, (n, n); none with them.
         armature: Inertia of the motors [kg m^2], (n,).
     """
@@ -72,7 +72,7 @@ def model_tables(robot: Robot, frames: Sequence[int], dynamics: bool = False) ->
         np.asarray(axes.any(axis=2), dtype=np.float64),
         np.array([[k, model.frames[k].parentJoint] for k in frames], dtype=np.int64),
         np.array([_flat(turn.actInv(frame.placement)) for frame, turn in carriers]),
-        np.reshape(bodies, (-1, 16)),
+        np.reshape(bodies, (-1, 18)),
         np.reshape(supports, (-1, model.nv)),
         np.array(model.armature),
     )
@@ -92,7 +92,7 @@ def _flat(placement: Any) -> Array:
 def _body(body: Any) -> Array:
     """Return a row of `ModelTables.bodies` for Pinocchio's inertia of a body."""
     moments, axes = np.linalg.eigh(body.inertia)
-    masses = np.append(body.mass, moments.clip(0.0))
+    masses = np.append(np.full(3, body.mass), moments.clip(0.0))
     return np.concatenate([axes.T.ravel(), body.lever, np.sqrt(masses)])
 
 
@@ -116,7 +116,7 @@ def write_kinematics(
     for j in range(q.size):
         compose(placed[model.parents[j]], model.joints[j], start)
         _move(start, model.kinds[j], q[j], placed[j + 1])
-        _write_twist(placed[j + 1], model.kinds[j], jacobian[j])
+        _write_twist(placed[j + 1], 2, model.kinds[j, 0], model.kinds[j, 1], jacobian[j])
     for k in range(len(model.frames)):
         carrier = placed[model.frames[k, 1]]
         compose(carrier, model.offsets[k], placements[model.frames[k, 0]])
@@ -151,42 +151,44 @@ def _move(start: Array, kind: Array, q: float, moved: Array) -> None:
 
 
 @compiled
-def _write_twist(placement: Array, kind: Array, twist: Array) -> None:
-    """Write a joint's twist (6,) about the world's origin from its placement (12,), kind (2,)."""
-    axis = placement[6:9]
+def _write_twist(placement: Array, axis: int, slides: float, turns: float, twist: Array) -> None:
+    """Write the twist (6,) about the world's origin of sliding along and turning about an axis.
+
+    The axis is one of a placement (12,), by its number.
+    """
+    direction = placement[3 * axis : 3 * axis + 3]
     position = placement[9:]
     for i in range(3):
-        twist[3 + i] = kind[1] * axis[i]
-        moment = position[CYCLE[i + 1]] * axis[CYCLE[i + 2]]
-        moment -= position[CYCLE[i + 2]] * axis[CYCLE[i + 1]]
-        twist[i] = kind[0] * axis[i] + kind[1] * moment
+        twist[3 + i] = turns * direction[i]
+        moment = position[CYCLE[i + 1]] * direction[CYCLE[i + 2]]
+        moment -= position[CYCLE[i + 2]] * direction[CYCLE[i + 1]]
+        twist[i] = slides * direction[i] + turns * moment
 
 
 @compiled
 def _write_inertia(model: ModelTables, placed: Matrix, jacobian: Matrix, inertia: Matrix) -> None:
     """Write the inertia matrix (n, n) out of the joints' placements (n + 1, 12) and twists (n, 6).
 
-    Each body adds the products of what its joints move it by, times the roots of mass and moments.
+    Each body adds the products of its joints' velocities along and about its principal axes, times
+    mass and moments. No joint after the body's own moves it.
     """
     n = len(inertia)
     own = np.empty(12)
-    moved = np.empty((n, 6))
+    line = np.empty(6)
+    speeds = np.empty(n)
     for i in range(n):
         for j in range(n):
             inertia[i, j] = model.armature[i] if i == j else 0.0
     for body in range(n):
         compose(placed[body + 1], model.bodies[body, :12], own)
-        for j in range(n):
-            factor = model.supports[body, j] * model.bodies[body, 12]
-            for i in range(3):
-                along = 0.0
-                for k in range(3):
-                    along += own[3 * i + k] * jacobian[j, 3 + k]
-                moved[j, 3 + i] = model.supports[body, j] * model.bodies[body, 13 + i] * along
-                turned = jacobian[j, 3 + CYCLE[i + 1]] * own[9 + CYCLE[i + 2]]
-                turned -= jacobian[j, 3 + CYCLE[i + 2]] * own[9 + CYCLE[i + 1]]
-                moved[j, i] = factor * (jacobian[j, i] + turned)
-        for i in range(n):
-            for j in range(n):
-                for k in range(6):
-                    inertia[i, j] += moved[i, k] * moved[j, k]
+        for k in range(6):
+            along = 1.0 if k < 3 else 0.0
+            _write_twist(own, k % 3, 1.0 - along, along, line)
+            for j in range(body + 1):
+                speed = 0.0
+                for i in range(3):
+                    speed += line[3 + i] * jacobian[j, i] + line[i] * jacobian[j, 3 + i]
+                speeds[j] = model.supports[body, j] * model.bodies[body, 12 + k] * speed
+            for i in range(body + 1):
+                for j in range(body + 1):
+                    inertia[i, j] += speeds[i] * speeds[j]
