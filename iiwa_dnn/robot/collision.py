@@ -10,7 +10,7 @@ start posture, among them those of capsules that overlap in every posture.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from itertools import combinations, product
@@ -207,7 +207,7 @@ def _joint(robot: Robot, link: str) -> int:
     return int(robot.model.frames[robot.frame_id(link)].parentJoint)
 
 
-def _capsules(robot: Robot) -> Iterator[LinkCapsule]:
+def _capsules(robot: Robot) -> list[LinkCapsule]:
     """Fit a capsule to each <collision> shape of the URDF, in the frame of its link.
 
     Spheres that another capsule of the link holds, such as the ends of a cylinder, are left out.
@@ -220,24 +220,26 @@ def _capsules(robot: Robot) -> Iterator[LinkCapsule]:
             f"a shape cannot be read ({one_line(error)}); "
             "ROS_PACKAGE_PATH names the folder of packages",
         ) from error
-    found: dict[str, list[LinkCapsule]] = {}
+    found: list[LinkCapsule] = []
     for shape in sorted(shapes, key=lambda each: isinstance(each.geometry, coal.Sphere)):
         frame = robot.model.frames[shape.parentFrame]
         pose = frame.placement.actInv(shape.placement)
         a, b, radius = _fit(shape.geometry)
         ends = [checks.vector3("end", pose.act(end)) for end in (a, b)]
         fitted = LinkCapsule(frame.name, ends[0], ends[1], radius)
-        of_link = found.setdefault(frame.name, [])
-        if not any(_holds(each, fitted) for each in of_link):
-            of_link.append(fitted)
-    for of_link in found.values():
-        yield from of_link
+        if not any(_holds(each, fitted) for each in found):
+            found.append(fitted)
+    return found
 
 
 def _holds(capsule: LinkCapsule, sphere: LinkCapsule) -> bool:
-    """Test whether an end of a capsule holds another one of the link, a sphere, to 0.03 mm."""
+    """Test whether an end of a capsule holds another one of its link, a sphere, to 0.03 mm."""
     away = np.linalg.norm(np.subtract(sphere.a, [capsule.a, capsule.b]), axis=1).min()
-    return sphere.a == sphere.b and bool(away + sphere.radius <= capsule.radius + 3e-5)
+    return (
+        sphere.link == capsule.link
+        and sphere.a == sphere.b
+        and bool(away + sphere.radius <= capsule.radius + 3e-5)
+    )
 
 
 def _fit(shape: coal.CollisionGeometry) -> tuple[checks.Array, checks.Array, float]:

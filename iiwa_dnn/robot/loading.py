@@ -4,7 +4,7 @@ import contextlib
 import os
 import warnings
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -182,8 +182,11 @@ def _build_model(path: Path, text: str) -> pin.Model:
 def _only_end(model: pin.Model) -> str:
     """Name the link at the end of the chain, if there is only one."""
     parents = {frame.parentFrame for frame in model.frames}
-    frames = enumerate(model.frames)
-    ends = [f.name for i, f in frames if f.type == pin.FrameType.BODY and i not in parents]
+    ends = [
+        frame.name
+        for i, frame in enumerate(model.frames)
+        if frame.type == pin.FrameType.BODY and i not in parents
+    ]
     if len(ends) != 1:
         raise InvalidInputError("tip", f"is needed: the robot has several ends: {', '.join(ends)}")
     return str(ends[0])
@@ -196,26 +199,22 @@ def _idle_joints(model: pin.Model, frames: Iterable[str]) -> list[str]:
     return [str(name) for name in model.names if name not in moving]
 
 
-def _lock(model: pin.Model, locked: Iterable[str]) -> tuple[pin.Model, dict[str, float]]:
+def _lock(model: pin.Model, locked: Collection[str]) -> tuple[pin.Model, dict[str, float]]:
     """Freeze joints at zero or the limit nearest to it; return model and positions [rad]."""
     # A zero position can lie outside the limits (the panda's joint 4): then the nearest limit.
     posture = np.clip(pin.neutral(model), model.lowerPositionLimit, model.upperPositionLimit)
-    names = tuple(model.names)
-    frozen = {}
+    joints = {name: i for i, name in enumerate(model.names) if i > 0}
     for name in locked:
-        if name not in names[1:]:
-            raise NotFoundError("joint", name, names[1:])
-        frozen[name] = names.index(name)
-    held = {
-        # Planar and floating joints are at zero.
-        name: float(posture[model.idx_qs[i]]) if model.nqs[i] == 1 else 0.0
-        for name, i in frozen.items()
-    }
-    reduced = pin.buildReducedModel(model, list(frozen.values()), posture) if held else model
+        if name not in joints:
+            raise NotFoundError("joint", name, joints)
+    frozen = [joints[name] for name in locked]
+    # Planar and floating joints are at zero.
+    held = [float(posture[model.idx_qs[i]]) if model.nqs[i] == 1 else 0.0 for i in frozen]
+    reduced = pin.buildReducedModel(model, frozen, posture) if frozen else model
     for joint, *sizes in zip(reduced.names, reduced.nqs, reduced.nvs, strict=True):
         if max(sizes) > 1:
             raise InvalidInputError("locked", f"joint {joint!r} has {sizes[0]} coordinates", joint)
-    return reduced, held
+    return reduced, dict(zip(locked, held, strict=True))
 
 
 def _limits(
@@ -232,9 +231,12 @@ def _limits(
         element = joints.get(joint, root)
         mimic = element.find("mimic")
         if mimic is not None:
-            problem = f"joint {joint!r} follows {mimic.get('joint')!r}: lock it, or take its"
-            problem += " <mimic> out of the file and hold it by a JointCouplingTask"
-            raise InvalidInputError("locked", problem, joint)
+            raise InvalidInputError(
+                "locked",
+                f"joint {joint!r} follows {mimic.get('joint')!r}: lock it, or take its <mimic> out "
+                "of the file and hold it by a JointCouplingTask",
+                joint,
+            )
         ramp = element.find("position_based_velocity_limits")
         if path is not None and limits[0, i] == limits[1, i] == 0.0:
             raise FileError(

@@ -101,7 +101,6 @@ def build_spec(robot: Robot) -> Any:
     for name, limit in zip(robot.joint_names, torque_limits(robot), strict=True):
         motor = spec.add_actuator(name=name, target=name, trntype=mj.mjtTrn.mjTRN_JOINT)
         if np.isfinite(limit):
-            motor.forcelimited = True
             motor.forcerange = [-limit, limit]
     # The site of the tip hangs on the body of the joint that carries Pinocchio's frame.
     frame = robot.model.frames[robot.tip_id]
