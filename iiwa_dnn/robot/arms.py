@@ -127,14 +127,14 @@ STARTS = {
 """Known start postures by the robot's name [rad], each (n,)."""
 
 RATES: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
-    "fr3": ((9.999,), (4999.999,)),
+    "fr3": ((9.999,) * 7, (4999.999,) * 7),
     "iiwa7": ((8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17), (np.inf,) * 7),
     "panda": (
         (15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0),
         (7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10000.0, 10000.0),
     ),
 }
-"""Acceleration [rad/s^2] and jerk [rad/s^3] limits by the robot's name, of each joint or of all.
+"""Acceleration [rad/s^2] and jerk [rad/s^3] limits of each of an arm's joints, by its name.
 
 iiwa7: KUKA publishes none. These accelerations are `drake:acceleration` of
 iiwa_description/sdf/iiwa7_no_collision.sdf in github.com/RobotLocomotion/models; its README derives

@@ -4,7 +4,7 @@ import contextlib
 import os
 import warnings
 import xml.etree.ElementTree as ET
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -80,7 +80,8 @@ def load_robot(
     idle = _idle_joints(full, (tip, *others, *checks.names("frames", frames)))
     chosen = checks.names("locked", locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
-    limits, ramps = _limits(name, path, model, root)
+    rates = _rates(name, full, tips or (tip,))
+    limits, ramps = _limits(path, model, root, rates)
     robot = Robot(
         name,
         model,
@@ -217,8 +218,22 @@ def _lock(model: pin.Model, locked: Collection[str]) -> tuple[pin.Model, dict[st
     return reduced, dict(zip(locked, held, strict=True))
 
 
+def _rates(name: str, model: pin.Model, tips: Iterable[str]) -> dict[str, tuple[float, ...]]:
+    """Return acceleration and jerk limits of a known arm, by the names of the joints before a tip.
+
+    An arm of the same name that has more or fewer joints is another one.
+    """
+    idle = _idle_joints(model, tips)
+    joints = [joint for joint in tuple(model.names)[1:] if joint not in idle]
+    rates = list(zip(*RATES.get(name, ()), strict=True))
+    return dict(zip(joints, rates, strict=True)) if len(rates) == len(joints) else {}
+
+
 def _limits(
-    name: str, path: Path | None, model: pin.Model, root: ET.Element
+    path: Path | None,
+    model: pin.Model,
+    root: ET.Element,
+    rates: Mapping[str, tuple[float, ...]],
 ) -> tuple[Array, Array]:
     """Return `Robot.limits`, (5, n), and `Robot.ramps`, (2, n), the latter Franka's element."""
     joints = {joint.get("name"): joint for joint in root.findall("joint")}
@@ -242,11 +257,10 @@ def _limits(
             raise FileError(
                 path, f"gives no range for joint {joint!r}: lower and upper are 0 or missing"
             )
+        limits[3:, i] = rates.get(joint, np.inf)
         if not pin.computeJointJacobian(model, model.createData(), pin.neutral(model), i + 1).any():
             raise InvalidInputError("source", f"the axis of joint {joint!r} is zero", joint)
         if ramp is not None:
             ramps[0, i] = ramp.attrib["velocity_offset"]
             ramps[1, i] = ramp.attrib["deceleration_limit"]
-    if name in RATES and len(RATES[name][0]) in (1, model.nv):
-        limits[3:] = RATES[name]
     return limits, ramps

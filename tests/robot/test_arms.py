@@ -137,7 +137,10 @@ def test_joints_limits_and_poses_of_all_links(name: str, words: tuple[str, ...])
     assert set(locked) <= set(robot.locked)
     named = ARMS[name].tip if name in ARMS else TIPS[name][0]
     assert (robot.name, robot.tip) == (name, tip or named)
+    whole = d.load_robot(name)
+    known = dict(zip(whole.joint_names, whole.limits.T, strict=True))
     for i, joint in enumerate(robot.joint_names):
+        np.testing.assert_array_equal(robot.limits[:, i], known[joint])
         limit = reader.joint_map[joint].limit or yourdfpy.Limit()
         assert robot.q_lower[i] == (-np.inf if limit.lower == -1e308 else limit.lower)
         assert robot.q_upper[i] == (np.inf if limit.upper == 1e308 else limit.upper)
@@ -154,10 +157,8 @@ def test_joints_limits_and_poses_of_all_links(name: str, words: tuple[str, ...])
             np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9, err_msg=link)
     # What is held still unasked does not move the tip.
     reader.update_cfg(dict.fromkeys(set(robot.locked) - set(locked), 0.5))
-    tip_pose = data.oMf[robot.tip_id].homogeneous
-    np.testing.assert_allclose(
-        reader.get_transform(robot.tip, reader.base_link), tip_pose, atol=1e-9
-    )
+    pose = data.oMf[robot.tip_id].homogeneous
+    np.testing.assert_allclose(reader.get_transform(robot.tip, reader.base_link), pose, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["ur5", "xarm7"])
