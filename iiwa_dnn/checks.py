@@ -97,11 +97,10 @@ def vector3(argument: str, value: Sequence[float] | Array) -> Vector3:
 
 def direction(argument: str, value: Sequence[float] | Array) -> Vector3:
     """Return a vector (3,), scaled to length 1, as a tuple; refuse zero and any other value."""
-    vector = np.array(vector3(argument, value))
+    vector = finite_array(argument, value, (3,))
     if not vector.any():
         raise InvalidInputError(argument, "must not be zero", value)
-    x, y, z = (vector / np.linalg.norm(vector)).tolist()
-    return x, y, z
+    return vector3(argument, vector / np.linalg.norm(vector))
 
 
 def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:

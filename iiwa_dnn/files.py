@@ -21,6 +21,9 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+parse_toml: Callable[[str], dict[str, Any]] = tomllib.loads
+"""Read TOML out of a text; what is not TOML is a ValueError."""
+
 
 def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], object]) -> None:
     """Write a file under a temporary name beside it, then rename it into place.
@@ -107,12 +110,6 @@ def read_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
         return parse_toml(Path(path).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:  # ValueError: not TOML, not UTF-8, a NUL in the path
         raise FileError(path, f"cannot be read as TOML: {one_line(error)}") from error
-
-
-def parse_toml(text: str) -> dict[str, Any]:
-    """Read TOML out of a text; what is not TOML is a ValueError."""
-    tables: dict[str, Any] = tomllib.loads(text)
-    return tables
 
 
 def plain(value: object) -> Any:

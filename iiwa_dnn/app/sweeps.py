@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from tyro.conf import arg
 
@@ -67,7 +67,7 @@ def paper(
     quick: Flag = False,
     seeds: Count = None,
     duration: Number = None,
-    table: Annotated[int | None, shown("N")] = None,
+    table: Annotated[Literal[1, 2] | None, shown("N")] = None,
     weights: Annotated[tuple[float, ...], shown("X ...")] = (),
 ) -> int:
     """Run every experiment of the paper, each number beside the paper's.
@@ -84,9 +84,7 @@ def paper(
 
     given = {"seeds": seeds, "duration": duration, "weights": weights or None}
     scope = replace(runs.QUICK if quick else runs.FULL, **_chosen(given))
-    names = [*paper_tables.EXPERIMENTS]
-    if table is not None:
-        names = [f"table{checks.one_of('table', str(table), ('1', '2'))}"]
+    names = [*paper_tables.EXPERIMENTS] if table is None else [f"table{table}"]
     folder, compute = start_sweep(sweep, "paper")
     tables = {}
     early: list[str] = []

@@ -7,7 +7,7 @@ set by its table and key.
 import sys
 from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass, make_dataclass
+from dataclasses import asdict, dataclass, make_dataclass, replace
 from functools import partial, reduce
 from inspect import signature
 from pathlib import Path
@@ -44,9 +44,7 @@ from iiwa_dnn import (
 )
 from iiwa_dnn.app.command_line import Flag, Folder, Quiet, claim_folder, shown, write_settings
 from iiwa_dnn.control.estimation import NoiseModel
-from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.files import one_line, parse_toml, read_toml
-from iiwa_dnn.qp.crosscheck import references
 from iiwa_dnn.results.pictures import save_pictures
 from iiwa_dnn.results.plots import CAPTIONS
 from iiwa_dnn.results.report import save_run, summary
@@ -71,6 +69,13 @@ OUTPUTS = (
 """Files of a run that another one in its folder may not write."""
 
 CHECKS = {"both": ("proxqp", "osqp"), "none": ()}
+
+
+def cross_check(solver: str = "proxqp", tolerance: float = 1e-6) -> CrossCheck:
+    """Make the check of a run from the name of a solver, or a word of `CHECKS`."""
+    return CrossCheck(CHECKS.get(solver, (solver,)), tolerance)
+
+
 PLANTS: Choices = {"ideal": IdealPlant, "mujoco": MujocoPlant}
 PATHS: dict[str, Callable[..., Any]] = {
     "heart": Heart,
@@ -86,6 +91,7 @@ PARTS: Choices = {
     "limits.jerk": JerkLimits,
     "limits.tip_speed": TipSpeedLimit,
     "limits.obstacles": CollisionAvoidance.from_toml,
+    "run.check": cross_check,
     "run.estimator": NoiseModel,
     "plant.disturbances": Disturbances,
     "plant.disturbances.push": Push,
@@ -204,13 +210,13 @@ WORDS: dict[str, tuple[str, Any, str, str]] = {
     ),
     "seed": ("run.seed", int | None, "N", "seed of the random numbers (0)"),
     "check": (
-        "run.check",
+        "run.check.solver",
         str | None,
         "NAME",
         "reference of a step: proxqp, osqp, both, proof, none, ...",
     ),
     "tolerance": (
-        "run.tolerance",
+        "run.check.tolerance",
         float | None,
         "X",
         "largest gap to the reference [rad/s] (1e-6)",
@@ -259,22 +265,11 @@ def track(options: Words) -> int:
     All further settings are arguments of the Python classes, given by --config or --set.
     Exit code 0: every step solved, within limits and in agreement; 1: not so; 2: bad input.
     """
-    return _draw(options, {})
-
-
-def physics(options: Words) -> int:
-    """Draw a path with an arm that has masses and motors, in MuJoCo, with pictures and a video."""
-    return _draw(options, {"plant": {"name": "mujoco"}})
-
-
-def _draw(options: Any, more: Tables) -> int:
-    """Carry out a run, write it into its folder, print its summary, and return the exit code."""
-    tables = read_tables(options, more)
+    tables = read_tables(options)
     arguments = build(tables)
     steps = count_steps(arguments["reference"], arguments["dt"], arguments.get("duration"))
-    name = "physics" if more else Path(tables["reference"]["name"]).stem
-    usual = Path("runs") / name if options.config is None else options.config.parent
-    folder = options.out or usual
+    usual = Path("runs") / Path(tables["reference"]["name"]).stem
+    folder = options.out or (usual if options.config is None else options.config.parent)
     draw_more = None
     if options.plots and tables["plant"].get("name") == "mujoco":
         prepare_renderer()  # what it needs is asked for before the run
@@ -301,9 +296,15 @@ def _draw(options: Any, more: Tables) -> int:
     return 1 if reasons else 0
 
 
+def physics(options: Words) -> int:
+    """Draw a path with an arm that has masses and motors, in MuJoCo, with pictures and a video."""
+    usual = Path("runs") / "physics" if options.config is None else None
+    return track(replace(options, plant=options.plant or "mujoco", out=options.out or usual))
+
+
 def export(options: Words) -> int:
     """Write the controller of a run as C99: one file without dependencies, and its tests."""
-    tables = read_tables(options, {})
+    tables = read_tables(options)
     arguments = build(tables)
     if "filter_window" in arguments:
         raise InvalidInputError("filter_window", "is no part of a controller and is not exported")
@@ -320,8 +321,8 @@ def export(options: Words) -> int:
     return 0
 
 
-def read_tables(options: Any, more: Tables) -> Tables:
-    """Merge `more`, the settings file, the words, and ``--set``: of two values the later counts.
+def read_tables(options: Any) -> Tables:
+    """Merge the settings file, the words, and ``--set``: of two values the later counts.
 
     Raises:
         FileError: The file cannot be read.
@@ -333,7 +334,6 @@ def read_tables(options: Any, more: Tables) -> Tables:
     empty: Tables = {name: {} for name in TABLES}
     sources = [
         empty,
-        more,
         {} if options.config is None else read_toml(options.config),
         *(_nested(place, value) for place, value in words if value is not None),
         *map(_read_setting, options.set),
@@ -408,14 +408,9 @@ def build(tables: Tables) -> Tables:
     run = tables["run"]
     is_paper = (robot.name, name, plant.exact) == ("iiwa7", "heart", True)
     run.setdefault("dt", 1e-4 if is_paper else 1e-3)
-    solver = run.get("check", "proxqp")
-    if solver != "proxqp":  # which is always installed; to look takes 0.2 s
-        checks.one_of("check", solver, (*CHECKS, *references()))
-    check = CrossCheck(CHECKS.get(solver, (solver,)), run.get("tolerance", 1e-6))
-    given = {key: value for key, value in run.items() if key not in ("check", "tolerance")}
     made = {"robot": robot, "scheme": scheme, "reference": reference, "q0": q0, "plant": plant}
     known = [key for key in signature(simulate).parameters if key not in (*made, "progress")]
-    return {**made, "check": check, **objects(known, "run", given)}
+    return {**made, **objects(known, "run", run)}
 
 
 def call(function: Callable[..., Any], table: str, values: Tables) -> Any:
@@ -424,9 +419,7 @@ def call(function: Callable[..., Any], table: str, values: Tables) -> Any:
     arguments = objects(signature(function).parameters, table, given)
     try:
         return function(**arguments)
-    except IiwaDnnError:
-        raise
-    except (AttributeError, TypeError, ValueError) as error:  # a value of a wrong type
+    except (AttributeError, TypeError, ValueError) as error:  # an InvalidInputError is one too
         raise InvalidInputError(table, one_line(error), given) from error
 
 
@@ -453,12 +446,10 @@ def _made(place: str, value: Any) -> Any:
     """Return what a setting stands for; errors as of `objects`."""
     if place not in PARTS:
         return value
-    if isinstance(value, dict):
-        return call(PARTS[place], place, value)
-    try:
-        return PARTS[place](None if value == "robot" else value)
-    except InvalidInputError as error:
-        raise InvalidInputError(place, error.problem, value) from error
+    if not isinstance(value, dict):  # of the first argument
+        first = next(iter(signature(PARTS[place]).parameters))
+        value = {first: None if value == "robot" else value}
+    return call(PARTS[place], place, value)
 
 
 def load(table: Tables) -> Any:
