@@ -1,16 +1,11 @@
 """The package's errors: one tree, and every error carries the evidence it speaks of."""
 
-from __future__ import annotations
-
 import copyreg
 import os
 from collections.abc import Iterable
 from difflib import get_close_matches
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    import qpsolvers
+from typing import Any
 
 
 class IiwaDnnError(Exception):
@@ -72,25 +67,7 @@ class FileError(IiwaDnnError, OSError):
 
 
 class NoSolutionError(IiwaDnnError):
-    """A quadratic program was not solved.
-
-    Attributes:
-        problem: The quadratic program.
-        solution: The solver's last word on it, with its residuals; its ``found`` is False.
-        step: Index of the control step, when there is one.
-    """
-
-    def __init__(
-        self,
-        message: str,
-        problem: qpsolvers.Problem | None = None,
-        solution: qpsolvers.Solution | None = None,
-        step: int | None = None,
-    ) -> None:
-        super().__init__(message)
-        self.problem = problem
-        self.solution = solution
-        self.step = step
+    """A network's equations have no solution at a state; its message says which."""
 
 
 class MissingDependencyError(IiwaDnnError, ImportError):

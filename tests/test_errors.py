@@ -13,7 +13,7 @@ ERRORS = (
     d.InvalidInputError("gain", "must be above 0", -1.0),
     d.NotFoundError("robot", "iiwa8", ("iiwa7", "panda")),
     d.FileError("run/record.npz", "no such file"),
-    d.NoSolutionError("step 3 has no solution", step=3),
+    d.NoSolutionError("step 3 has no solution"),
     MissingDependencyError("mujoco", "pip install 'iiwa-dnn[sim]'"),
 )
 

@@ -73,7 +73,7 @@ CHECKS = {"both": ("proxqp", "osqp"), "none": ()}
 
 def cross_check(solver: str = "proxqp", tolerance: float = 1e-6) -> CrossCheck:
     """Make the check of a run from the name of a solver, or a word of `CHECKS`."""
-    return CrossCheck(CHECKS.get(solver, (solver,)), tolerance)
+    return CrossCheck(CHECKS.get(str(solver), (solver,)), tolerance)
 
 
 PLANTS: Choices = {"ideal": IdealPlant, "mujoco": MujocoPlant}
