@@ -113,6 +113,9 @@ class ControlStep:
             solver: The network that answers the programs.
             dt: Control period [s].
             policy: Action of a step without a solution; `BRAKE`: in continuous mode.
+
+        Raises:
+            InvalidInputError: With a jerk limit, a joint's range is too short to turn round in.
         """
         self.program = program
         frames = len(program.target_frames)
@@ -124,16 +127,12 @@ class ControlStep:
         yielding = make_yielding(program, solver.tol, dt, self.has_network)
         relaxed = np.zeros(relaxed_size(program.sizes))
         self.plan = StepPlan(arrays, self.layout.ends, yielding, relaxed, policy)
+        if yielding.limits.size:
+            check_ranges(yielding.limits, 1.0 / dt)
         self.set_period(dt)
 
     def set_period(self, dt: float) -> None:
-        """Take another control period [s], without laying anything out anew.
-
-        Raises:
-            InvalidInputError: With a jerk limit, a joint's range is too short to turn round in.
-        """
-        if self.plan.yielding.limits.size:
-            check_ranges(self.plan.yielding.limits, 1.0 / dt)
+        """Take another control period [s], without laying anything out anew."""
         self.dt = dt
         self.layout.names.dt = dt
         arrays = self.plan.arrays._replace(rate=1.0 / dt)

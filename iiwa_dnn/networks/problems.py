@@ -8,8 +8,9 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.certificates import certified
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.solution import SOLVE, Solution
+from iiwa_dnn.qp.solution import SOLVE, Solution, Status
 
 if TYPE_CHECKING:
     import qpsolvers
@@ -67,6 +68,9 @@ def solve_cost_of_any_size(solver: DNNSolver, qp: QP, sharpen: bool = False) -> 
     solution = solver.solve(scaled)
     if sharpen:
         solution = solver.sharpen(scaled, solution)
+    # What was shown of multipliers was shown of the scaled ones.
+    if solution.certificate is not None and certified(qp, solution.certificate) != solution.status:
+        solution = solution._replace(status=Status.NOT_SETTLED, certificate=None)
     solution.point[n:] *= scale
     return solution._replace(dual=solution.dual * scale, gap=solution.gap * scale)
 

@@ -254,7 +254,7 @@ def _bound(qp: QP, rows: _Rows, distance: float, missing: float, weak: bool) -> 
     if not curvature > 0.0:
         return np.inf, FLAT if weak else NOT_CONVEX
     if weak:
-        distance = (1.0 + 2.0 * unit) * (distance + (1.0 + unit) * missing / curvature)
+        distance = (1.0 + 2.0 * unit) * (distance + (1.0 + unit) * (missing + _TINY) / curvature)
     if not distance < np.inf:
         return np.inf, FAR
     return distance, WEAK if weak else ""
@@ -282,7 +282,7 @@ def _curvature(S: Matrix, A: Matrix, unit: float, share: float) -> float:
         filling = np.where(empty, trace + (trace == 0.0), 0.0)
         M = S + weight * (A.T @ A) + np.diag(filling)
         size = np.abs(S).sum() + weight * (np.abs(A).sum(axis=1) ** 2).sum() + filling.sum()
-        loss = 2.0 * unit * float(size) + _TINY
+        loss = 2.0 * unit * float(size) + (1.0 + weight) * _TINY
         shift = 2.0 * loss
         try:
             if share > 0.0:

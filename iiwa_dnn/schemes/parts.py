@@ -25,6 +25,7 @@ import numpy as np
 from iiwa_dnn.compiling.library import compiled, entry
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.program import real_array
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.step import Step, StepViews
 
@@ -184,8 +185,8 @@ def _checked(
 ) -> dict[str, Matrix]:
     """Return both arrays of an answer by name, with all n variables; sizes are (n, rows)."""
     try:
-        pair = [np.atleast_1d(np.asarray(x, dtype=np.float64)) for x in answer]
-        given = dict(zip(names, pair, strict=True))
+        pairs = zip(names, answer, strict=True)
+        given = {name: np.atleast_1d(real_array(name, x)) for name, x in pairs}
     except (TypeError, ValueError) as error:
         problem = f"must return two arrays, {' and '.join(names)}, not {answer!r:.80}"
         raise InvalidInputError(type(part).__name__, problem, answer) from error

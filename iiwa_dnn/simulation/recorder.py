@@ -13,7 +13,6 @@ from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.program import LimitNames
 from iiwa_dnn.simulation.loop import Outcome
 
@@ -177,12 +176,11 @@ class Recorder:
             self._array("bound_kind")[k] = kinds
 
     def _add_kinetic_index(self, steps: slice, ended: bool) -> None:
-        """Compute the kinetic index; a scheme of one's own may have its own."""
+        """Compute the kinetic index, of the identity for all steps at once."""
         scheme = self._controller.scheme
         robot = self._controller.robot
         column = self.arrays["kinetic_index"]
-        inherited = type(scheme).kinetic_index is Scheme.kinetic_index
-        if inherited and scheme.kinetic == "identity":
+        if scheme.kinetic == "identity":
             column[steps] = np.square(self.arrays["dq"][steps]).sum(axis=1)
             return
         for k in range(steps.start, steps.stop - ended):

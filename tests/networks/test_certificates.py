@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import programs
-from iiwa_dnn import QP, DNNSolver, Status
+from iiwa_dnn import QP, DNNSolver, Status, solve_problem
 from iiwa_dnn.qp import certificates
 
 
@@ -105,6 +105,7 @@ def test_wrong_evidence_proves_nothing() -> None:
     assert certificates.unboundedness_radius(slanted, np.array([-1.0, 0.0])) == pytest.approx(200)
     steep = QP([[1e308, 1e308], [1e308, 1.5e308]], [-1.0, 0.0])
     assert not certificates.unboundedness_radius(steep, np.array([10.0, -10.0])) > 0.0
+    assert solve_problem(QP([[0.0]], [-1e-8], [[1e-10]], [1e-10])).extras["status"] == "not settled"
     bounded = QP(np.zeros((1, 1)), [-1.0], ub=[5.0])
     assert certificates.unboundedness_radius(bounded, np.ones(1)) <= 5.0
 

@@ -238,7 +238,7 @@ def test_singular_cost_settles_but_not_with_the_dual_networks() -> None:
         (Flow(lambda s: None), r"^rates of Own: has shape \(\)"),
         (Flow(lambda s: -s, lambda s: np.eye(3)), r"^jacobian: must have shape \(4, 4\)"),
         (Flow(lambda s: s), "^Own: no explicit step is known to be stable"),
-        (Flow(lambda s: -1e9 * s), "^Own: needs more than 1000000 explicit steps; give substeps"),
+        (Flow(lambda s: -1e9 * s), "^Own: no explicit step .* more than 1000000 would"),
     ],
 )
 def test_a_network_of_wrong_shapes_or_sign_is_named(flow: Flow, problem: str) -> None:

@@ -107,9 +107,8 @@ def test_nothing_about_the_answer_is_trusted() -> None:
     [
         (QP(np.eye(1), [-1.0], ub=[0.5]), [0.25], 0.25, ""),
         (QP([[1e8]], [-1e8], ub=[0.5]), [0.25], 0.25, ""),
-        (QP([[1e300]], [-1e300], ub=[0.5]), [0.25], np.inf, DEPENDENT),  # of 1, a bound's row
-        (QP([[1e-8]], [-1e-8], ub=[0.5]), [0.25], 0.25, ""),
-        (QP([[1e308]], [-1e-300]), [0.0], np.inf, DEPENDENT),  # their quotient underflows
+        (QP([[7e-151, 7e-151], [7e-151, 3e-151]], [0.0, 0.0], A=[[2.22e-162, 8.88e-163]], b=[0.0]),
+         [0.0, 0.0], np.inf, NOT_CONVEX),  # A^T A underflows
         (QP(np.eye(1), [-1.0], ub=[1.0]), [1.0], 0.0, WEAK),  # a multiplier of zero
         (QP(np.zeros((1, 1)), [-1.0], ub=[2.0]), [2.0], np.inf, DEPENDENT),  # without multipliers
         (QP(np.zeros((1, 1)), [0.0], lb=[2.0], ub=[2.0]), [2.5], 0.5, ""),

@@ -9,7 +9,7 @@ from hypothesis import example, given, settings, strategies as st
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array
-from helpers_simulation import paper_robot, paper_start
+from helpers_simulation import heart, paper_robot, paper_start
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.schemes.limits import braking, check_ranges, joint_bounds, largest_gain
 from judge_limits import Breach, breaches
@@ -203,6 +203,14 @@ def test_a_gain_that_is_too_high_is_warned_of_once() -> None:
         controller.step(PAPER_Q0, 0.0, here)
     controller.step(PAPER_Q0, 1e-3, here)  # a second warning would be an error
     d.Controller(paper_robot(), d.DoubleIndicator(extra_limits=limits)).step(PAPER_Q0, 0.0, here)
+
+
+def test_a_jerk_limit_is_no_reason_to_refuse_a_late_step() -> None:
+    limits = (d.AccelerationLimits(10.0), d.JerkLimits(500.0))
+    controller = d.Controller(paper_robot(), d.DoubleIndicator(extra_limits=limits), heart())
+    first = controller.step(PAPER_Q0, 0.0)
+    late = controller.step(first.next_q, 1e-3, dt=0.3)
+    assert np.abs(late.dq - first.dq).max() <= 0.3 * 10.0 + 1e-12
 
 
 def test_limits_are_the_robots_or_ones_own() -> None:

@@ -106,6 +106,7 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
             (own(d.Cost, quadratic=(np.triu(EYE + 1.0), ZEROS)), "P is not symmetric"),
             (own(d.Cost, quadratic=(EYE, ZEROS + np.nan)), "q holds NaN"),
             (own(d.Cost, quadratic=(EYE, ZEROS, 1)), "must return two arrays, P and q"),
+            (own(d.Cost, quadratic=(1j * EYE, ZEROS)), "must return two arrays, P and q"),
             (own(d.Task, 1, equations=None), "must return two arrays, A and b, not None"),
             (own(d.Task, 1, equations=(ROW, [np.inf])), "b holds an infinite number"),
             (own(d.Limit, 1, inequalities=(EYE[:2], ZEROS[:2])), r"G has shape \(2, 7\), not \(1"),

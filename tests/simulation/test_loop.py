@@ -231,15 +231,6 @@ def test_an_estimator_is_told_of_the_velocity_that_the_joints_get() -> None:
     assert errors[1] < 1.2 * errors[0] < 1e-3
 
 
-def test_a_kinetic_index_of_ones_own_is_recorded() -> None:
-    class Doubled(d.DoubleIndicator):
-        def kinetic_index(self, conf: d.Configuration, dq: np.ndarray) -> float:
-            return 2.0 * super().kinetic_index(conf, dq)
-
-    record = run(Doubled(), reference=heart(period=2.0))
-    np.testing.assert_allclose(record.kinetic_index, 2.0 * (record.dq**2).sum(axis=1), rtol=1e-12)
-
-
 def test_a_path_that_begins_elsewhere_is_warned_of() -> None:
     with pytest.warns(UserWarning, match=r"begins 0\.\d+ m and .* rad from.*anchored"):
         run(reference=d.Heart(), duration=0.002)

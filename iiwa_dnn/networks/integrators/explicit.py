@@ -58,10 +58,10 @@ class ExplicitEuler(Integrator):
         if count is None:
             stable = SAFETY * network.stable_step(qp, state)
             if not (stable > 0.0 and duration <= MOST * stable):
-                unknown = "no explicit step is known to be stable (is P singular?)"
-                problem = f"needs more than {MOST} explicit steps" if stable > 0.0 else unknown
                 raise InvalidInputError(
-                    type(network).__name__, f"{problem}; give substeps, or integrate implicitly"
+                    type(network).__name__,
+                    f"no explicit step is known to be stable, or more than {MOST} would be needed "
+                    "(is P singular?); give substeps, or integrate implicitly",
                 )
             count = max(1, math.ceil(duration / stable))
         step = duration / count

@@ -23,6 +23,7 @@ STEEP = 1e5
 """Largest entry of a cost that was made steep."""
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def settle_scaled(
     qp: QP, state: Vector, point: Vector, tol: float, budget: int, before: Settled
 ) -> Settled:
