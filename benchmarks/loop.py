@@ -50,8 +50,7 @@ class Loop(NamedTuple):
 
 
 LOOPS = (
-    Loop("iiwa_dnn, `Controller.step`", "iiwa_dnn", "own_loop", "command"),
-    Loop("iiwa_dnn, with q + dt dq", "iiwa_dnn", "own_loop", "euler", True),
+    Loop("iiwa_dnn, `Controller.step`", "iiwa_dnn", "own_loop", "", True),
     Loop("PlaCo", "placo", "placo_loop", "", True),
     Loop("Pink, daqp", "pink", "pink_loop"),
     Loop("Pink, daqp, target one step ahead", "pink", "pink_loop", "ahead"),

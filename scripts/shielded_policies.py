@@ -65,7 +65,7 @@ class ShieldStep:
         q = np.radians([transition["observation"][key] for key in self._keys])
         command = self.shield.step(q, position=goal)
         self.clipped += command.clipped
-        following = np.degrees(command.command.past[0] + self.shield.dt * command.dq)
+        following = np.degrees(command.command.next_q)
         safe = zip(self._keys, following.tolist(), strict=True)
         changed["action"] = transition["action"] | dict(safe)
         return changed

@@ -1,6 +1,4 @@
-"""This package's loop as documented: `Controller.step(q, t)`, with and without integration."""
-
-from typing import Any
+"""This package's loop as documented: `Controller.step(q, t)`, and the joint positions after it."""
 
 import numpy as np
 from serve import Loop, Task, serve
@@ -9,7 +7,7 @@ import iiwa_dnn
 
 
 def make(task: Task, variant: str) -> Loop:
-    """Make the loop; the variants are ``command`` and ``euler``."""
+    """Make the loop, which has no variants."""
     q = np.array(task["q0"])
     dt = float(task["dt"])
     robot = iiwa_dnn.load_robot(str(task["urdf"]), tip=str(task["tip"])).with_limits(
@@ -24,24 +22,12 @@ def make(task: Task, variant: str) -> Loop:
         scheme = iiwa_dnn.Scheme(scheme.costs, scheme.tasks, [*scheme.limits, avoid])
     controller = iiwa_dnn.Controller(robot, scheme, reference, dt=dt)
     controller.warm_up(q)
-    command: Any = None
 
-    def only_command(k: int) -> None:
-        nonlocal command
-        command = controller.step(q, k * dt)
-
-    def integrated() -> Any:
-        nonlocal q
-        q = q + dt * command.dq
-        return q
-
-    def euler(k: int) -> None:
+    def step(k: int) -> None:
         nonlocal q
         q = controller.step(q, k * dt).next_q
 
-    if variant == "command":
-        return only_command, integrated
-    return euler, lambda: q
+    return step, lambda: q
 
 
 if __name__ == "__main__":
