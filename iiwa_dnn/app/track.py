@@ -263,7 +263,8 @@ def track(options: Words) -> int:
     """Draw a path with a robot arm, every step checked; by default the paper's heart.
 
     All further settings are arguments of the Python classes, given by --config or --set.
-    Exit code 0: every step solved, within limits and in agreement; 1: not so; 2: bad input.
+    Exit code 0: within limits and, unless continuous, solved and in agreement; 1: not so; 2: bad
+    input.
     """
     tables = read_tables(options)
     arguments = build(tables)
