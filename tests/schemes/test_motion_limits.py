@@ -193,7 +193,6 @@ def test_a_loop_is_stable_up_to_the_largest_gain(limits: Any, dt: float) -> None
 
 
 def test_a_gain_that_is_too_high_is_warned_of_once() -> None:
-    # In physics, at 60 1/s with 500 rad/s^3 and noise, the tip left a circle by 6 mm.
     limits = (d.AccelerationLimits(), d.JerkLimits(500.0))
     here = d.Target(paper_start().position, paper_start().rotation)
     controller = d.Controller(
