@@ -146,7 +146,6 @@ RATED, SMOOTH = (
     d.DoubleIndicator(extra_limits=(d.AccelerationLimits(10.0), d.JerkLimits(jerk)), home=PAPER_Q0)
     for jerk in (500.0, 20.0)
 )
-# Far from the ball; it stops along a motion that was in hand.
 AWAY = d.CollisionAvoidance(d.Sphere((5.0, 0.0, 0.0), 0.1), self_collision=False)
 BESIDE = d.DoubleIndicator(extra_limits=(d.AccelerationLimits(10.0), AWAY), home=PAPER_Q0)
 BALL = d.Sphere(paper_start().position + [0.0, 0.2, 0.0], 0.05)

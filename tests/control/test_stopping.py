@@ -71,6 +71,7 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
         ratios.append(periods / least)
     assert min(ratios) == 1.0
     assert max(ratios) <= (1.0 if jerk == np.inf else 1.125)
+    assert stopping.next_velocity(1.2, 1.2, 1.2, False) == pytest.approx(0.2)  # a period changed
 
 
 @pytest.mark.parametrize("periods", [2.0, 3.0, 7.0, 40.0, 300.0])
