@@ -8,6 +8,7 @@ which asks no other solver. `CheckPool` is the check behind a running loop.
 
 from __future__ import annotations
 
+import os
 import warnings
 from concurrent.futures import Future
 from contextlib import suppress
@@ -18,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
+from iiwa_dnn.processes import end_with
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import point_of, prove_point
@@ -275,7 +277,11 @@ class CheckPool:
         self.workers = workers
         # Not the standard library's pool: that one runs the caller's script once more in every
         # worker, so a script without a __main__ guard would start itself again.
-        self._executor = loky.get_reusable_executor(workers, timeout=60) if workers else None
+        self._executor = None
+        if workers:
+            self._executor = loky.get_reusable_executor(
+                workers, timeout=60, initializer=end_with, initargs=(os.getpid(),)
+            )
         nothing = np.empty((0, 0))
         self._verdicts: list[Agreement | Future[Agreement]] = [
             check.check_block(nothing, (0, 0, 0), nothing)

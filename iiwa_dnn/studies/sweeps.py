@@ -11,6 +11,7 @@ need the same package, and the folder if the sweep is to be resumable.
 
 import hashlib
 import inspect
+import os
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from functools import cache
@@ -24,6 +25,7 @@ from tqdm import tqdm
 from iiwa_dnn import checks
 from iiwa_dnn.errors import IiwaDnnError, import_extra
 from iiwa_dnn.files import prepare_folder
+from iiwa_dnn.processes import end_with
 from iiwa_dnn.robot.loading import robots_folder
 
 Task = Callable[[Any], Any]
@@ -78,6 +80,8 @@ def sweep(
         "backend": "loky",
         "n_jobs": -1 if workers is None else workers,
         "inner_max_num_threads": 1,
+        "initializer": end_with,
+        "initargs": (os.getpid(),),
     }
     if dask is not None:
         distributed = import_extra("distributed", "pip install 'iiwa-dnn[dask]'")

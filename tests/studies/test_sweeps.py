@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from helpers_commands import marked
 from helpers_sweeps import cells, draw
 from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.studies import sweeps
@@ -81,12 +82,15 @@ def test_after_kill_9_the_sweep_goes_on_where_it_was(tmp_path: Path, log: Path) 
     count, folder = 8, tmp_path / "cells"
     main = "import helpers_sweeps; helpers_sweeps.main()"
     command = [sys.executable, "-c", main, *map(str, (folder, log, count, 0.2, 2))]
-    process = subprocess.Popen(command, start_new_session=True)
+    mark = f"IIWA_DNN_TEST={tmp_path}"
+    process = subprocess.Popen(command, env=os.environ | dict([mark.split("=")]))
     deadline = time.monotonic() + 60.0
     while len(finished(folder)) < 3 and time.monotonic() < deadline:
         time.sleep(0.02)
-    os.killpg(process.pid, signal.SIGKILL)  # its own group: its workers with it
+    process.kill()
     assert process.wait() == -signal.SIGKILL
+    while marked(mark) and time.monotonic() < deadline:  # its workers
+        time.sleep(0.02)
     kept = finished(folder)
     assert 3 <= len(kept) < count
     log.write_text("", encoding="utf-8")
