@@ -23,7 +23,7 @@ from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.configuration import FrameState
 
 START = tuple(np.deg2rad([-262.6, 170.0, 176.0, 228.0, -76.0, 238.0]).tolist())  # kinova1.m
-CIRCLE = iiwa_dnn.Circle(radius=0.12, period=10.0)  # kinovaNet.m
+CIRCLE = iiwa_dnn.Circle(radius=0.12, period=10.0, begin=0.0)  # kinovaNet.m
 OBSTACLE = (-0.05, -0.4, 0.28)  # the point [m]
 OUTER = 0.10  # distance d2 at which its rows begin [m]
 INNER = 0.05  # distance d1 where approach ends [m]

@@ -135,7 +135,7 @@ SETTINGS: dict[str, Callable[[], Made]] = {
     "without a solution: relax": lambda: without_solution("relax"),
     "without a solution: stop": lambda: without_solution("stop"),
     "yielding to acceleration and jerk": lambda: drawing(
-        with_limits(d.AccelerationLimits(2.0), d.JerkLimits(50.0)), d.Circle()
+        with_limits(d.AccelerationLimits(2.0), d.JerkLimits(50.0)), d.Circle(begin=0.0)
     ),
 }
 """Functions that make each controller, by its name."""

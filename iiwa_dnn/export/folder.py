@@ -105,7 +105,7 @@ def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
     if twin.reference is None:
         start = Configuration(twin.robot, q0)
         twin.reference = {
-            name: Lissajous((0.01, 0.01, 0.0)).anchored(start.frame(name))
+            name: Lissajous((0.01, 0.01, 0.0), begin=0.0).anchored(start.frame(name))
             for name in twin.program.target_frames
         }
     q = q0.copy()

@@ -13,6 +13,7 @@ from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Reference
+from iiwa_dnn.references.soft_start import SoftStart, soft_clock
 
 
 @compiled
@@ -67,36 +68,39 @@ class Heart(Reference):
 
 @compiled
 def circle_path(t: float, constants: Array, target: Array) -> None:
-    """Move a target along `Circle`; constants: radius [m], rate [rad/s], two axes (3,)."""
-    radius = constants[0]
-    rate = constants[1]
-    p = rate * t
+    """Move a target along `Circle`; constants: begin [s], radius [m], rate [rad/s], axes (2, 3)."""
+    inner, pace = soft_clock(t, constants[0])
+    radius = constants[1]
+    p = constants[2] * inner
+    rate = constants[2] * pace
     # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
     sine = math.sin(0.5 * p)
     along_u = -2.0 * sine * sine
     along_v = math.sin(p)
     for i in range(3):
-        u = constants[2 + i]
-        v = constants[5 + i]
+        u = constants[3 + i]
+        v = constants[6 + i]
         target[i] += radius * (along_u * u + along_v * v)
         target[12 + i] += rate * radius * (math.cos(p) * v - along_v * u)
 
 
 @dataclass(frozen=True, eq=False)
-class Circle(Reference):
-    """A circle at constant speed, counter-clockwise about its normal.
+class Circle(SoftStart):
+    """A circle at constant speed after a soft start, counter-clockwise about its normal.
 
-    With w = 2 pi / period and (u, v, normal) right-handed and orthonormal::
+    With w = 2 pi / period, (u, v, normal) right-handed and orthonormal, and the clock s of
+    `SoftStart`::
 
-        displacement(t) = radius ((cos(w t) - 1) u + sin(w t) v)
+        displacement(t) = radius ((cos(w s) - 1) u + sin(w s) v)
 
     u is the part of the world's x axis in the circle's plane, or of its y axis if x is nearly the
-    normal. The circle starts at full speed, 2 pi radius / period, not at rest.
+    normal.
 
     Attributes:
         radius: Radius [m].
         period: Time to go round once [s].
         normal: Direction of the circle's axis; its length does not matter.
+        begin: Length of the soft start [s], see `SoftStart`.
 
     Raises:
         InvalidInputError: If a parameter is not finite, radius or period is not above zero, or the
@@ -115,7 +119,8 @@ class Circle(Reference):
         axis = np.eye(3)[0 if abs(normal[0]) < 0.9 else 1]
         u = axis - (axis @ normal) * normal
         u /= np.linalg.norm(u)
-        head = [self.radius, 2.0 * np.pi / self.period]
+        begin = self._set_begin(None, self.period)
+        head = [begin, self.radius, 2.0 * np.pi / self.period]
         self._set(constants=np.concatenate([head, u, np.cross(normal, u)]))
 
 
@@ -160,31 +165,33 @@ class Line(Reference):
 
 @compiled
 def lissajous_path(t: float, constants: Array, target: Array) -> None:
-    """Move a target along `Lissajous`; constants: amplitudes, rates and phases, (3,) each."""
+    """Move a target along `Lissajous`; constants: begin, amplitudes, rates and phases (3,)."""
+    inner, pace = soft_clock(t, constants[0])
     for i in range(3):
-        amplitude = constants[i]
-        rate = constants[3 + i]
-        phase = constants[6 + i]
-        angle = rate * t + phase
+        amplitude = constants[1 + i]
+        rate = constants[4 + i]
+        phase = constants[7 + i]
+        angle = rate * inner + phase
         target[i] += amplitude * (math.sin(angle) - math.sin(phase))
-        target[12 + i] += amplitude * rate * math.cos(angle)
+        target[12 + i] += amplitude * (rate * pace) * math.cos(angle)
 
 
 @dataclass(frozen=True, eq=False)
-class Lissajous(Reference):
+class Lissajous(SoftStart):
     """A closed Lissajous figure: on each axis a sine of a whole number of turns per period.
 
-    With w = 2 pi / period, on each axis i::
+    With w = 2 pi / period and the clock s of `SoftStart`, on each axis i::
 
-        displacement_i(t) = amplitude_i (sin(turns_i w t + phase_i) - sin(phase_i))
+        displacement_i(t) = amplitude_i (sin(turns_i w s + phase_i) - sin(phase_i))
 
-    The default is a figure of eight in the horizontal plane. In general it does not start at rest.
+    The default is a figure of eight in the horizontal plane.
 
     Attributes:
         amplitudes: Amplitudes on x, y, z [m], shape (3,).
         turns: Whole numbers of turns per period on x, y, z, shape (3,).
         phases: Phases at t = 0 on x, y, z [rad], shape (3,).
         period: Time to go round once [s].
+        begin: Length of the soft start [s], see `SoftStart`.
 
     Raises:
         InvalidInputError: If a parameter is not finite, the period is not above zero or a number of
@@ -204,7 +211,8 @@ class Lissajous(Reference):
         if not all(turns.is_integer() for turns in self.turns):
             raise InvalidInputError("turns", "must be whole numbers", self.turns)
         rates = (2.0 * np.pi / self.period) * np.array(self.turns)
-        self._set(constants=np.concatenate([self.amplitudes, rates, self.phases]))
+        begin = self._set_begin(None, self.period)
+        self._set(constants=np.concatenate([[begin], self.amplitudes, rates, self.phases]))
 
 
 @compiled

@@ -1,7 +1,7 @@
 """Paths on which the tool turns: a cone, and a path with a tilting tool."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -22,6 +22,7 @@ from iiwa_dnn.references.shapes import (
     line_path,
     lissajous_path,
 )
+from iiwa_dnn.references.soft_start import SoftStart, soft_clock
 from iiwa_dnn.references.waypoints import Waypoints, waypoints_path
 
 TILT = math.radians(20.0)
@@ -29,10 +30,11 @@ TILT = math.radians(20.0)
 
 @compiled
 def cone_path(t: float, constants: Array, target: Array) -> None:
-    """Turn a target along `Cone`; constants: angle [rad], rate [rad/s]."""
-    angle = constants[0]
-    rate = constants[1]
-    p = rate * t
+    """Turn a target along `Cone`; constants: begin [s], angle [rad], rate [rad/s]."""
+    inner, pace = soft_clock(t, constants[0])
+    angle = constants[1]
+    rate = constants[2] * pace
+    p = constants[2] * inner
     turn_target(target, scaled(-angle, column_of(target, 0)), (0.0, 0.0, 0.0))
     # The tool's x and y axes where its z axis is the cone's; the tilt to the start is about x.
     u = column_of(target, 0)
@@ -43,18 +45,20 @@ def cone_path(t: float, constants: Array, target: Array) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Cone(Reference):
+class Cone(SoftStart):
     """A cone that the tool's z axis sweeps while the tip stands still.
 
-    With u the tool's x axis at the start, (u, v, cone's axis) right-handed and w = 2 pi / period::
+    With u the tool's x axis at the start, (u, v, cone's axis) right-handed, w = 2 pi / period and
+    the clock s of `SoftStart`::
 
-        turn(t) = exp(angle (cos(w t) u + sin(w t) v)) exp(-angle u)
+        turn(t) = exp(angle (cos(w s) u + sin(w s) v)) exp(-angle u)
 
-    The tool does not spin about its own axis, and starts at its full rate.
+    The tool does not spin about its own axis.
 
     Attributes:
         angle: Angle between the cone's axis and its side, below pi / 2 [rad].
         period: Time to go round once [s].
+        begin: Length of the soft start [s], see `SoftStart`.
 
     Raises:
         InvalidInputError: If a parameter is out of range.
@@ -66,28 +70,35 @@ class Cone(Reference):
 
     def __post_init__(self) -> None:
         self._set(angle=_acute(self.angle), period=positive("period", self.period))
-        self._set(constants=np.array([self.angle, 2.0 * np.pi / self.period]))
+        begin = self._set_begin(None, self.period)
+        self._set(constants=np.array([begin, self.angle, 2.0 * np.pi / self.period]))
 
 
 @compiled
 def tilting_path(t: float, constants: Array, target: Array) -> None:
-    """Move a target along `Tilting`; constants: number of the path, angle, rate, axis (3,)."""
+    """Move a target along `Tilting`; constants: number of the path, begin, angle, rate, axis (3,).
+
+    Those of the path follow.
+    """
     kind = int(constants[0])
-    along = constants[6:]
+    inner, pace = soft_clock(t, constants[1])
+    along = constants[7:]
     if kind == 1:
-        heart_path(t, along, target)
+        heart_path(inner, along, target)
     elif kind == 2:
-        circle_path(t, along, target)
+        circle_path(inner, along, target)
     elif kind == 3:
-        line_path(t, along, target)
+        line_path(inner, along, target)
     elif kind == 4:
-        lissajous_path(t, along, target)
+        lissajous_path(inner, along, target)
     elif kind == 5:
-        waypoints_path(t, along, target)
-    rate = constants[2]
-    axis = (constants[3], constants[4], constants[5])
-    tilt = constants[1] * math.sin(rate * t)
-    speed = constants[1] * rate * math.cos(rate * t)
+        waypoints_path(inner, along, target)
+    for i in range(12, 18):
+        target[i] *= pace
+    rate = constants[3]
+    axis = (constants[4], constants[5], constants[6])
+    tilt = constants[2] * math.sin(rate * inner)
+    speed = constants[2] * (rate * pace) * math.cos(rate * inner)
     turn_target(target, scaled(tilt, axis), scaled(speed, axis))
 
 
@@ -96,12 +107,12 @@ _ALONG = (Still, Heart, Circle, Line, Lissajous, Waypoints)
 
 
 @dataclass(frozen=True, eq=False)
-class Tilting(Reference):
+class Tilting(SoftStart):
     """A path on which the tool tilts to and fro about an axis; by default a circle.
 
-    With w = 2 pi turns / period::
+    With w = 2 pi turns / period and the clock s of `SoftStart`, which is the path's too::
 
-        turn(t) = exp(angle sin(w t) axis)
+        turn(t) = exp(angle sin(w s) axis)
 
     applied after the turns that the path itself has, if any.
 
@@ -110,6 +121,8 @@ class Tilting(Reference):
         angle: Largest tilt to either side [rad].
         axis: Axis in the world's frame; its length does not matter.
         turns: Whole number of tilts to both sides, in a round on the path.
+        begin: Length of the soft start of the path and the tilt [s], in place of the path's own;
+            by default that one, if the path has one, and otherwise as for `SoftStart`.
 
     Raises:
         InvalidInputError: If a parameter is out of range.
@@ -125,11 +138,19 @@ class Tilting(Reference):
         if type(self.along) not in _ALONG:
             problem = f"must be one of {', '.join(kind.__name__ for kind in _ALONG)}"
             raise InvalidInputError("along", problem, self.along)
-        rate = 2.0 * np.pi * integer("turns", self.turns, 1) / self.along.duration
+        rate = 2.0 * np.pi * integer("turns", self.turns, 1) / self._round
         self._set(angle=_acute(self.angle), axis=vector3("axis", self.axis))
+        begin = self._set_begin(getattr(self.along, "begin", None), self._round)
+        # One clock for both.
+        along = replace(self.along, begin=0.0) if isinstance(self.along, SoftStart) else self.along
         kind = float(_ALONG.index(type(self.along)))
-        own = [kind, self.angle, rate, *direction("axis", self.axis)]
-        self._set(constants=np.concatenate([own, self.along.constants]))
+        own = [kind, begin, self.angle, rate, *direction("axis", self.axis)]
+        self._set(constants=np.concatenate([own, along.constants]))
+
+    @property
+    def _round(self) -> float:
+        """Time that the path takes once, without a soft start [s]."""
+        return min(self.along.period, self.along.duration)
 
     @property
     def period(self) -> float:
@@ -138,8 +159,8 @@ class Tilting(Reference):
 
     @property
     def duration(self) -> float:
-        """Time to take the path once [s]."""
-        return self.along.duration
+        """Time to take the path once, with the soft start [s]."""
+        return self._lasting(self._round)
 
 
 def _acute(angle: float) -> float:

@@ -89,10 +89,10 @@ UNLIMITED = 1e9
 
 PATHS: tuple[Callable[[], Reference], ...] = (
     partial(Heart, period=2.0),
-    partial(Circle, radius=0.05, period=2.0),
-    partial(Lissajous, amplitudes=(0.05, 0.05, 0.02), period=2.0),
+    partial(Circle, radius=0.05, period=2.0, begin=0.0),
+    partial(Lissajous, amplitudes=(0.05, 0.05, 0.02), period=2.0, begin=0.0),
 )
-"""Paths; the seeds take them in turn."""
+"""Paths; the seeds take them in turn. At full speed at once: a soft start outlasts the run."""
 
 _TASKS = [PositionTask(), OrientationTask()]
 

@@ -30,7 +30,7 @@ def yielding_steps(arm: str, limits: str, policy: Policy) -> tuple[RowLayout, np
     start = d.Configuration(robot, q)
     scheme = d.DoubleIndicator(extra_limits=limits_of(limits, start.position))
     slow = robot.with_limits(velocity=np.minimum(robot.dq_max, SPEED))
-    circle = d.Circle(0.06, 1.5).anchored(start)
+    circle = d.Circle(0.06, 1.5, begin=0.0).anchored(start)
     controller = d.Controller(slow, scheme, circle, policy=policy)
     taken = np.array([command.row for command in driven(controller, q, STEPS)[1]])
     kinds = controller.control_step.layout.view(taken, "decision")[:, 3]

@@ -61,7 +61,7 @@ def test_near_a_singular_pose_a_path_that_fits_is_caught_up_with() -> None:
     start = d.Configuration(robot, home)
     tasks = [d.PositionTask(gain=5.0), d.OrientationTask(gain=5.0)]
     limits = [d.JointLimits(gain=10.0), d.AccelerationLimits(10.0), d.JerkLimits(300.0)]
-    circle = d.Circle(radius=0.02, period=4.0).anchored(start)
+    circle = d.Circle(radius=0.02, period=4.0, begin=0.0).anchored(start)
     scheme = d.Scheme([d.KineticEnergy()], tasks, limits)
     _, commands = driven(d.Controller(robot, scheme, circle, dt=2e-3), home, 200)
     actions = [command.action for command in commands]
@@ -78,7 +78,7 @@ def test_a_joint_at_its_velocity_limit_leaves_no_path_slowed_that_fits(limits) -
     fastest = paper_robot().dq_max.copy()
     fastest[0] = 0.02
     robot = paper_robot().with_limits(velocity=fastest)
-    circle = d.Circle(radius=0.05, period=4.0).anchored(d.Configuration(robot, home))
+    circle = d.Circle(radius=0.05, period=4.0, begin=0.0).anchored(d.Configuration(robot, home))
     scheme = d.DoubleIndicator(orientation="so3", home=home, extra_limits=limits)
     _, commands = driven(d.Controller(robot, scheme, circle, dt=2e-3), home, 300)
     assert np.mean([abs(command.dq[0]) > 0.02 - 1e-6 for command in commands[100:]]) > 0.5

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 import iiwa_dnn as d
 from iiwa_dnn.references import rotations
+from iiwa_dnn.references.soft_start import SoftStart
 
 CORNERS = [[1, 2, 3], [1.2, 2, 3.1], [1.2, 2.3, 3], [1, 2, 3]]
 TURNS = Rotation.from_rotvec([[3.0, 0.2, 0], [2.8, 0.9, 0.3], [2.4, 0.2, -0.8], [3.0, 0.2, 0]])
@@ -20,17 +22,19 @@ QUATERNIONS = TURNS.as_quat()[:, [3, 0, 1, 2]] * [[1], [-1], [1], [-1]]
 POSE = d.Target([0.4, 0.1, 0.5], Rotation.from_rotvec([2.9, 0.4, -0.2]).as_matrix())
 CLOSED = [
     d.Heart(scale=2e-3, period=7.0),
-    d.Circle(radius=0.2, period=5.0, normal=(1.0, -2.0, 0.5)),
-    d.Circle(normal=(1.0, 0.1, 0.0)),
+    d.Circle(radius=0.2, period=5.0, normal=(1.0, -2.0, 0.5), begin=0.0),
+    d.Circle(normal=(1.0, 0.1, 0.0), begin=0.0),
     d.Line(offset=(0.1, -0.2, 0.3), period=4.0),
-    d.Lissajous(),
-    d.Lissajous((0.1, 0.2, 0.3), (3, 2, 5), (0.3, 0.0, -1.0), 6.0),
-    d.Cone(0.3, 4.0),
-    d.Tilting(),
-    d.Tilting(d.Lissajous((0.1, 0.2, 0.3), (3, 2, 5), (0.3, 0, -1), 5.0), 0.2, (1.0, 2.0, -1.0)),
-    d.Tilting(d.Heart(5e-3, 6.0), 0.4, (0.0, 1.0, 0.0)),
-    d.Tilting(d.Line(), 0.4),
-    d.Tilting(d.Waypoints([5, 6, 8, 9], CORNERS, "closed", QUATERNIONS), 0.2),
+    d.Lissajous(begin=0.0),
+    d.Lissajous((0.1, 0.2, 0.3), (3, 2, 5), (0.3, 0.0, -1.0), 6.0, begin=0.0),
+    d.Cone(0.3, 4.0, begin=0.0),
+    d.Tilting(begin=0.0),
+    d.Tilting(
+        d.Lissajous((0.1, 0.2, 0.3), (3, 2, 5), (0.3, 0, -1), 5.0), 0.2, (1.0, 2.0, -1.0), begin=0
+    ),
+    d.Tilting(d.Heart(5e-3, 6.0), 0.4, (0.0, 1.0, 0.0), begin=0.0),
+    d.Tilting(d.Line(), 0.4, begin=0.0),
+    d.Tilting(d.Waypoints([5, 6, 8, 9], CORNERS, "closed", QUATERNIONS), 0.2, begin=0.0),
     d.Waypoints([5, 6, 8, 9], CORNERS, "closed"),
     d.Waypoints([5, 6, 8, 9], CORNERS, "closed", QUATERNIONS),
 ]
@@ -38,6 +42,16 @@ OPEN = [
     d.Waypoints([5, 6, 8, 9], CORNERS),
     d.Waypoints([5, 6, 8, 9], CORNERS, quaternions=QUATERNIONS),
 ]
+SOFT = [
+    d.Circle(radius=0.2, period=5.0, normal=(1.0, -2.0, 0.5)),
+    d.Circle(period=25.0),
+    d.Lissajous((0.1, 0.2, 0.3), (3, 2, 5), (0.3, 0.0, -1.0), 6.0, begin=2.5),
+    d.Cone(0.05, 0.3),
+    d.Tilting(d.Lissajous((0.1, 0.2, 0.3), (3, 2, 5), (0.3, 0, -1), 5.0, begin=0.3), 0.2),
+    d.Tilting(d.Heart(5e-3, 6.0), 0.4, (0.0, 1.0, 0.0), begin=4.0),
+    d.Tilting(d.Waypoints([5, 6, 8, 9], CORNERS, "closed", QUATERNIONS), 0.2),
+]
+"""Paths with a soft start."""
 TIMES = np.random.default_rng(4).uniform(-5.0, 25.0, 300)
 
 
@@ -46,7 +60,7 @@ def times(reference: d.Reference, count: int = 200) -> NDArray[np.float64]:
     return np.random.default_rng(5).uniform(0.01, reference.duration - 0.01, count)
 
 
-@pytest.mark.parametrize("reference", CLOSED + OPEN, ids=lambda path: type(path).__name__)
+@pytest.mark.parametrize("reference", CLOSED + OPEN + SOFT, ids=lambda path: type(path).__name__)
 def test_the_twist_is_the_derivative_of_the_pose(reference: d.Reference) -> None:
     anchored = reference.anchored(POSE)
     t = times(reference)
@@ -74,7 +88,7 @@ def test_closed_paths_repeat_after_their_period_and_not_before(reference: d.Refe
 
 
 @pytest.mark.parametrize(
-    "reference", [*CLOSED, *OPEN, d.Still()], ids=lambda path: type(path).__name__
+    "reference", [*CLOSED, *OPEN, *SOFT, d.Still()], ids=lambda path: type(path).__name__
 )
 def test_an_anchor_moves_the_start_and_keeps_the_axes(reference: d.Reference) -> None:
     anchored = reference.anchored(POSE)
@@ -91,7 +105,7 @@ def test_an_anchor_moves_the_start_and_keeps_the_axes(reference: d.Reference) ->
         np.testing.assert_allclose(moved.data[12:], free.data[12:], rtol=0, atol=1e-15)
 
 
-@pytest.mark.parametrize("reference", CLOSED + OPEN, ids=lambda path: type(path).__name__)
+@pytest.mark.parametrize("reference", CLOSED + OPEN + SOFT, ids=lambda path: type(path).__name__)
 def test_settings_say_how_to_make_it_again(reference: d.Reference) -> None:
     settings = reference.settings()
     assert json.loads(json.dumps(settings, allow_nan=False)) == settings
@@ -122,7 +136,7 @@ def test_the_heart_is_the_papers_formula_and_starts_at_rest() -> None:
 
 @pytest.mark.parametrize("normal", [(0, 0, 1), (0, 0, -2), (1, 0, 0), (1, -2, 0.5)])
 def test_a_circle_is_round_flat_and_turns_the_right_way(normal: tuple[float, ...]) -> None:
-    circle = d.Circle(radius=0.3, period=4.0, normal=normal)
+    circle = d.Circle(radius=0.3, period=4.0, normal=normal, begin=0.0)
     axis = np.array(normal) / np.linalg.norm(normal)
     targets = circle.sample(TIMES)
     radii = targets.position - circle.at(2.0).position / 2  # half a turn away is a diameter away
@@ -139,7 +153,8 @@ def test_a_line_goes_there_and_back_and_rests_at_both_ends() -> None:
 
 
 def test_lissajous_is_a_sine_on_each_axis() -> None:
-    moved = d.Lissajous((0.1, 0.2, 0.3), (1, 2, 3), (0.0, 0.5, -0.5), 5.0).sample(TIMES).position
+    figure = d.Lissajous((0.1, 0.2, 0.3), (1, 2, 3), (0.0, 0.5, -0.5), 5.0, begin=0.0)
+    moved = figure.sample(TIMES).position
     for i, (a, k, phi) in enumerate(((0.1, 1, 0.0), (0.2, 2, 0.5), (0.3, 3, -0.5))):
         expected = a * (np.sin(2 * math.pi * k * TIMES / 5.0 + phi) - math.sin(phi))
         np.testing.assert_allclose(moved[:, i], expected, rtol=0, atol=1e-14)
@@ -157,7 +172,9 @@ def test_a_cone_keeps_its_angle_and_does_not_spin() -> None:
 def test_a_tilting_tool_tilts_to_both_sides_along_the_same_path(reference: d.Tilting) -> None:
     t = np.linspace(0.0, reference.duration, 9)
     targets = reference.anchored(POSE).sample(t)
-    along = reference.along.anchored(POSE).sample(t)
+    is_soft = isinstance(reference.along, SoftStart)
+    plain = replace(reference.along, begin=0.0) if is_soft else reference.along
+    along = plain.anchored(POSE).sample(t)
     np.testing.assert_array_equal(targets.position, along.position)
     angles = reference.angle * np.sin(2 * np.pi * t / reference.duration)
     axis = np.array(reference.axis) / np.linalg.norm(reference.axis)
@@ -210,6 +227,8 @@ REFUSED = [
     (d.Lissajous, {"turns": (0.5, 1, 1)}, "turns"),
     (d.Cone, {"angle": 1.6}, "angle"),
     (d.Tilting, {"turns": 0}, "turns"),
+    (d.Tilting, {"begin": -1.0}, "begin"),
+    (d.Lissajous, {"begin": math.inf}, "begin"),
     (d.Tilting, {"along": Nodding()}, "along"),
     (d.Still, {"period": 0.0}, "period"),
     (d.Heart().at, {"t": math.nan}, "t"),
