@@ -3,6 +3,7 @@
 This is the only file that knows where a number lies in a row.
 """
 
+import copy
 from itertools import accumulate
 from typing import Any, NamedTuple
 
@@ -144,6 +145,13 @@ class RowLayout:
         columns = map(slice, [0, *ends], ends)
         self.columns = dict(zip(RowViews._fields, columns, strict=True))
         self.dq = self.columns["dq"]
+
+    def at_period(self, dt: float) -> "RowLayout":
+        """Return the layout for another control period [s]; commands keep that of theirs."""
+        layout = copy.copy(self)
+        layout.names = copy.copy(self.names)
+        layout.names.dt = dt
+        return layout
 
     def view(self, rows: Matrix, name: str) -> Matrix:
         """Return the columns of a name of rows (..., width)."""

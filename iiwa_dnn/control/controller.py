@@ -58,7 +58,8 @@ class Controller:
 
     In a robot's loop, `step` takes the encoders' reading and returns the command. Attributes may
     be set in motion: the last commands and the reference's clock stay. Copies and pickles carry
-    them along. Threads may share a controller: steps wait for each other.
+    them along. Threads may share a controller: its methods wait for each other, but for `halt`.
+    References, parts and solvers that a step asks may read it; to move or change it is refused.
 
     Attributes:
         robot: The robot, n joints, with the limits that the scheme keeps.
@@ -100,7 +101,7 @@ class Controller:
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
         """
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
         self._state = ControllerState(0)
         self._derived: ControlStep | None
         self._anchored: Scheme | None = None
@@ -113,15 +114,21 @@ class Controller:
         self.solver = DNNSolver(tol=tol) if solver is None else solver
 
     def __setattr__(self, name: str, value: Any) -> None:
-        check = _CHECKS.get(name)
-        if check is not None:
-            check(name, value)
-            self._derived = None
-        elif not name.startswith("_"):
+        if name.startswith("_"):
+            object.__setattr__(self, name, value)
+            return
+        if name not in _CHECKS:
             raise AttributeError(f"Controller has no setting {name!r}")
+        _CHECKS[name](name, value)
+        with self._turn():
+            self._set(name, value)
+
+    def _set(self, name: str, value: Any) -> None:
+        """Take a setting; what is derived from the settings is made anew."""
         before = vars(self).get(name)
         # A number of numpy's names its type where it is written into C.
         object.__setattr__(self, name, float(value) if name == "dt" else value)
+        self._derived = None
         if name == "robot" and self._state.past.shape[1] != value.dof:
             self._state = ControllerState(value.dof)
         # A braking motion in hand keeps the limits of before.
@@ -129,13 +136,23 @@ class Controller:
             self._state.past[REST] = 0.0
 
     def __getstate__(self) -> dict[str, Any]:
-        own = {"_state": copy.deepcopy(self._state), "solver": copy.deepcopy(self.solver)}
-        return {**vars(self), **own, "_lock": None, "_derived": None}
+        with self._lock:
+            own = {"_state": copy.deepcopy(self._state), "solver": copy.deepcopy(self.solver)}
+            return {**vars(self), **own, "_lock": None, "_derived": None}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        self._lock = threading.Lock()
-        self._derived = None
+        vars(self).update(state, _lock=threading.RLock(), _derived=None)
+
+    def _turn(self) -> threading.RLock:
+        """Return the lock, for whatever uses the kinematics or changes the state.
+
+        Raises:
+            InvalidInputError: A reference, a part or a solver that a step asks calls it.
+        """
+        if self._lock._is_owned():  # type: ignore[attr-defined]
+            problem = "is within a step: what the step asks may only read it, or halt it"
+            raise InvalidInputError("controller", problem, self)
+        return self._lock
 
     @property
     def delay(self) -> float:
@@ -168,16 +185,19 @@ class Controller:
                 `t` is no number; or there is neither reference nor target; or `dt` is not above 0.
         """
         state = self._state
-        command = None
+        before = state.past
+        after = before
         try:
-            with self._lock:
-                command = self._compute(q, t, target, dt)
+            with self._turn():
                 before = state.past
-                state.past = state.next
+                command = self._compute(q, t, target, dt)
+                after = state.next
+                state.past = after
                 return command
         except BaseException as error:
-            if command is not None:  # interrupted before anybody got it
-                state.past = before
+            with self._lock:
+                if state.past is after:  # interrupted before anybody got the command
+                    state.past = before
             if isinstance(error, TypeError | InvalidInputError):
                 checks.finite("t", t)
             raise
@@ -190,7 +210,7 @@ class Controller:
             t: Time [s].
             target: Targets by frame name, in place of the reference's.
         """
-        with self._lock:
+        with self._turn():
             return self._compute(q, t, target, None)
 
     def send(self, dq: Vector, fraction: float = 1.0) -> None:
@@ -199,14 +219,16 @@ class Controller:
         Raises:
             InvalidInputError: `dq` has another size, or is not finite.
         """
-        state = self._state
-        state.dt = state.dt or self.dt
-        past = state.next.copy()
-        past[BEFORE] = state.past[LAST]
-        past[LAST] = checks.finite_array("dq", dq, past[LAST].shape)
-        past[REST] = 0.0
-        past[DELAY] = state.past[DELAY] + self.dt * (1.0 - fraction)
-        state.past = past
+        sent = checks.finite_array("dq", dq, (self.robot.dof,))
+        with self._turn():
+            state = self._state
+            state.dt = state.dt or self.dt
+            past = state.next.copy()
+            past[BEFORE] = state.past[LAST]
+            past[LAST] = sent
+            past[REST] = 0.0
+            past[DELAY] = state.past[DELAY] + self.dt * (1.0 - fraction)
+            state.past = past
 
     def _compute(
         self,
@@ -236,8 +258,8 @@ class Controller:
         if program.refreshed:
             program.refresh(q, past[LAST], layout.targets(row), t, dt)
         following = np.empty(past.shape)
-        state.next = following
         if state.halted:
+            past = past.copy()
             past[HALTED] = 1.0
         network = self.solver.state_for(layout.sizes) if step.has_network else row[:0]
         action = take_step(row, step.plan, q, past, following, network, t, samples)
@@ -245,6 +267,7 @@ class Controller:
             checks.finite("t", t)
             checks.finite_array("q", q, layout.shape)
             checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
+        state.next = following
         return Command(row, layout, _ACTIONS[action])
 
     def is_clear(self, q: Vector, dq: Vector) -> bool:
@@ -256,14 +279,15 @@ class Controller:
             q: Joint positions [rad], (n,).
             dq: Velocity that the program's bounds and rows allow [rad/s], (n,).
         """
-        step = self.control_step
-        if step.plan.yielding.limits.size:
-            return True
-        step.program.kinematics.update(q)
-        past = np.zeros_like(self._state.past)
-        following = past.copy()
-        following[LAST] = dq
-        return bool(guard_step(step.plan.arrays, past, following, step.plan.yielding))
+        with self._turn():
+            step = self.control_step
+            if step.plan.yielding.limits.size:
+                return True
+            step.program.kinematics.update(q)
+            past = np.zeros_like(self._state.past)
+            following = past.copy()
+            following[LAST] = dq
+            return bool(guard_step(step.plan.arrays, past, following, step.plan.yielding))
 
     def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlStep:
         """Anchor the scheme, and at the first step warn of a start that is most likely wrong.
@@ -281,19 +305,22 @@ class Controller:
     def control_step(self) -> ControlStep:
         """The control step, laid out anew after a change of the settings."""
         step = self._derived
-        if step is None:
+        if step is not None:
+            return step
+        with self._lock:
             program = self.scheme.program(self.robot)
             policy = int(Action[self.policy.upper()]) if self.mode == "converged" else BRAKE
             paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
             step = ControlStep(program, paths, self.solver, self.dt, policy)
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
-        return step
+            return step
 
     @property
     def positions(self) -> Vector:
         """Joint positions of the last step [rad], (n,); without any the robot's start."""
-        return np.array(self._state.past[Q] if self._anchored else self.robot.start_posture())
+        with self._lock:
+            return np.array(self._state.past[Q] if self._anchored else self.robot.start_posture())
 
     @property
     def program(self) -> StepProgram:
@@ -306,11 +333,12 @@ class Controller:
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, if the scheme has none."""
-        scheme = self.scheme.anchored(start)
-        if scheme is not self.scheme:
-            self.scheme = scheme
-        self._anchored = self.scheme
-        self._state.past[Q] = start.q
+        with self._lock:
+            scheme = self.scheme.anchored(start)
+            if scheme is not self.scheme:
+                self._set("scheme", scheme)
+            self._anchored = scheme
+            self._state.past[Q] = start.q
 
     def warn_of_start(self, start: Configuration, t: float, own: bool, stacklevel: int) -> None:
         """Warn of settings, a start posture or a first target that are most likely wrong, once.
@@ -333,9 +361,10 @@ class Controller:
 
     def reset(self) -> None:
         """Forget the network's state, the last commands and the delay; the home stays."""
-        self.solver.reset()
-        self._state.rest(self.robot.dof)
-        self._derived = None
+        with self._turn():
+            self.solver.reset()
+            self._state.rest(self.robot.dof)
+            self._derived = None
 
     def warm_up(self, q: ArrayLike) -> None:
         """Lay the program out ahead, so that the first step is as quick as the others.
@@ -344,8 +373,10 @@ class Controller:
             q: Joint positions of the first step [rad], (n,), which become the scheme's home if it
                 has none.
         """
-        self.anchor(Configuration(self.robot, q))
-        self._derived = self.control_step
+        start = Configuration(self.robot, q)
+        with self._turn():
+            self.anchor(start)
+            self._derived = self.control_step
 
     def targets(
         self,
@@ -380,19 +411,21 @@ class Controller:
 
     def placement(self, q: Vector) -> Vector:
         """Compute the placement of the first tracked frame at joint positions q (n,), (12,)."""
-        program = self.program
-        program.kinematics.update(q)
-        return program.placement.copy()
+        with self._turn():
+            program = self.program
+            program.kinematics.update(q)
+            return program.placement.copy()
 
     def program_at(self, q: Vector, targets: Matrix, t: float) -> QP:
         """Build the program at joint positions q (n,) [rad] for targets (k, 18)."""
-        program = self.program
-        past = self._state.past[: LAST + 2].copy()
-        past[Q] = q
-        data = np.empty(data_size(*program.sizes))
-        program.kinematics.update(q)
-        program.write(data, targets, past, self.dt, t)
-        return QP.from_data(data, program.sizes)
+        with self._turn():
+            program = self.program
+            past = self._state.past[: LAST + 2].copy()
+            past[Q] = q
+            data = np.empty(data_size(*program.sizes))
+            program.kinematics.update(q)
+            program.write(data, targets, past, self.dt, t)
+            return QP.from_data(data, program.sizes)
 
 
 def _is_plain(q: ArrayLike, shape: tuple[int, ...]) -> bool:

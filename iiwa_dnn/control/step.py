@@ -134,7 +134,7 @@ class ControlStep:
     def set_period(self, dt: float) -> None:
         """Take another control period [s], without laying anything out anew."""
         self.dt = dt
-        self.layout.names.dt = dt
+        self.layout = self.layout.at_period(dt)
         arrays = self.plan.arrays._replace(rate=1.0 / dt)
         yielding = self.plan.yielding._replace(dt=dt)
         self.plan = self.plan._replace(arrays=arrays, yielding=yielding)
@@ -213,7 +213,8 @@ def take_step(
 ) -> int:
     """Take a control step: its own program, or what the policy asks for.
 
-    The network is not asked if the task yielded at the last step, or the arm brakes.
+    The network is not asked if the task yielded at the last step, or the arm brakes. If joint
+    positions, targets or the time are not finite, nothing but the row is written.
 
     Args:
         row: The row, (width,), with the targets unless they are sampled.
@@ -231,13 +232,17 @@ def take_step(
     arrays = plan.arrays
     table = arrays.table
     views = row_views(row, plan.ends, table[0, 3])
+    if samples:
+        sample_targets(arrays, t - past[DELAY, 0], views.targets)
+    first = row.size - views.targets.size
+    finite = math.isfinite(t) and all_finite(q, 0, q.size)
+    if not finite or not all_finite(row, first, row.size):
+        return INVALID
     copied(past[Q], q)
     copied(following.reshape(following.size), past.reshape(past.size))
     copied(following[BEFORE], past[LAST])
     following[REST, 0] = 0.0
     following[YIELDS, 0] = 0.0
-    if samples:
-        sample_targets(arrays, t - past[DELAY, 0], views.targets)
     assemble(views.program, arrays, past, views.targets, t)
     _note_instant(views, arrays, past)
     halted = past[HALTED, 0] != 0.0
@@ -245,10 +250,6 @@ def take_step(
         note_command(views, following, views.point, plan.yielding.dt)
         if guard_step(arrays, past, following, plan.yielding):
             return NONE
-    first = row.size - views.targets.size
-    finite = math.isfinite(t) and all_finite(q, 0, q.size)
-    if not finite or not all_finite(row, first, row.size):
-        return INVALID
     policy = BRAKE if halted else plan.policy
     return yield_step(views, arrays, past, following, plan.yielding, plan.relaxed, policy)
 

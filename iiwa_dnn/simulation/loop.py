@@ -23,6 +23,7 @@ class Outcome(NamedTuple):
         velocity: Velocity that the controller answered, the mean of the stages [rad/s], (n,).
         dq: Velocity that moved the robot [rad/s], (n,).
         q: True joint positions after the step [rad], (n,).
+        placement: Placement of the first tracked frame before the step, of the true arm, (12,).
         action: Action in place of the network's answer.
         clipped: 1 for each joint whose command was clipped, (n,); None if no command may be.
         torque: Largest joint torques of the step [N m], (n,); None for a plant without motors.
@@ -33,6 +34,7 @@ class Outcome(NamedTuple):
     velocity: Vector
     dq: Vector
     q: Vector
+    placement: Vector
     action: Action = Action.NONE
     clipped: NDArray[np.int8] | None = None
     torque: Vector | None = None
@@ -105,9 +107,8 @@ class Loop:
             velocity = commands[0].dq
             action = commands[0].action
             dq = velocity
-        if self._misled:  # the record keeps the frame's true placement
-            commands[0].placement[:] = controller.placement(self.q)
-        return self._move(dq, Outcome(commands, velocity, dq, self.q, action, clipped))
+        place = controller.placement(self.q) if self._misled else commands[0].placement
+        return self._move(dq, Outcome(commands, velocity, dq, self.q, place, action, clipped))
 
     def _ask(self, q: Vector, t: float) -> tuple[list[Command], Vector, Action]:
         """Ask for a step's commands, one a stage; return them, their mean, and the action.

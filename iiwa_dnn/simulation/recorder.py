@@ -84,9 +84,8 @@ class Recorder:
         arrays["kkt_residual"][steps] = figures[..., 2:].max(axis=(1, 2))
         first = rows[::stages]  # pose, target and multipliers are the first stage's
         self._look_for_infeasible(first)
-        self._add_samples(
-            self._done, self.layout.view(first, "placement"), self.layout.view(first, "targets")
-        )
+        placements = np.array([each.placement for each in outcomes])
+        self._add_samples(self._done, placements, self.layout.view(first, "targets"))
         tol = self._controller.solver.tol
         of_bounds, of_rows = self.layout.multipliers(first, tol)
         for name, values in (

@@ -3,6 +3,8 @@
 import copy
 import pickle
 import signal
+import sys
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
@@ -13,6 +15,7 @@ import pytest
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import driven, heart, paper_robot, paper_start
+from iiwa_dnn.control.policies import ProgramKind
 
 DT = 1e-3
 ACCELERATION = 5.0
@@ -105,6 +108,96 @@ def test_threads_keep_the_acceleration_limit_between_them() -> None:
     for command in commands:
         change = np.abs(command.dq - command.past[1]).max()
         assert change <= ACCELERATION * DT * (1.0 + 1e-9)
+
+
+QUERIES: dict[str, Any] = {
+    "placement": lambda controller, q: controller.placement(q),
+    "program_at": lambda controller, q: controller.program_at(q, controller.targets(0.1), 0.1),
+    "is_clear": lambda controller, q: controller.is_clear(q, 0.1 * q),
+    "pickle": lambda controller, q: pickle.dumps(controller),
+}
+
+
+@pytest.mark.parametrize("query", QUERIES.values(), ids=QUERIES)
+def test_what_another_thread_asks_changes_no_command(query: Any) -> None:
+    # It shared the kinematics: 1,445 of 5,000 commands were those of another posture.
+    scheme = replace(LIMITED, extra_limits=(AWAY,))
+    controller = d.Controller(paper_robot(), scheme, fast_heart(), dt=DT)
+    settled = [controller.step(PAPER_Q0, 0.1).dq for _ in range(20)][-1]
+    done = threading.Event()
+
+    def ask() -> None:
+        while not done.is_set():
+            query(controller, np.array(PAPER_Q0) + 0.5)
+
+    asking = threading.Thread(target=ask)
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-5)
+    try:
+        asking.start()
+        commands = np.array([controller.step(PAPER_Q0, 0.1).dq for _ in range(1500)])
+    finally:
+        done.set()
+        asking.join()
+        sys.setswitchinterval(interval)
+    np.testing.assert_allclose(commands, np.tile(settled, (1500, 1)), rtol=0, atol=1e-9)
+
+
+class Asking(d.MovingTarget):
+    """A reference in Python that asks something of the controller which samples it."""
+
+    asks: Any = staticmethod(lambda: None)
+
+    def move(self, t: float, target: np.ndarray) -> None:
+        super().move(t, target)
+        self.asks()
+
+
+def test_what_a_step_asks_may_read_the_controller_and_not_move_it() -> None:
+    """It was a deadlock, or a command of another posture."""
+    path = Asking(paper_start())
+    controller = d.Controller(paper_robot(), LIMITED, path, dt=DT)
+    first = controller.step(PAPER_Q0, 0.0).dq
+    q = np.array(PAPER_Q0)
+    path.asks = lambda: (controller.positions, controller.delay, controller.program.sizes)
+    np.testing.assert_allclose(controller.step(q, 0.0).dq, first, rtol=0, atol=1e-9)
+    for asks in (
+        lambda: controller.step(q + 0.1, 0.0),
+        lambda: controller.placement(q + 0.1),
+        lambda: controller.send(q),
+        lambda: setattr(controller, "policy", "stop"),
+        controller.reset,
+    ):
+        path.asks = asks
+        before = controller._state.past.copy()
+        with pytest.raises(d.InvalidInputError, match="controller: is within a step"):
+            controller.step(q, 0.0)
+        np.testing.assert_array_equal(controller._state.past, before)
+    path.asks = controller.halt
+    controller.step(q, 0.0)
+    assert controller.step(q, 0.0).kind is ProgramKind.STOPPED
+
+
+def test_a_refused_step_leaves_nothing_behind() -> None:
+    controller, q, k = moving()
+    twin = copy.copy(controller)
+    for seen, t in ((q * np.nan, k * DT), (q, np.inf)):
+        with pytest.raises(d.InvalidInputError):
+            controller.step(seen, t)
+    np.testing.assert_array_equal(controller._state.past, twin._state.past)
+    for each in (controller, twin):
+        each.send(np.full(7, 0.01))
+    np.testing.assert_array_equal(controller._state.past, twin._state.past)
+
+
+def test_a_command_says_the_same_when_the_period_has_changed() -> None:
+    controller, q, k = moving()
+    far = d.Target(paper_start().position + [0.1, 0.0, 0.0], paper_start().rotation)
+    command = controller.step(q, k * DT, far)
+    said = command.against
+    assert any("acceleration" in name for name in said)
+    controller.step(q, k * DT, far, dt=20.0 * DT)
+    assert command.against == said
 
 
 @pytest.mark.parametrize("times", [1, 2])

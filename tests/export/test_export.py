@@ -191,11 +191,14 @@ def test_inputs_that_are_no_numbers_change_nothing(exported: ExportedController)
     rows = run_controller(*drawing(), 20)
     expected = [exported.step(row[1:8], row[8:26]).dq for row in rows]
     exported.reset()
-    for row, before in zip(rows, expected, strict=True):
+    for k, (row, before) in enumerate(zip(rows, expected, strict=True)):
         dq = np.ones(7)
-        arrays = (np.full(7, np.nan), row[8:26].copy(), dq)
-        pointers = [ctypes.c_void_p(array.ctypes.data) for array in arrays]
+        q, target = row[1:8].copy(), row[8:26].copy()
+        (q if k % 2 else target)[k % 7] = (np.nan, np.inf, -np.inf)[k % 3]
+        pointers = [ctypes.c_void_p(array.ctypes.data) for array in (q, target, dq)]
+        memory = bytes(exported._memory)
         assert exported._library.controller_step(exported._memory, *pointers) == -1
+        assert bytes(exported._memory) == memory  # `past` held the refused positions
         assert not dq.any()
         np.testing.assert_array_equal(exported.step(row[1:8], row[8:26]).dq, before)
 

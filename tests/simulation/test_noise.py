@@ -1,10 +1,15 @@
 """Noise: its statistics, its seed, and where it enters the loop."""
 
+from typing import Any
+
 import numpy as np
+import pytest
 import scipy.stats
 
 from helpers_kinematics import PAPER_Q0, dh_pose
 from helpers_simulation import heart, paper_robot, run
+from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
@@ -43,3 +48,24 @@ def test_at_the_measurement_the_controller_sees_other_angles_and_the_record_the_
         answer = DNNSolver().solve(scheme.build_qp(Configuration(paper_robot(), seen[k]), target)).x
         np.testing.assert_allclose(record.dq[k], answer, rtol=0, atol=1e-7)
     np.testing.assert_allclose(record.position, dh_pose(record.q)[0], rtol=0, atol=1e-12)
+
+
+def test_a_command_that_was_handed_out_stays_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The loop wrote the true arm's placement over the one that the command was computed at."""
+    handed = []
+    compute = Controller.compute
+
+    def noted(*arguments: Any) -> Command:
+        command = compute(*arguments)
+        handed.append((command, command.row.copy()))
+        return command
+
+    monkeypatch.setattr(Controller, "compute", noted)
+    record = run(noise=1e-3, noise_at="measurement", duration=0.02)
+    assert len(handed) == 20
+    for k, (command, row) in enumerate(handed):
+        np.testing.assert_array_equal(command.row, row)
+        seen = Configuration(paper_robot(), command.past[0]).position
+        np.testing.assert_allclose(command.placement[9:], seen, rtol=0, atol=1e-12)
+        true = Configuration(paper_robot(), record.q[k]).position
+        np.testing.assert_allclose(record.position[k], true, rtol=0, atol=1e-12)

@@ -14,6 +14,16 @@ static inline step_StepPlan controller_plan(struct controller *c)
     return plan;
 }
 
+static bool controller_is_finite(const double *x, int count)
+{
+    for (int i = 0; i < count; i++) {
+        if (!(fabs(x[i]) < INFINITY)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 void controller_init(struct controller *c)
 {
     memset(c, 0, sizeof *c);
@@ -29,9 +39,12 @@ int controller_step(struct controller *c, const double *q, const double *target,
     const Matrix past = {c->past, @rows@, CONTROLLER_DOF};
     const Matrix following = {c->following, @rows@, CONTROLLER_DOF};
     const Vector state = {c->state, @state@};
-    const Vector joints = {c->past, CONTROLLER_DOF};
+    const Vector joints = {(double *)q, CONTROLLER_DOF};
     const double t = c->steps[0] * CONTROLLER_DT;
-    memcpy(c->past, q, sizeof(double) * CONTROLLER_DOF);
+    if (!controller_is_finite(q, CONTROLLER_DOF) || !controller_is_finite(target, 18 * CONTROLLER_FRAMES)) {
+        memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
+        return CONTROLLER_INVALID;
+    }
     memcpy(c->row + @at_targets@, target, sizeof(double) * 18 * CONTROLLER_FRAMES);
     @kinematics@(&arena, &model, joints, plan.arrays.jacobian, plan.arrays.placements, plan.arrays.inertia);
     const ptrdiff_t action = @take_step@(&arena, row, &plan, joints, past, following, state, t, false);

@@ -12,11 +12,9 @@ int shield_step(struct controller *c, const double *q, const double *wish, doubl
     const shield_ShieldState kept = {
         {c->positions, CONTROLLER_DOF}, {c->wish, CONTROLLER_DOF}, {c->flags, 4}
     };
-    for (int i = 0; i < CONTROLLER_DOF; i++) {
-        if (!(fabs(q[i]) < INFINITY)) {
-            memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
-            return CONTROLLER_INVALID;
-        }
+    if (!controller_is_finite(q, CONTROLLER_DOF)) {
+        memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
+        return CONTROLLER_INVALID;
     }
     @take_positions@(&arena, joints, &kept, settings);
     const bool held = @take_wish@(&arena, asked, wish != NULL, &kept, settings);
