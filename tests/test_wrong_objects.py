@@ -74,6 +74,10 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
     (lambda: d.Waypoints.from_csv(None), "None: "),
     (lambda: d.load_robot("none.urdf"), "none.urdf: No such file"),
     (lambda: d.load_robot("a.xacro"), "a.xacro: make a URDF of it: xacro a.xacro -o a.urdf"),
+    (
+        lambda: d.load_robot("a.urdf.xacro"),
+        "a.urdf.xacro: make a URDF of it: xacro a.urdf.xacro -o a.urdf",
+    ),
     (lambda: d.failures(None), "record: must be an iiwa_dnn.Record"),
     (lambda: drive(Builder()), "scheme: Builder overrides build_qp"),
     (lambda: drive(d.Scheme([Distant()], [d.PositionTask()])), "no target of frame 'x'"),

@@ -3,7 +3,6 @@
 import signal
 import socket
 import time
-from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -23,7 +22,7 @@ from iiwa_dnn.results.pictures import obstacles_of
 from iiwa_dnn.results.plots import envelope
 from iiwa_dnn.results.report import markdown_table
 from iiwa_dnn.robot.obstacles import outline
-from iiwa_dnn.robot.shapes import read_shapes
+from iiwa_dnn.robot.shapes import visual_shapes
 
 PIECES = 300
 """Straight pieces of a drawn path, points of the curve, and parts of the time bar."""
@@ -105,9 +104,8 @@ def show_robot(server: Any, robot: Robot) -> Any:
     from pinocchio.visualize import ViserVisualizer
 
     shapes = pin.GeometryModel()
-    with suppress(ValueError, RuntimeError):  # a mesh is missing
-        for shape in read_shapes(robot, pin.GeometryType.VISUAL):
-            shapes.addGeometryObject(shape)
+    for shape in visual_shapes(robot):
+        shapes.addGeometryObject(shape)
     visualizer = ViserVisualizer(robot.model, pin.GeometryModel(), shapes)
     visualizer.initViewer(viewer=server, loadModel=True)
     visualizer.displayFrames(shapes.ngeoms == 0)

@@ -10,6 +10,7 @@ import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn.checks import Array
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot.robot import Robot
 
 _WORLD = pin.Convention.WORLD
@@ -35,7 +36,13 @@ class Kinematics:
 
         Raises:
             NotFoundError: The robot has no frame of that name.
+            InvalidInputError: The inertia matrix is asked for, and a mass is negative.
         """
+        joints = zip(robot.model.names, robot.model.inertias, strict=True)
+        negative = [f"{name!r} ({body.mass:g} kg)" for name, body in joints if body.mass < 0.0]
+        if dynamics and negative:
+            problem = f"'inertia' takes no negative mass, on joint {', '.join(negative)}"
+            raise InvalidInputError("kinetic", problem, robot)
         self.robot = robot
         self.data = robot.model.createData()
         ids = [robot.tip_id, 0, *(robot.frame_id(name) for name in frames)]

@@ -15,17 +15,15 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
-from iiwa_dnn.files import one_line
 from iiwa_dnn.robot.arms import ARMS, RATES, TIPS
 from iiwa_dnn.robot.robot import Robot, frame_id
+from iiwa_dnn.robot.urdf import build_model, number_of, read_urdf
 
 _NO_LIMIT = 1e300
 """Limit from which on Pinocchio means none [rad, rad/s]."""
 
 _LARGE = 40.0
-"""Position or velocity limit [rad, rad/s] beyond which a file looks as if it were in degrees."""
-
-_UNLIMITED = {"lower": "-1e308", "upper": "1e308"}
+"""Position or velocity limit beyond which a file looks as if it were in degrees, or in mm."""
 
 
 def available_robots() -> tuple[str, ...]:
@@ -69,9 +67,10 @@ def load_robot(
         MissingDependencyError: If the arm of that name is in a package that is not installed.
     """
     path, tips = _find(source)
-    root = ET.Element("robot") if path is None else _read(path)
+    root = ET.Element("robot") if path is None else read_urdf(path)
     text = ET.tostring(root, encoding="unicode")  # of the tree that was checked
-    full: pin.Model = source if path is None else _build_model(path, text)
+    built: Any = (source, []) if path is None else build_model(path, root, text)
+    full, left_out = built
     # By the name it was asked for: the URDFs call some of these arms otherwise.
     name = str(source) if tips else full.name
     if tip is None:
@@ -95,19 +94,24 @@ def load_robot(
     )
     expected = {*chosen, *(_idle_joints(full, tips) if tips else ())}
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
-    for doubt in _doubts(robot, still):
+    for doubt in _doubts(robot, still, left_out):
         warnings.warn(doubt, stacklevel=2)
     return robot if tool is None else robot.with_tool(tool)
 
 
-def _doubts(robot: Robot, still: list[str]) -> Iterator[str]:
-    """State that a limit is most likely in degrees, and which joints are held still."""
+def _doubts(robot: Robot, still: list[str], left_out: list[str]) -> Iterator[str]:
+    """State parts of the file that are left out, a limit in another unit, and joints held still."""
+    if left_out:
+        more = f"; and {len(left_out) - 2} more" if len(left_out) > 2 else ""
+        yield f"{robot.path}: left out by Pinocchio: {'; '.join(left_out[:2])}{more}"
     limits = robot.limits[:3]
     large = np.where(np.isfinite(limits), np.abs(limits), 0.0).max(axis=0)
     if large.max() > _LARGE:
+        joint = large.argmax()
+        units = ("mm", "m and m/s") if joint in robot.slides else ("degrees", "rad and rad/s")
         yield (
-            f"joint {robot.joint_names[large.argmax()]!r} has a limit of {large.max():.4g}: is it "
-            "in degrees? A URDF counts in rad and rad/s"
+            f"joint {robot.joint_names[joint]!r} has a limit of {large.max():.4g}: is it in "
+            f"{units[0]}? A URDF counts in {units[1]}"
         )
     if still:
         yield f"held still, since they do not move {robot.tip}: {', '.join(still)}"
@@ -135,49 +139,6 @@ def _find(source: Any) -> tuple[Path | None, tuple[str, ...]]:
     if name not in TIPS:
         raise NotFoundError("robot", name, (*TIPS, *ARMS))
     return robots_folder() / name / f"{name}.urdf", TIPS[name]
-
-
-def _read(path: Path) -> ET.Element:
-    """Read a URDF file as XML; return its first element.
-
-    A continuous joint becomes a revolute one of a range without end: one coordinate, like all
-    others.
-
-    Raises:
-        FileError: If the file cannot be read, is not XML, or a joint has no <limit>.
-    """
-    if path.suffix == ".xacro":
-        raise FileError(path, f"make a URDF of it: xacro {path.name} -o {path.stem}.urdf")
-    try:
-        root = ET.fromstring(path.read_bytes())
-    except OSError as error:
-        raise FileError(path, one_line(error)) from error
-    except (ET.ParseError, LookupError, ValueError) as error:
-        raise FileError(path, f"not XML that can be read: {one_line(error)}") from error
-    for joint in root.findall("joint[@type='continuous']"):
-        joint.set("type", "revolute")
-        limit = joint.find("limit")
-        if limit is None:
-            limit = ET.SubElement(joint, "limit", effort="0", velocity="0")
-        limit.attrib.update(_UNLIMITED)
-    for joint in root.findall("joint[@type='revolute']") + root.findall("joint[@type='prismatic']"):
-        if joint.find("limit[@effort][@velocity]") is None:
-            raise FileError(
-                path, f"joint {joint.get('name')!r} has no <limit> with effort and velocity"
-            )
-    return root
-
-
-def _build_model(path: Path, text: str) -> pin.Model:
-    """Build the Pinocchio model of the text of a URDF from `path`, its base fixed to the world.
-
-    Raises:
-        FileError: If Pinocchio refuses the robot.
-    """
-    try:
-        return pin.buildModelFromXML(text)
-    except (ValueError, RuntimeError, IndexError) as error:
-        raise FileError(path, f"no URDF that Pinocchio can read: {one_line(error)}") from error
 
 
 def _only_end(model: pin.Model) -> str:
@@ -211,11 +172,23 @@ def _lock(model: pin.Model, locked: Collection[str]) -> tuple[pin.Model, dict[st
     frozen = [joints[name] for name in locked]
     # Planar and floating joints are at zero.
     held = [float(posture[model.idx_qs[i]]) if model.nqs[i] == 1 else 0.0 for i in frozen]
-    reduced = pin.buildReducedModel(model, frozen, posture) if frozen else model
+    reduced = _reduce(model, frozen, posture) if frozen else model
     for joint, *sizes in zip(reduced.names, reduced.nqs, reduced.nvs, strict=True):
         if max(sizes) > 1:
             raise InvalidInputError("locked", f"joint {joint!r} has {sizes[0]} coordinates", joint)
     return reduced, dict(zip(locked, held, strict=True))
+
+
+def _reduce(model: pin.Model, frozen: list[int], posture: Array) -> pin.Model:
+    """Build the model without some joints; a link, a joint and a fixed joint may have one name."""
+    model = model.copy()
+    for frame in list(model.frames)[1:]:
+        if frame.type != pin.FrameType.JOINT:  # Pinocchio looks frames up by their names alone
+            frame.name = f"{frame.type}\n{frame.name}"
+    reduced = pin.buildReducedModel(model, frozen, posture)
+    for frame in reduced.frames:
+        frame.name = frame.name.rpartition("\n")[2]
+    return reduced
 
 
 def _rates(name: str, model: pin.Model, tips: Iterable[str]) -> dict[str, tuple[float, ...]]:
@@ -242,25 +215,32 @@ def _limits(
     limits[:3] = [model.lowerPositionLimit, model.upperPositionLimit, model.velocityLimit]
     limits[np.abs(limits) > _NO_LIMIT] *= np.inf
     limits[2, limits[2] == 0.0] = np.inf
-    for i, joint in enumerate(tuple(model.names)[1:]):
-        element = joints.get(joint, root)
-        mimic = element.find("mimic")
+    jacobian = pin.computeJointJacobians(model, model.createData(), pin.neutral(model))
+    twists = jacobian.reshape(6, -1)  # (6,) for a single joint
+    for i, name in enumerate(tuple(model.names)[1:]):
+        joint = joints.get(name, root)
+        mimic = joint.find("mimic")
         if mimic is not None:
             raise InvalidInputError(
                 "locked",
-                f"joint {joint!r} follows {mimic.get('joint')!r}: lock it, or take its <mimic> out "
+                f"joint {name!r} follows {mimic.get('joint')!r}: lock it, or take its <mimic> out "
                 "of the file and hold it by a JointCouplingTask",
-                joint,
+                name,
             )
-        ramp = element.find("position_based_velocity_limits")
         if path is not None and limits[0, i] == limits[1, i] == 0.0:
             raise FileError(
-                path, f"gives no range for joint {joint!r}: lower and upper are 0 or missing"
+                path, f"gives no range for joint {name!r}: lower and upper are 0 or missing"
             )
-        limits[3:, i] = rates.get(joint, np.inf)
-        if not pin.computeJointJacobian(model, model.createData(), pin.neutral(model), i + 1).any():
-            raise InvalidInputError("source", f"the axis of joint {joint!r} is zero", joint)
-        if ramp is not None:
-            ramps[0, i] = ramp.attrib["velocity_offset"]
-            ramps[1, i] = ramp.attrib["deceleration_limit"]
+        if not twists[:, i].any():
+            raise InvalidInputError("source", f"the axis of joint {name!r} is zero", name)
+        limits[3:, i] = rates.get(name, np.inf)
+        further = (
+            ("limit", ("acceleration", "jerk"), limits[3:]),
+            ("position_based_velocity_limits", ("velocity_offset", "deceleration_limit"), ramps),
+        )
+        for tag, keys, rows in further:
+            element = joint.find(tag)
+            if element is not None:
+                given = [number_of(path, joint, element, key) for key in keys]
+                rows[:, i] = np.where(given, given, rows[:, i])
     return limits, ramps

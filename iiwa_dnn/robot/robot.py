@@ -119,11 +119,17 @@ class Robot:
         joints = list(self.model.supports[tip.parentJoint])[1:]
         links = [tip.placement, *(self.model.jointPlacements[joint] for joint in joints)]
         slides = [
-            float(np.abs(self.limits[:2, self.model.idx_vs[joint]]).max())
+            float(np.abs(self.limits[:2, joint - 1]).max())
             for joint in joints
-            if "JointModelP" in self.model.joints[joint].shortname()
+            if joint - 1 in self.slides
         ]
         return sum([float(np.linalg.norm(link.translation)) for link in links] + slides)
+
+    @property
+    def slides(self) -> tuple[int, ...]:
+        """Numbers from 0 of the joints that slide."""
+        joints = enumerate(list(self.model.joints)[1:])
+        return tuple(i for i, joint in joints if "JointModelP" in joint.shortname())
 
     @cached_property
     def moves(self) -> checks.Array:

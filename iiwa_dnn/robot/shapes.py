@@ -1,13 +1,15 @@
 """The shapes of a robot's URDF: its collision shapes, and the meshes that it is drawn with."""
 
-from contextlib import suppress
+import warnings
 from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from iiwa_dnn.files import one_line
 from iiwa_dnn.robot.robot import Robot, source_of
+from iiwa_dnn.robot.urdf import parser_messages
 
 Mesh = tuple[pin.GeometryObject, NDArray[np.float64], NDArray[np.int32]]
 """A shape with its corners in the frame of the joint that carries it [m], (k, 3), and triangles of
@@ -23,18 +25,27 @@ def read_shapes(robot: Robot, kind: pin.GeometryType) -> list[pin.GeometryObject
     """
     path, text = source_of(robot)
     folders = [str(folder) for folder in (*path.absolute().parents, *path.resolve().parents)]
-    found = pin.buildGeomFromUrdfString(robot.model, text, kind, package_dirs=folders)
+    with parser_messages():  # which were told when the robot was loaded
+        found = pin.buildGeomFromUrdfString(robot.model, text, kind, package_dirs=folders)
     return list(found.geometryObjects)
+
+
+def visual_shapes(robot: Robot) -> list[pin.GeometryObject]:
+    """List the <visual>s of a robot; if a mesh is missing, none, which a warning says."""
+    try:
+        return read_shapes(robot, pin.GeometryType.VISUAL)
+    except (ValueError, RuntimeError) as error:
+        if robot.path is not None:
+            problem = f"{robot.name} is drawn without its shapes: {one_line(error)}"
+            warnings.warn(problem, stacklevel=2)
+        return []
 
 
 @lru_cache(maxsize=4)  # a robot of 100,000 triangles takes seconds
 def visual_meshes(robot: Robot) -> tuple[Mesh, ...]:
-    """List the meshes of a robot's <visual>s; none where one is missing, or it has no file."""
-    shapes: list[pin.GeometryObject] = []
-    with suppress(ValueError, RuntimeError):
-        shapes = read_shapes(robot, pin.GeometryType.VISUAL)
+    """List the meshes of `visual_shapes`."""
     meshes = []
-    for shape in shapes:
+    for shape in visual_shapes(robot):
         body = shape.geometry
         if hasattr(body, "num_tris"):
             turn = shape.placement.rotation
