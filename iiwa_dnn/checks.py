@@ -121,7 +121,7 @@ def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
         given = value if isinstance(value, np.ndarray) else np.array(value, dtype=object)
         is_object = given.dtype == object
         booleans = is_object and not {bool, np.bool_}.isdisjoint(map(type, given.flat))
-        if booleans or given.dtype.kind in "bc" or np.ma.is_masked(given):  # type: ignore[no-untyped-call]
+        if booleans or given.dtype.kind in "bc" or is_masked(value):
             raise TypeError
         numbers = np.array(given, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
@@ -134,11 +134,26 @@ def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     return numbers
 
 
+def is_masked(value: object) -> bool:
+    """Test whether an array, or a row of a list of arrays, hides some of its numbers."""
+    rows = value if isinstance(value, list | tuple) else [value]
+    return any(map(np.ma.is_masked, rows))
+
+
 def rotation(argument: str, value: ArrayLike) -> Array:
-    """Return a read-only copy of a rotation matrix (3, 3); refuse any other value."""
+    """Return the rotation matrix (3, 3) nearest to a value, read-only; refuse one that is far.
+
+    Rounding a rotation to three digits moves the entries of R R' by up to 2e-3.
+    """
     turn = finite_array(argument, value, (3, 3))
-    if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-6 or np.linalg.det(turn) < 0.0:
-        raise InvalidInputError(argument, "is not a rotation matrix", value)
+    away = np.abs(turn @ turn.T - np.eye(3)).max()
+    determinant = np.linalg.det(turn)
+    if away > 2e-3 or determinant < 0.0:
+        found = f"R R' is off the identity by {away:.2g}, the determinant is {determinant:.2g}"
+        raise InvalidInputError(argument, f"is not a rotation matrix: {found}", value)
+    if away > 1e-12:
+        left, _, right = np.linalg.svd(turn)
+        return read_only(left @ right)
     return turn
 
 

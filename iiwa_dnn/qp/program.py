@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from iiwa_dnn.checks import is_masked
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.dense import all_finite, is_convex, is_symmetric
@@ -273,8 +274,8 @@ def real_array(name: str, value: Any) -> NDArray[np.float64]:
     if hasattr(value, "toarray"):  # scipy's sparse matrices
         value = value.toarray()
     try:
-        if np.iscomplexobj(value):
-            raise TypeError("complex numbers")
+        if np.iscomplexobj(value) or is_masked(value):
+            raise TypeError("complex or masked numbers")
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise InvalidInputError(name, f"is not an array of numbers ({error})", value) from None

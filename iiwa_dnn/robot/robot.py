@@ -175,9 +175,10 @@ class Robot:
         given = (lower, upper, velocity, acceleration, jerk)
         for name, row, value in zip(_LIMITS, limits, given, strict=True):
             if value is not None:
+                numbers = checks.array(name, value, np.shape(value))
                 try:
-                    row[:] = checks.array(name, value, np.shape(value))
-                except (TypeError, ValueError) as error:
+                    row[:] = numbers
+                except ValueError as error:
                     problem = f"must be one number or {self.dof}"
                     raise InvalidInputError(name, problem, value) from error
         return replace(self, limits=limits)
