@@ -15,6 +15,7 @@ from iiwa_dnn.control.state import LAST, Q
 from iiwa_dnn.naming import DONE, describe, in_the_way
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.layout import IntVector, Sizes, data_size, offsets
+from iiwa_dnn.schemes.limits import Periods
 from iiwa_dnn.schemes.program import ACCELERATION, LimitNames
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -146,11 +147,11 @@ class RowLayout:
         self.columns = dict(zip(RowViews._fields, columns, strict=True))
         self.dq = self.columns["dq"]
 
-    def at_period(self, dt: float) -> "RowLayout":
-        """Return the layout for another control period [s]; commands keep that of theirs."""
+    def at_periods(self, periods: Periods) -> "RowLayout":
+        """Return the layout for other control periods; commands keep those of theirs."""
         layout = copy.copy(self)
         layout.names = copy.copy(self.names)
-        layout.names.dt = dt
+        layout.names.periods = periods
         return layout
 
     def view(self, rows: Matrix, name: str) -> Matrix:
@@ -219,15 +220,23 @@ class Command:
         row: The numbers of the command, (width,), which its properties are views of.
         dq: Joint velocity [rad/s], (n,), within the limits.
         action: The action taken; ``Action.NONE`` where the network's answer was taken.
+        reasons: Reasons beside limits for a command that need not be what is asked.
     """
 
-    __slots__ = ("_layout", "action", "dq", "row")
+    __slots__ = ("_layout", "action", "dq", "reasons", "row")
 
-    def __init__(self, row: Vector, layout: RowLayout, action: Action = Action.NONE) -> None:
-        """Take a row (width,), which is not copied, its columns, and the action taken."""
+    def __init__(
+        self,
+        row: Vector,
+        layout: RowLayout,
+        action: Action = Action.NONE,
+        reasons: tuple[str, ...] = (),
+    ) -> None:
+        """Take a row (width,), which is not copied, its columns, the action taken and reasons."""
         self.row = row
         self.dq = row[layout.dq]
         self.action = action
+        self.reasons = reasons
         self._layout = layout
 
     @property
@@ -247,13 +256,13 @@ class Command:
 
     @property
     def against(self) -> tuple[str, ...]:
-        """Bounds and rows that keep the command from what the tasks and the cost ask, in words."""
+        """Reasons, bounds and rows that keep the command from what tasks and cost ask, in words."""
         sides, rows = np.split(self.blocking, [self._layout.sizes[0]])
         if self.action is Action.NONE:
             sides, rows = self._layout.multipliers(self.row, ACTIVE)
         names = self._layout.names
         codes = names.codes(self.bounds, sides, self.past)
-        return tuple(map(describe, in_the_way(names.settings, codes, rows)))
+        return (*self.reasons, *map(describe, in_the_way(names.settings, codes, rows)))
 
     @property
     def qp(self) -> QP:

@@ -42,11 +42,17 @@ from iiwa_dnn.qp.layout import data_size
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.schemes.limits import constant_periods, varying_periods
 from iiwa_dnn.schemes.program import StepProgram, targets_of
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
+
+EXCEEDED = "period exceeded"
+
+SLACK = 1e-9
+"""Relative excess of a period that is rounding."""
 
 _FLOAT = np.dtype(np.float64)
 
@@ -66,6 +72,8 @@ class Controller:
         scheme: Builds the programs; if it has no home, the first step's posture becomes it.
         reference: Path of the tip, or paths by frame name.
         dt: Control period [s].
+        longest_period: Longest control period in a loop whose periods vary [s]; None: all are `dt`,
+            unless a step states another one.
         mode: ``"converged"``: the network settles at every step. ``"continuous"``: it advances by
             one control period, as in the paper, and lags: bounds of the joints hold, the rows of
             other limits only where it has settled; beside obstacles the arm may stop.
@@ -81,6 +89,7 @@ class Controller:
         reference: References | None = None,
         *,
         dt: float = 1e-3,
+        longest_period: float | None = None,
         mode: Mode = "converged",
         policy: Policy = "slow",
         tol: float = 1e-9,
@@ -93,6 +102,7 @@ class Controller:
             scheme: The scheme.
             reference: Path of the tip or of several frames; None where every step gets a target.
             dt: Control period [s].
+            longest_period: Longest control period where periods vary [s]; None: they do not.
             mode: ``"converged"`` or ``"continuous"``.
             policy: ``"slow"``, ``"relax"`` or ``"stop"``.
             tol: Absolute tolerance on the KKT residuals in ``converged`` mode.
@@ -108,6 +118,7 @@ class Controller:
         self.mode = mode
         self.policy = policy
         self.dt = dt
+        self.longest_period = longest_period
         self.robot = robot
         self.scheme = scheme
         self.reference = reference
@@ -127,7 +138,8 @@ class Controller:
         """Take a setting; what is derived from the settings is made anew."""
         before = vars(self).get(name)
         # A number of numpy's names its type where it is written into C.
-        object.__setattr__(self, name, float(value) if name == "dt" else value)
+        own = float(value) if name in ("dt", "longest_period") and value is not None else value
+        object.__setattr__(self, name, own)
         self._derived = None
         if name == "robot" and self._state.past.shape[1] != value.dof:
             self._state = ControllerState(value.dof)
@@ -166,23 +178,30 @@ class Controller:
         target: Target | Mapping[str, Target] | None = None,
         *,
         dt: float | None = None,
+        elapsed: float | None = None,
     ) -> Command:
         """Compute the command for joint positions at a time; it counts as sent when it is returned.
+
+        Where periods vary (`longest_period`), either `dt` or `elapsed` is stated at each step. With
+        neither, velocities change by what `dt` of the controller allows, and may be held for the
+        longest period.
 
         Args:
             q: Measured joint positions [rad], (n,).
             t: Time [s]; the reference is asked for the time `delay` before it.
             target: Target in place of the reference's; for tasks towards the next one `ahead` too.
-            dt: Period that this command is for [s], in a loop whose periods differ; None takes the
-                controller's. Velocity and acceleration limits hold all the same; where periods
-                differ, no command may be left that keeps a jerk limit too (docs/limits.md).
+            dt: Period for which this command will be held [s]. Without a `longest_period`, velocity
+                and acceleration limits hold all the same, jerk and position limits as far as these
+                allow (docs/limits.md).
+            elapsed: Time since the last step [s], for which the last command was held.
 
         Returns:
             The command.
 
         Raises:
             InvalidInputError: `q` has another size than the robot has joints, or is not finite; or
-                `t` is no number; or there is neither reference nor target; or `dt` is not above 0.
+                `t` is no number; or there is neither reference nor target; or a period is not above
+                0; or both are given, or `elapsed` without a `longest_period`.
         """
         state = self._state
         before = state.past
@@ -190,9 +209,12 @@ class Controller:
         try:
             with self._turn():
                 before = state.past
-                command = self._compute(q, t, target, dt)
+                command = self._compute(q, t, target, dt, elapsed)
                 after = state.next
                 state.past = after
+                if self.longest_period is not None:
+                    state.slowed = 1.0 - command.fraction
+                    state.booked = self.dt if dt is None else dt
                 return command
         except BaseException as error:
             with self._lock:
@@ -211,7 +233,7 @@ class Controller:
             target: Targets by frame name, in place of the reference's.
         """
         with self._turn():
-            return self._compute(q, t, target, None)
+            return self._compute(q, t, target, None, None)
 
     def send(self, dq: Vector, fraction: float = 1.0) -> None:
         """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a share of the period.
@@ -236,15 +258,21 @@ class Controller:
         t: float,
         target: Target | Mapping[str, Target] | None,
         dt: float | None,
+        elapsed: float | None,
     ) -> Command:
         step = self._derived
         state = self._state
         if step is None or not state.begun:
             step = self._prepare(q, t, target is None)
-        dt = self.dt if dt is None else dt
-        if not dt == step.dt == state.dt:
-            step.set_period(checks.positive("dt", dt))
-            state.set_period(dt)
+        reasons: tuple[str, ...] = ()
+        if self.longest_period is not None or elapsed is not None:
+            reasons = self._take_periods(step, dt, elapsed)
+            dt = step.dt
+        else:
+            dt = self.dt if dt is None else dt
+            if not dt == step.dt == state.dt:
+                step.set_periods(checks.positive("dt", dt), constant_periods(dt))
+                state.set_period(dt)
         layout = step.layout
         program = step.program
         if not _is_plain(q, layout.shape):
@@ -268,7 +296,31 @@ class Controller:
             checks.finite_array("q", q, layout.shape)
             checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
         state.next = following
-        return Command(row, layout, _ACTIONS[action])
+        return Command(row, layout, _ACTIONS[action], reasons)
+
+    def _take_periods(
+        self, step: ControlStep, dt: float | None, elapsed: float | None
+    ) -> tuple[str, ...]:
+        """Take the periods of a step of a loop whose periods vary; return what is said of them."""
+        longest = self.longest_period
+        if longest is None:
+            raise InvalidInputError("elapsed", "needs a longest_period", elapsed)
+        stated = {"dt": dt, "elapsed": elapsed}
+        found = [checks.positive(name, x) for name, x in stated.items() if x is not None]
+        if len(found) > 1:
+            raise InvalidInputError("dt and elapsed", "are two periods: pass one of them", found)
+        periods = varying_periods(self.dt, longest, dt, elapsed)
+        self._state.set_period(periods.dt)
+        if elapsed is not None:
+            self._state.book(elapsed)
+        step.set_periods(self.dt if dt is None else found[0], periods)
+        if max(found, default=0.0) <= longest * (1.0 + SLACK):
+            return ()
+        if not self._state.exceeded:
+            self._state.exceeded = True
+            problem = f"a period of {found[0]:g} s is above the longest, {longest:g} s"
+            warnings.warn(f"{problem}: limits may be passed", stacklevel=4)
+        return (EXCEEDED,)
 
     def is_clear(self, q: Vector, dq: Vector) -> bool:
         """Test whether a velocity brings no pair nearer than promised, or too near.
@@ -311,7 +363,8 @@ class Controller:
             program = self.scheme.program(self.robot)
             policy = int(Action[self.policy.upper()]) if self.mode == "converged" else BRAKE
             paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
-            step = ControlStep(program, paths, self.solver, self.dt, policy)
+            longest = self.longest_period
+            step = ControlStep(program, paths, self.solver, self.dt, policy, longest)
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
             return step
@@ -440,6 +493,7 @@ _CHECKS: dict[str, Callable[[str, Any], object]] = {
     "scheme": partial(checks.instance, kind=Scheme),
     "reference": lambda name, value: by_frame(value, ""),
     "dt": checks.positive,
+    "longest_period": lambda name, value: value is None or checks.positive(name, value),
     "mode": partial(checks.one_of, choices=MODES),
     "policy": partial(checks.one_of, choices=POLICIES),
     "solver": partial(checks.instance, kind=DNNSolver),

@@ -99,7 +99,7 @@ def _doubts_of_tasks(program: StepProgram, dt: float) -> Iterator[str]:
     gains = [min(task.gain, 1.0 / dt) for task in tasks if isinstance(task, GainTask)]
     if program.rate_limits is None or not gains:
         return
-    largest = largest_gain(program.rate_limits.constants(program.robot), 1.0 / dt)
+    largest = largest_gain(program.rate_limits.numbers(program.robot), 1.0 / dt)
     if max(gains) > largest * (1.0 + 1e-9):
         yield (
             f"a gain of {max(gains):.3g} 1/s is above {largest:.3g} 1/s, up to which a loop with "

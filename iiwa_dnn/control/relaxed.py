@@ -46,6 +46,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, row_dot
 from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, copied, data_size, qp_views
 from iiwa_dnn.qp.residuals import within
+from iiwa_dnn.schemes.limits import Periods
 from iiwa_dnn.schemes.program import add_soft
 
 MOST_SYSTEMS = 60
@@ -87,12 +88,13 @@ class Yielding(NamedTuple):
 
     Attributes:
         weights: Weight of each task row, (p,); 0 for a row that is a limit.
-        limits: Constants of the acceleration and jerk limits, `MotionLimits.constants`, (6 dof,);
+        limits: Numbers of the acceleration and jerk limits, `MotionLimits.numbers`, (6 dof,);
             empty where there are none.
         settings: Constants with which the network settles, ``[tol, budget]``, (2,).
         scenes: Beginning and end, among the constants of all parts, of those of each scene that
             braking keeps away from, (scenes, 2).
-        dt: Control period [s].
+        dt: Period that the command is for [s].
+        periods: Periods as limits count them.
         cubic: Whether the jerk of a joint is limited.
         coupled: Whether joints follow others.
         alike: Whether the network of the steps is that of the relaxed programs.
@@ -103,6 +105,7 @@ class Yielding(NamedTuple):
     settings: Vector
     scenes: IntMatrix
     dt: float
+    periods: Periods
     cubic: bool
     coupled: bool
     alike: bool

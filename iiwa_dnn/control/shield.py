@@ -51,7 +51,14 @@ from iiwa_dnn.schemes import (
     Task,
 )
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.limits import MotionLimits, braking, joint_bounds, positive_rates
+from iiwa_dnn.schemes.limits import (
+    MotionLimits,
+    Periods,
+    braking,
+    constant_periods,
+    joint_bounds,
+    positive_rates,
+)
 from iiwa_dnn.schemes.step import TARGET_SIZE, StepViews
 
 DAMPING = 0.02
@@ -158,7 +165,7 @@ def come_nearer(
     state: ShieldState,
     past: Matrix,
     limits: Vector,
-    dt: float,
+    periods: Periods,
     reaches: bool,
     held: bool,
     dq: Vector,
@@ -172,8 +179,8 @@ def come_nearer(
     Args:
         state: The wish, and where the joints are.
         past: `ControllerState.past`, (8, n).
-        limits: `MotionLimits.constants`, (6 n,).
-        dt: Control period [s].
+        limits: `MotionLimits.numbers`, (6 n,).
+        periods: Periods of the step.
         reaches: Whether the wish is one for positions.
         held: Whether it is that of the last step.
         dq: The velocities, overwritten.
@@ -187,14 +194,14 @@ def come_nearer(
             left = wish - state.positions[i]
             above = left if left >= 0.0 else np.inf
             below = -left if left < 0.0 else np.inf
-            wish = left / dt
+            wish = left / periods.hold
         wish = min(max(wish, -FASTEST), FASTEST)
         rates = (limits[2 * n + i], limits[3 * n + i], limits[4 * n + i], limits[5 * n + i])
-        lower, upper = joint_bounds(past[LAST, i], past[BEFORE, i], above, below, rates, dt)
+        lower, upper = joint_bounds(past[LAST, i], past[BEFORE, i], above, below, rates, periods)
         if reaches:
             wish = min(max(wish, lower), upper)
         elif held or wish < lower or wish > upper:
-            wish += braking(past[LAST, i] - wish, -np.inf, np.inf, limits[4 * n + i], dt)
+            wish += braking(past[LAST, i] - wish, -np.inf, np.inf, limits[4 * n + i], periods)
         dq[i] = wish
 
 
@@ -275,7 +282,7 @@ class Shield:
         robot: The robot, n joints, whose limits hold.
         dt: Control period [s].
         limits: Limits that every command keeps.
-        motion: Their numbers for the joints, `MotionLimits.constants`, (6 n,).
+        motion: Their numbers for the joints, `MotionLimits.numbers`, (6 n,).
         settings: Control period [s], timeout [s], tracking error [rad], (3,).
     """
 
@@ -305,6 +312,7 @@ class Shield:
         """
         self.robot = checks.instance("robot", robot, Robot)
         self.dt = checks.positive("dt", dt)
+        self._periods = constant_periods(self.dt)
         self.settings = np.array(
             [
                 self.dt,
@@ -314,7 +322,7 @@ class Shield:
         )
         given = ((AccelerationLimits(), robot.ddq_max), (JerkLimits(), robot.dddq_max))
         rates = tuple(limit for limit, most in given if np.isfinite(most).any())
-        self.motion = MotionLimits(rates).constants(robot)
+        self.motion = MotionLimits(rates).numbers(robot)
         self.limits: list[Limit] = [JointLimits(), *rates]
         if obstacles is not None:
             self.limits.append(CollisionAvoidance(obstacles, distance=distance))
@@ -431,7 +439,7 @@ class Shield:
         state[:] = 0.0
         past = self._kept.past
         aim = state[: self.robot.dof]
-        come_nearer(self._state, past, self.motion, self.dt, kind == "position", held, aim)
+        come_nearer(self._state, past, self.motion, self._periods, kind == "position", held, aim)
         target = np.zeros(TARGET_SIZE)
         target[: aim.size] = aim
         return Target.from_data(target)

@@ -20,11 +20,14 @@ class ControllerState:
             counts from when the controller returns its command.
         next: The one after the last command that was computed.
         dt: Control period of the last step [s]; 0 before the first.
+        slowed: Share of the last period by which the reference's clock fell behind in it, and
+        booked: that period [s], where periods vary.
         halted: Whether the arm brakes from now on; each step writes it into the row `HALTED`.
         begun: Whether the start was looked at, and warned of.
+        exceeded: Whether a period above the longest was warned of.
     """
 
-    __slots__ = ("begun", "dt", "halted", "next", "past")
+    __slots__ = ("begun", "booked", "dt", "exceeded", "halted", "next", "past", "slowed")
 
     past: Matrix
     next: Matrix
@@ -32,6 +35,7 @@ class ControllerState:
     def __init__(self, dof: int) -> None:
         """Begin with an arm of n joints that has had no command."""
         self.begun = False
+        self.exceeded = False
         self.rest(dof)
 
     def rest(self, dof: int) -> None:
@@ -39,6 +43,8 @@ class ControllerState:
         self.past = np.zeros((ROWS, dof))
         self.next = self.past
         self.dt = 0.0
+        self.slowed = 0.0
+        self.booked = 0.0
         self.halted = False
 
     def set_period(self, dt: float) -> None:
@@ -50,3 +56,8 @@ class ControllerState:
             past[REST] /= ratio
             self.past = past
         self.dt = dt
+
+    def book(self, elapsed: float) -> None:
+        """Count the last command as one that was held for so long [s]."""
+        self.past[DELAY] += self.slowed * (elapsed - self.booked)
+        self.booked = elapsed

@@ -40,6 +40,7 @@ from iiwa_dnn.control.yielding import (
     make_yielding,
     yield_step,
 )
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators.base import (
     BUDGET,
     DURATION,
@@ -56,7 +57,14 @@ from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.base import Ahead, enter_path
 from iiwa_dnn.references.rotations import set_mean_twist
-from iiwa_dnn.schemes.limits import check_ranges
+from iiwa_dnn.schemes.limits import (
+    STATED,
+    JointLimits,
+    MotionLimits,
+    Periods,
+    check_ranges,
+    constant_periods,
+)
 from iiwa_dnn.schemes.program import LimitNames, ProgramArrays, StepProgram, assemble
 
 FEASIBLE_BUDGET = 60.0
@@ -104,6 +112,7 @@ class ControlStep:
         solver: DNNSolver,
         dt: float,
         policy: int,
+        longest: float | None = None,
     ) -> None:
         """Lay a control step out.
 
@@ -113,10 +122,14 @@ class ControlStep:
             solver: The network that answers the programs.
             dt: Control period [s].
             policy: Action of a step without a solution; `BRAKE`: in continuous mode.
+            longest: Longest control period [s]; None: all are dt.
 
         Raises:
-            InvalidInputError: With a jerk limit, a joint's range is too short to turn round in.
+            InvalidInputError: With a jerk limit, a joint's range is too short to turn round in; or
+                `longest` is below `dt`.
         """
+        if longest is not None and longest < dt:
+            raise InvalidInputError("longest_period", f"must be at least dt, {dt:g} s", longest)
         self.program = program
         frames = len(program.target_frames)
         names = LimitNames(program, dt)
@@ -128,17 +141,28 @@ class ControlStep:
         relaxed = np.zeros(relaxed_size(program.sizes))
         self.plan = StepPlan(arrays, self.layout.ends, yielding, relaxed, policy)
         if yielding.limits.size:
-            check_ranges(yielding.limits, 1.0 / dt)
-        self.set_period(dt)
+            check_ranges(yielding.limits, 1.0 / (longest or dt))
+        if longest is not None:
+            for start, _ in program.constants_of(JointLimits):
+                program.constants[start] = min(program.constants[start], 1.0 / longest)
+        self.set_periods(dt, constant_periods(dt))
 
-    def set_period(self, dt: float) -> None:
-        """Take another control period [s], without laying anything out anew."""
+    def set_periods(self, dt: float, periods: Periods) -> None:
+        """Take other control periods, without laying anything out anew.
+
+        Args:
+            dt: Period that the next command is for [s].
+            periods: Periods as limits count them.
+        """
         self.dt = dt
-        self.layout = self.layout.at_period(dt)
+        self.layout = self.layout.at_periods(periods)
         arrays = self.plan.arrays._replace(rate=1.0 / dt)
-        yielding = self.plan.yielding._replace(dt=dt)
+        yielding = self.plan.yielding._replace(dt=dt, periods=periods)
         self.plan = self.plan._replace(arrays=arrays, yielding=yielding)
         self.program.constants[self._duration_at] = dt * self._duration_rate
+        if periods.vary:
+            for _, stop in self.program.constants_of(MotionLimits):
+                self.program.constants[stop - STATED : stop] = periods[:STATED]
 
     def _add_network(self, solver: DNNSolver, dt: float, lags: bool) -> bool:
         """Add the network's entry to the table; return whether the network is compiled."""

@@ -296,20 +296,28 @@ def stopping_time(arrays: ProgramArrays, past: Matrix, yielding: Yielding, dq: V
     if len(yielding.scenes) == 0:
         return 0.0
     limits = yielding.limits
+    dt = yielding.periods.longest
+    ratio = dt / yielding.periods.dt
+    before = past[LAST].copy()
     bend = np.zeros(dq.size)
     periods = 1.0
+    if yielding.periods.vary:
+        for i in range(dq.size):
+            before[i] = dq[i] - ratio * (dq[i] - before[i])
     if limits.size:
-        periods = least_periods(dq, past[LAST], limits, yielding.dt, yielding.cubic)
+        periods = least_periods(dq, before, limits, dt, yielding.cubic)
     if periods == np.inf:
         return -1.0
     if yielding.cubic and periods > 0.0:
         for i in range(dq.size):
-            bend[i] = bend_of(dq[i], past[LAST, i], periods)
-    motion = Motion(dq, bend, periods, yielding.cubic)
-    if limits.size and not keeps_joint_limits(motion, past[Q], limits, yielding.dt):
+            bend[i] = bend_of(dq[i], before[i], periods)
+    # Where periods vary, the first may be the longest and the others as short as can be.
+    motion = Motion(dq, bend, periods + yielding.periods.vary, yielding.cubic)
+    dt = dt / yielding.periods.share
+    if limits.size and not keeps_joint_limits(motion, past[Q], limits, dt):
         return -1.0
     for k in range(len(yielding.scenes)):
         scene = arrays.constants[yielding.scenes[k, 0] : yielding.scenes[k, 1]]
-        if not keeps_distances(motion, arrays, scene, yielding.dt):
+        if not keeps_distances(motion, arrays, scene, dt):
             return -1.0
-    return periods
+    return periods * ratio

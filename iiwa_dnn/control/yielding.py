@@ -44,7 +44,7 @@ from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import QPViews, copied, qp_views
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.limits import braking
+from iiwa_dnn.schemes.limits import braking, constant_periods
 from iiwa_dnn.schemes.program import ProgramArrays, StepProgram
 
 NONE, SLOW, RELAX, STOP, _ = map(int, Action)
@@ -82,7 +82,7 @@ def make_yielding(program: StepProgram, tol: float, dt: float, alike: bool) -> Y
     """
     limits: Vector = np.zeros(0)
     if program.rate_limits is not None:
-        limits = program.rate_limits.constants(program.robot)
+        limits = program.rate_limits.numbers(program.robot)
     scenes = program.constants_of(CollisionAvoidance)
     weights = program.row_weights
     return Yielding(
@@ -91,6 +91,7 @@ def make_yielding(program: StepProgram, tol: float, dt: float, alike: bool) -> Y
         np.array([tol, float(MOST_SYSTEMS)]),
         np.array(scenes, dtype=np.int64).reshape(-1, 2),
         dt,
+        constant_periods(dt),
         bool((limits.reshape(6, -1)[4] < np.inf).any()),
         bool((weights == 0.0).any()),
         alike,
@@ -316,11 +317,11 @@ def _step_towards(limits: QPViews, past: Matrix, yielding: Yielding, x: Vector) 
     """
     dof = past.shape[1]
     for i in range(dof):
-        most = yielding.limits[3 * dof + i] * yielding.dt
+        most = yielding.limits[3 * dof + i] * yielding.periods.dt
         change = min(max(x[i] - past[WANTED, i], -most), most)
         behind = past[LAST, i] - (x[i] - change)
         rate = yielding.limits[4 * dof + i]
-        x[i] += braking(behind, limits.lb[i] - x[i], limits.ub[i] - x[i], rate, yielding.dt)
+        x[i] += braking(behind, limits.lb[i] - x[i], limits.ub[i] - x[i], rate, yielding.periods)
 
 
 @compiled
@@ -332,7 +333,7 @@ def _step_straight(past: Matrix, yielding: Yielding, x: Vector) -> None:
     for i in range(dof):
         now[i] = past[LAST, i] - x[i]
         before[i] = past[BEFORE, i] - x[i]
-    periods = least_periods(now, before, yielding.limits, yielding.dt, yielding.cubic)
+    periods = least_periods(now, before, yielding.limits, yielding.periods.dt, yielding.cubic)
     for i in range(dof):
         if periods < np.inf:
             x[i] += next_velocity(now[i], before[i], periods, yielding.cubic)
@@ -386,20 +387,19 @@ def _brake(limits: QPViews, past: Matrix, yielding: Yielding, figures: Vector, d
         return 0.0
     rest: float = past[REST, 0]
     periods = rest
+    dt = yielding.periods.dt
     if rest == 0.0:
-        periods = least_periods(
-            past[LAST], past[BEFORE], yielding.limits, yielding.dt, yielding.cubic
-        )
+        periods = least_periods(past[LAST], past[BEFORE], yielding.limits, dt, yielding.cubic)
     for i in range(past.shape[1]):
         if periods < np.inf:
             last = past[LAST, i]
             fastest = max(yielding.limits[2 * past.shape[1] + i], abs(last))
-            change = yielding.limits[3 * past.shape[1] + i] * yielding.dt
+            change = yielding.limits[3 * past.shape[1] + i] * dt
             dq[i] = next_velocity(last, past[BEFORE, i], periods, yielding.cubic)
             # Where the control period has changed, the curve has too.
             dq[i] = min(max(dq[i], last - change), last + change)
             dq[i] = min(max(dq[i], -fastest), fastest)
-        if rest == 0.0:
+        if rest == 0.0 or yielding.periods.vary:
             dq[i] = min(max(dq[i], limits.lb[i]), limits.ub[i])
     if rest == 0.0 and yielding.coupled:
         nearest_within(limits, dq, yielding, figures)

@@ -22,6 +22,7 @@ from iiwa_dnn.control.state import DELAY, ROWS, YIELDS
 from iiwa_dnn.control.step import StepPlan, sample_targets, take_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
+from iiwa_dnn.schemes.limits import constant_periods
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 _PACKAGE = Path(__file__).parents[1]
@@ -99,6 +100,7 @@ def _shield_texts(code: _Code, shield: shields.Shield) -> dict[str, Any]:
     return {
         "settings": code.value("of_shield", shield.settings),
         "limits": code.value("motion", shield.motion),
+        "periods": code.value("periods", constant_periods(shield.dt)),
         "take_positions": code.kernel(shields.take_positions),
         "take_wish": code.kernel(shields.take_wish),
         "come_nearer": code.kernel(shields.come_nearer),

@@ -39,7 +39,7 @@ third order is derived in docs/theory.md.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -75,12 +75,58 @@ TANGENT = 1.0
 SHARE = 8.0
 """Steps of jerk at least that braking takes to its full deceleration."""
 
+STATED = 4
+"""Numbers of `Periods` that a step states among the constants of `MotionLimits`."""
+
 HALVINGS = 20
 """Halvings of the range of a command that is to end at a position limit."""
 
 Rates = tuple[float, float, float, float]
 """Largest velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of a joint, inf for none; and
 the deceleration for which there is room before its position limits [rad/s^2]."""
+
+
+class Periods(NamedTuple):
+    """Periods with which the bounds of a step count.
+
+    Attributes:
+        dt: Period over which changes of the command are measured [s].
+        hold: Longest time for which the command may be held [s].
+        longest: Longest period that may come [s].
+        share: Part of a distance that is gone in the stated periods at least: 1, or dt / T where
+            nobody states them and they may last T.
+        vary: Whether periods differ.
+    """
+
+    dt: float
+    hold: float
+    longest: float
+    share: float
+    vary: bool
+
+
+@compiled
+def constant_periods(dt: float) -> Periods:
+    """Return the periods of a loop whose period [s] is constant."""
+    return Periods(dt, dt, dt, 1.0, False)
+
+
+def varying_periods(
+    nominal: float, longest: float, dt: float | None, elapsed: float | None
+) -> Periods:
+    """Return the periods of a step in a loop whose periods last up to `longest`.
+
+    Args:
+        nominal: Control period where none is stated [s].
+        longest: Longest period [s].
+        dt: Period for which the command will be held [s], if that is stated.
+        elapsed: Time since the last step [s], if that is stated.
+    """
+    if dt is not None:
+        return Periods(dt, dt, longest, 1.0, True)
+    if elapsed is not None:
+        return Periods(elapsed, longest, longest, 1.0, True)
+    return Periods(nominal, nominal, nominal, nominal / longest, True)
 
 
 @compiled
@@ -220,13 +266,17 @@ def motion_limits(
     """
     if not step.rate < np.inf:
         return
-    limits = constants.reshape(6, step.q.size)
-    dt = 1.0 / step.rate
-    for i in range(step.q.size):
+    n = step.q.size
+    limits = constants[: 6 * n].reshape(6, n)
+    stated = constants[6 * n :]
+    periods = constant_periods(1.0 / step.rate)
+    if stated[0] > 0.0:
+        periods = Periods(stated[0], stated[1], stated[2], stated[3], True)
+    for i in range(n):
         above = limits[1, i] - step.q[i]
         below = step.q[i] - limits[0, i]
         rates = (limits[2, i], limits[3, i], limits[4, i], limits[5, i])
-        lower, upper = joint_bounds(step.last[i], step.before[i], above, below, rates, dt)
+        lower, upper = joint_bounds(step.last[i], step.before[i], above, below, rates, periods)
         lb[i] = min(max(lb[i], lower), upper)
         ub[i] = min(max(ub[i], lower), upper)
 
@@ -246,6 +296,13 @@ class MotionLimits(Limit):
     couplings: tuple[JointCouplingTask, ...] = ()
 
     def constants(self, robot: Robot) -> Vector:
+        """Return `numbers`, and room for the first four numbers of `Periods`, (6 n + 4,).
+
+        These are 0 where periods are constant.
+        """
+        return np.concatenate([self.numbers(robot), np.zeros(STATED)])
+
+    def numbers(self, robot: Robot) -> Vector:
         """Return position, velocity, acceleration and jerk limits, and decelerations, (6 n,).
 
         The positions are those at which a joint that brakes at the deceleration has to rest.
@@ -266,9 +323,9 @@ class MotionLimits(Limit):
                 others = joints[joints != i]
                 rates[:, i] = np.minimum(rates[:, i], rates[:, others] @ shares[others] / shares[i])
         braking, room = braking_room(robot.ramps, rates[1])
-        constants: Vector = np.concatenate([lower + room, upper - room, *rates, braking])
-        check_ranges(constants, np.inf)
-        return constants
+        numbers: Vector = np.concatenate([lower + room, upper - room, *rates, braking])
+        check_ranges(numbers, np.inf)
+        return numbers
 
 
 def braking_room(ramps: Matrix, acceleration: Vector) -> tuple[Vector, Vector]:
@@ -295,14 +352,14 @@ def braking_room(ramps: Matrix, acceleration: Vector) -> tuple[Vector, Vector]:
     return braking, np.where(offset > 0.0, offset**2 / np.maximum(2.0 * spare, 1e-300), 0.0)
 
 
-def check_ranges(constants: Vector, rate: float) -> None:
+def check_ranges(numbers: Vector, rate: float) -> None:
     """Raise InvalidInputError if a joint's range is too short to turn round in.
 
     Args:
-        constants: `MotionLimits.constants`, (6 n,).
+        numbers: `MotionLimits.numbers`, (6 n,).
         rate: Control periods a second [1/s]; inf for a jerk limit that braking may use in full.
     """
-    lower, upper, fastest, _, jerk, braking = constants.reshape(6, -1)
+    lower, upper, fastest, _, jerk, braking = numbers.reshape(6, -1)
     usable = np.minimum(jerk, rate * np.minimum(braking, rate * fastest) / SHARE)
     steepest = np.minimum(braking, np.sqrt(2.0 * usable * fastest))
     short = (jerk < np.inf) & (steepest**3 > usable**2 * (upper - lower))
@@ -313,17 +370,17 @@ def check_ranges(constants: Vector, rate: float) -> None:
         raise InvalidInputError("jerk", problem, jerk)
 
 
-def largest_gain(constants: Vector, rate: float) -> float:
+def largest_gain(numbers: Vector, rate: float) -> float:
     """Compute the feedback gain up to which a loop with these limits is stable [1/s].
 
     It is one over the loop's delay: a period, and the mean time that an acceleration takes to turn
     from one limit to the other (docs/limits.md).
 
     Args:
-        constants: `MotionLimits.constants`, (6 n,).
+        numbers: `MotionLimits.numbers`, (6 n,).
         rate: Control periods a second [1/s].
     """
-    _, _, fastest, acceleration, jerk, _ = constants.reshape(6, -1)
+    _, _, fastest, acceleration, jerk, _ = numbers.reshape(6, -1)
     with np.errstate(invalid="ignore"):  # a joint without limits
         delay = np.fmin(acceleration / jerk, np.sqrt(fastest / jerk))
     return float(1.0 / (delay.max() + 1.0 / rate))
@@ -342,9 +399,9 @@ def merged(limits: Sequence[Limit], tasks: Sequence[Task]) -> list[Limit]:
 
 @compiled
 def joint_bounds(
-    last: float, before: float, above: float, below: float, rates: Rates, dt: float
+    last: float, before: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float]:
-    """Compute lower and upper bound of one joint's next command [rad/s], never the wrong way round.
+    """Compute bounds of one joint's next command [rad/s], with lower <= upper.
 
     Jerk and acceleration are within their limits at both, whatever the state is.
 
@@ -354,13 +411,15 @@ def joint_bounds(
         above: Distance to the upper position limit [rad].
         below: Distance to the lower position limit [rad].
         rates: Its limits.
-        dt: Control period [s].
+        periods: Periods of the step.
     """
     _, accel, jerk, _ = rates
+    above *= periods.share
+    below *= periods.share
     if jerk < np.inf:
-        lower, upper = _jerk_bounds(last, before, above, below, rates, dt)
+        lower, upper = _jerk_bounds(last, before, above, below, rates, periods)
     elif accel < np.inf:
-        lower, upper = _acceleration_bounds(last, above, below, rates, dt)
+        lower, upper = _acceleration_bounds(last, above, below, rates, periods)
     else:
         return -np.inf, np.inf
     if lower <= upper:
@@ -377,27 +436,30 @@ def joint_bounds(
 
 @compiled
 def _acceleration_bounds(
-    last: float, above: float, below: float, rates: Rates, dt: float
+    last: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where no jerk is limited."""
     fastest, accel, _, deceleration = rates
-    first = last - accel * dt
-    final = last + accel * dt
-    unit = deceleration * dt
+    first = last - accel * periods.dt
+    final = last + accel * periods.dt
+    hold = periods.hold
+    unit = deceleration * hold
     above -= min(max(above, 0.0), ROUNDING)
     below -= min(max(below, 0.0), ROUNDING)
     # Outside of the range the way back is no quicker than the velocity limit.
-    upper = min(max(unit * approach(above / (unit * dt)), -fastest), fastest)
-    lower = min(max(-unit * approach(below / (unit * dt)), -fastest), fastest)
+    upper = min(max(unit * approach(above / (unit * hold), periods.vary), -fastest), fastest)
+    lower = min(max(-unit * approach(below / (unit * hold), periods.vary), -fastest), fastest)
     return min(max(lower, first), final), min(max(upper, first), final)
 
 
 @compiled
 def _jerk_bounds(
-    last: float, before: float, above: float, below: float, rates: Rates, dt: float
+    last: float, before: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where the jerk is limited."""
     fastest, accel, jerk, deceleration = rates
+    dt = periods.dt
+    longest = periods.longest
     slowest = last - accel * dt
     quickest = last + accel * dt
     # A state that no command led to may leave nothing: acceleration goes before jerk, and so does
@@ -408,50 +470,55 @@ def _jerk_bounds(
     change = jerk * dt * dt
     first = min(max(max(slowest, middle - change), bottom), top)
     final = min(max(min(quickest, middle + change), bottom), top)
-    jerk = min(jerk, min(deceleration / dt, fastest / (dt * dt)) / SHARE)
+    jerk = min(jerk, min(deceleration / longest, fastest / (longest * longest)) / SHARE)
     unit = jerk * dt * dt
-    lb = min(max(last - unit * approach((last + fastest) / unit), first), final)
-    ub = min(max(last + unit * approach((fastest - last) / unit), first), final)
+    lb = min(max(last - unit * approach((last + fastest) / unit, periods.vary), first), final)
+    ub = min(max(last + unit * approach((fastest - last) / unit, periods.vary), first), final)
     if lb > ub:
         lb = 0.5 * (lb + ub)
         ub = lb
-    margin = MARGIN * unit * dt
-    limit = deceleration - jerk * dt
-    upper = _ceiling(lb, ub, above - margin, last, dt, (jerk, limit))
-    lower = -_ceiling(-ub, -lb, below - margin, -last, dt, (jerk, limit))
+    margin = 0.0 if periods.vary else MARGIN * unit * dt
+    limit = deceleration - jerk * longest
+    upper = _ceiling(lb, ub, above - margin, last, periods, (jerk, limit))
+    lower = -_ceiling(-ub, -lb, below - margin, -last, periods, (jerk, limit))
     if lower < upper and max(abs(last), abs(last - before)) < unit:
         # Held at that bound, a joint at its margin would swing by it, 2 + sqrt(3) times as far in
         # each period (the zeros of a sampled triple integrator): all but at rest, it comes to rest.
         rest = REST * unit * dt
-        eased = max(min(upper, max(_easing(above - rest, dt), lb)), lower)
-        lower = min(max(lower, min(-_easing(below - rest, dt), ub)), eased)
+        eased = max(min(upper, max(_easing(above - rest, periods.hold), lb)), lower)
+        lower = min(max(lower, min(-_easing(below - rest, periods.hold), ub)), eased)
         upper = eased
     return lower, upper
 
 
 @compiled
-def _easing(room: float, dt: float) -> float:
+def _easing(room: float, hold: float) -> float:
     """Compute the velocity [rad/s] of the way over `room` [rad]; what is rounding is not gone."""
     if abs(room) <= ROUNDING:
         return 0.0
-    return EASE * room / dt
+    return EASE * room / hold
 
 
 @compiled
-def braking(last: float, lb: float, ub: float, jerk: float, dt: float) -> float:
+def braking(last: float, lb: float, ub: float, jerk: float, periods: Periods) -> float:
     """Compute the command in [lb, ub] that comes to rest quickest, without turning round."""
     wanted = 0.0
-    unit = jerk * dt * dt
+    unit = jerk * periods.dt * periods.dt
     if jerk < np.inf and last != 0.0:
-        wanted = last - math.copysign(unit * approach(abs(last) / unit), last)
+        wanted = last - math.copysign(unit * approach(abs(last) / unit, periods.vary), last)
     return min(max(wanted, lb), ub)
 
 
 @compiled
-def approach(room: float) -> float:
-    """Compute the largest x for which x + (x - 1) + (x - 2) + ... down to 0 is within `room`."""
+def approach(room: float, vary: bool) -> float:
+    """Compute the largest x for which x + (x - 1) + (x - 2) + ... down to 0 is within `room`.
+
+    Where periods vary, for which x + x^2 / 2 is: that holds for any sum whose steps are shorter.
+    """
     if not room > 0.0 or room == np.inf:
         return room
+    if vary:
+        return 2.0 * room / (math.sqrt(1.0 + 2.0 * room) + 1.0)
     m = math.floor(0.5 * (math.sqrt(1.0 + 8.0 * room) - 1.0))
     return room / (m + 1.0) + 0.5 * m
 
@@ -475,17 +542,25 @@ def stopping_distance(v: float, a: float, J: float, A: float) -> float:
 
 
 @compiled
-def highest(v: float, last: float, dt: float, J: float, A: float) -> float:
+def highest(v: float, last: float, periods: Periods, J: float, A: float) -> float:
     """Compute the highest position of the way to rest after command v, from that before it."""
+    dt = periods.dt
     a = (v - last) / dt
-    mean = 0.5 * (v + last)
     start = dt * dt * a / 6.0
-    if mean + 0.5 * a * abs(a) / J >= 0.0:
-        return start + max(0.0, stopping_distance(mean, a, J, A))
-    if mean <= 0.0:
+    speed = 0.5 * (v + last)
+    if periods.vary:
+        speed = v
+        start = periods.hold * v
+        if periods.hold >= periods.longest:
+            # How long it lasts is known afterwards: the joint may be as quick for as long again.
+            growth = max(a, 0.0)
+            start = periods.hold * max(v + 0.5 * growth * growth / J, 0.0)
+    if speed + 0.5 * a * abs(a) / J >= 0.0:
+        return start + max(0.0, stopping_distance(speed, a, J, A))
+    if speed <= 0.0:
         return start
-    T = -(a + math.sqrt(max(a * a - 2.0 * J * mean, 0.0))) / J
-    return start + T * (mean + T * (0.5 * a + J * T / 6.0))
+    T = -(a + math.sqrt(max(a * a - 2.0 * J * speed, 0.0))) / J
+    return start + T * (speed + T * (0.5 * a + J * T / 6.0))
 
 
 @compiled
@@ -494,7 +569,7 @@ def _ceiling(
     ub: float,
     distance: float,
     last: float,
-    dt: float,
+    periods: Periods,
     braking_limits: tuple[float, float],
 ) -> float:
     """Compute the largest command in [lb, ub] whose highest position is within `distance`, else lb.
@@ -502,11 +577,11 @@ def _ceiling(
     The limits are those of jerk [rad/s^3] and acceleration [rad/s^2] on the way to rest.
     """
     J, A = braking_limits
-    if highest(ub, last, dt, J, A) <= distance:
+    if highest(ub, last, periods, J, A) <= distance:
         return ub
     for _ in range(HALVINGS):
         middle = 0.5 * (lb + ub)
-        if highest(middle, last, dt, J, A) <= distance:
+        if highest(middle, last, periods, J, A) <= distance:
             lb = middle
         else:
             ub = middle

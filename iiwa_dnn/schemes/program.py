@@ -26,7 +26,7 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.costs import KineticEnergy
-from iiwa_dnn.schemes.limits import SHARE, MotionLimits, approach, merged
+from iiwa_dnn.schemes.limits import SHARE, MotionLimits, approach, constant_periods, merged
 from iiwa_dnn.schemes.parts import (
     Cost,
     Limit,
@@ -513,15 +513,15 @@ class LimitNames:
 
     Attributes:
         settings: `StepProgram.settings`.
-        dt: Control period [s].
+        periods: Periods of the step.
     """
 
     def __init__(self, program: StepProgram, dt: float) -> None:
         """Take the limits of a step program and its control period [s]."""
         self.settings = program.settings()
-        self.dt = dt
-        constants = (program.rate_limits or MotionLimits()).constants(program.robot)
-        self._limits = constants.reshape(6, -1)
+        self.periods = constant_periods(dt)
+        numbers = (program.rate_limits or MotionLimits()).numbers(program.robot)
+        self._limits = numbers.reshape(6, -1)
 
     def codes(self, bounds: Matrix, sides: NDArray[Any], past: Matrix) -> NDArray[np.int8]:
         """Give the bounds on some sides of a program's joints their codes.
@@ -555,9 +555,11 @@ class LimitNames:
         """
         _, last, before = past
         _, _, velocity, acceleration, jerk, braking = self._limits
-        unit = self.dt**2 * np.fmin(jerk, np.fmin(braking / self.dt, velocity / self.dt**2) / SHARE)
-        room = [approach(x) for x in (velocity - last) / unit]
+        dt, _, longest, _, vary = self.periods
+        usable = np.fmin(braking / longest, velocity / longest**2) / SHARE
+        unit = dt**2 * np.fmin(jerk, usable)
+        room = [approach(x, vary) for x in (velocity - last) / unit]
         # The velocity after which the acceleration can still be taken back in time.
         fastest = np.where(jerk < np.inf, last + unit * room, velocity)
-        by_jerk = 2.0 * last - before + self.dt**2 * jerk
-        return [by_jerk, last + self.dt * acceleration, fastest]
+        by_jerk = 2.0 * last - before + dt**2 * jerk
+        return [by_jerk, last + dt * acceleration, fastest]

@@ -194,7 +194,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     ends = [path.duration for path in by_frame(controller.reference, "").values()]
     limits: dict[str, Any] = {}
     if program.rate_limits is not None:
-        of_rates = program.rate_limits.constants(robot).reshape(6, -1)[3:5]
+        of_rates = program.rate_limits.numbers(robot).reshape(6, -1)[3:5]
         limits |= dict(zip(RATES, of_rates, strict=False))
     if (avoidance := avoidance_of(controller.scheme)) is not None:
         limits["collisions"] = avoidance.overview(robot)

@@ -11,7 +11,14 @@ import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array
 from helpers_simulation import heart, paper_robot, paper_start
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.schemes.limits import braking, check_ranges, joint_bounds, largest_gain
+from iiwa_dnn.schemes.limits import (
+    braking,
+    check_ranges,
+    constant_periods,
+    joint_bounds,
+    largest_gain,
+    varying_periods,
+)
 from judge_limits import Breach, breaches
 
 INF = math.inf
@@ -22,10 +29,11 @@ Limits = tuple[float, float, float]
 def adversary(q: float, upper: float, limits: Any, dt: float, draws: Any, out: Any) -> float:
     """Drive a joint in [-upper, upper] by hostile choices; returns the least room of its bounds."""
     V, A, J = limits
+    periods = constant_periods(dt)
     last = before = room = wish = 0.0
     mode, left = 0, 0
     for k in range(len(out)):
-        lb, ub = joint_bounds(last, before, upper - q, q + upper, (V, A, J, A), dt)
+        lb, ub = joint_bounds(last, before, upper - q, q + upper, (V, A, J, A), periods)
         room = min(room, ub - lb)
         if left == 0:
             mode, left = int(4.0 * draws[k, 0]), 1 + int(400.0 * draws[k, 1])
@@ -90,7 +98,7 @@ def test_outside_a_short_range_a_joint_does_not_come_back_beyond_its_other_side(
     dt, limits = 1e-2, (2.0, 5.0, INF)
     q, last = 0.3, 0.0  # above a range of 1 mrad
     for _ in range(300):
-        lb, ub = joint_bounds(last, 0.0, -q, q + 1e-3, (*limits, limits[1]), dt)
+        lb, ub = joint_bounds(last, 0.0, -q, q + 1e-3, (*limits, limits[1]), constant_periods(dt))
         assert lb <= ub
         last = lb
         q += dt * last
@@ -121,6 +129,57 @@ def test_a_range_that_is_taken_is_long_enough(speed, acceleration, jerk, dt, upp
     assert broken(driven(0.0, upper, limits, dt, seed), dt, upper, limits) == []
 
 
+def hostile_periods(meaning: str, random: Any, steps: int) -> tuple[float, float]:
+    """How far a joint is beyond its range, and how far its rates are beyond their limits.
+
+    Periods are drawn, the longest and the shortest by turns, or the worst of three by the room that
+    they leave to brake.
+    """
+    longest = 10.0 ** random.uniform(-3.0, -1.5)
+    nominal = longest * random.choice([1.0, 0.3])
+    V, A = 10.0 ** random.uniform(-0.5, 1.0), 10.0 ** random.uniform(0.0, 2.0)
+    J = 10.0 ** random.uniform(2.0, 4.5) if random.random() < 0.5 else INF
+    braking_at = A * random.choice([1.0, 0.5])
+    rates = (V, A, J, braking_at)
+    upper = 0.2 + 2.0 * A**3 / min(J, 1e9) ** 2
+    mode = random.integers(3)
+    q = last = before = slope = 0.0
+    passed = stated = nominal
+    beyond = rate = 0.0
+    push = 1
+    for k in range(steps):
+        push = random.choice([-1, 1]) if k % 60 == 0 else push
+        draws = longest * (random.choice([1e-3, 1.0], 3) if mode else random.uniform(1e-3, 1.0, 3))
+        found = []
+        for period in draws if mode == 2 else draws[:1]:
+            own = {"dt": period, "elapsed": passed, "neither": nominal}[meaning]
+            first = last - own / stated * (last - before)
+            said = (period if meaning == "dt" else None, passed if meaning == "elapsed" else None)
+            periods = varying_periods(nominal, longest, *said)
+            v = joint_bounds(last, first, upper - q, q + upper, rates, periods)[int(push > 0)]
+            room = upper - push * (q + period * v) - v * v / (2.0 * braking_at)
+            found.append((room, period, own, v))
+        _, passed, stated, v = min(found)
+        turn = (v - last) / stated - slope
+        slope += turn
+        rate = max(rate, abs(v) - V, abs(slope) - A)
+        if J < INF and k:
+            rate = max(rate, abs(turn) / stated - J * (1.0 + 1e-3))
+        q += passed * v
+        before, last = last, v
+        beyond = max(beyond, abs(q) - upper)
+    return beyond, rate
+
+
+@pytest.mark.parametrize("meaning", ["dt", "elapsed", "neither"])
+def test_no_limit_is_passed_whatever_period_comes(meaning: str) -> None:
+    random = np.random.default_rng(2)
+    for _ in range(60):
+        beyond, rate = hostile_periods(meaning, random, 300)
+        assert beyond <= 0.0
+        assert rate <= 1e-6
+
+
 def stopping_room(v: float, step: float) -> float:
     """Way of v and all later velocities under full braking, in units of dt."""
     way = 0.0
@@ -132,7 +191,7 @@ def stopping_room(v: float, step: float) -> float:
 @given(above=st.floats(0.0, 1.0), last=st.floats(-1.0, 1.0))
 def test_acceleration_bounds_are_the_exact_kernel(above: float, last: float) -> None:
     dt, A, V = 1e-2, 5.0, 2.0
-    lb, ub = joint_bounds(last, 0.0, above, INF, (V, A, INF, A), dt)
+    lb, ub = joint_bounds(last, 0.0, above, INF, (V, A, INF, A), constant_periods(dt))
     at_most = min(V, last + A * dt)
     assert lb == pytest.approx(max(-V, last - A * dt))
     if stopping_room(last - A * dt, A * dt) * dt > above:
@@ -150,7 +209,9 @@ def test_a_joint_pressed_against_its_limit_comes_to_rest(speed, jerk, dt) -> Non
     q = -5.0 * speed
     commands = []
     for _ in range(int(9.0 / dt)):
-        lb, ub = joint_bounds(last, before, -q, INF, (speed, 10.0, jerk, 10.0), dt)
+        lb, ub = joint_bounds(
+            last, before, -q, INF, (speed, 10.0, jerk, 10.0), constant_periods(dt)
+        )
         before = last
         last = min(max(speed, lb), ub)
         q += dt * last
@@ -163,13 +224,14 @@ def test_a_joint_pressed_against_its_limit_comes_to_rest(speed, jerk, dt) -> Non
 def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
     """Feed a joint's position back, with noise; returns its largest excursion in the last part."""
     V, A, J = limits
+    periods = constant_periods(dt)
     last = before = wished = largest = 0.0
     for k in range(len(noise)):
         wish = min(max(-gain * (q + noise[k]), -V), V)
         change = min(max(wish - wished, -A * dt), A * dt)
         wished = wish
-        lb, ub = joint_bounds(last, before, 1e3, 1e3, (V, A, J, A), dt)
-        v = wish + braking(last - wish + change, lb - wish, ub - wish, J, dt)
+        lb, ub = joint_bounds(last, before, 1e3, 1e3, (V, A, J, A), periods)
+        v = wish + braking(last - wish + change, lb - wish, ub - wish, J, periods)
         before, last = last, min(max(v, lb), ub)
         q += dt * last
         if k > 3 * len(noise) // 4:

@@ -5,6 +5,7 @@ int shield_step(struct controller *c, const double *q, const double *wish, doubl
     struct arena arena = controller_arena(c, &full);
     const Vector settings = @settings@;
     const Vector limits = @limits@;
+    const limits_Periods periods = @periods@;
     const Vector joints = {(double *)q, CONTROLLER_DOF};
     const Vector asked = {wish ? (double *)wish : c->wish, CONTROLLER_DOF};
     const Vector aim = {c->aim, CONTROLLER_DOF};
@@ -18,7 +19,7 @@ int shield_step(struct controller *c, const double *q, const double *wish, doubl
     }
     @take_positions@(&arena, joints, &kept, settings);
     const bool held = @take_wish@(&arena, asked, wish != NULL, &kept, settings);
-    @come_nearer@(&arena, &kept, past, limits, CONTROLLER_DT, false, held, aim);
+    @come_nearer@(&arena, &kept, past, limits, &periods, false, held, aim);
     memset(c->state, 0, sizeof c->state);
     memcpy(c->state, c->aim, sizeof c->wish);
     const int action = controller_step(c, c->positions, c->aim, dq);

@@ -1,0 +1,129 @@
+"""Periods that vary: no limit is passed, whatever period comes, however it is stated."""
+
+import copy
+from typing import Any
+
+import numpy as np
+import pytest
+
+import iiwa_dnn as d
+
+DT = 2e-3
+LONGEST = 6e-3
+PLAIN = d.load_robot("iiwa7")
+
+
+def controller(jerk: bool, **settings: Any) -> d.Controller:
+    """A controller of an iiwa 7 whose targets may lie anywhere."""
+    robot = PLAIN.with_limits(acceleration=10.0, jerk=500.0 if jerk else np.inf)
+    limits: list[d.Limit] = [d.AccelerationLimits()]
+    scheme = d.DoubleIndicator(
+        orientation="none", extra_limits=limits + [d.JerkLimits()] * jerk, home=np.zeros(7)
+    )
+    return d.Controller(robot, scheme, dt=DT, **settings)
+
+
+def driven(made: d.Controller, said: str, periods: np.ndarray, seed: int) -> tuple[Any, Any]:
+    """Joint positions and commands of an arm that is asked far beyond its limits."""
+    random = np.random.default_rng(seed)
+    q = PLAIN.start_posture()
+    tip = d.Configuration(PLAIN, q).position
+    path, commands, t, target = [q], [], 0.0, d.Target(tip)
+    for k, period in enumerate(periods):
+        if k % 150 == 0:
+            target = d.Target(tip + 2.0 * random.standard_normal(3))
+        before = periods[k - 1] if k else DT
+        stated = {"dt": {"dt": period}, "elapsed": {"elapsed": before}, "neither": {}}[said]
+        commands.append(made.step(path[-1], t, target, **stated).dq)
+        path.append(path[-1] + period * commands[-1])
+        t += period
+    return np.array(path), np.array(commands)
+
+
+@pytest.mark.parametrize("jerk", [False, True])
+@pytest.mark.parametrize("said", ["dt", "elapsed", "neither"])
+def test_no_limit_is_passed_whatever_period_comes(said: str, jerk: bool) -> None:
+    """Today's loop passed position limits by 2 mrad where periods were said, by 0.42 rad else."""
+    for seed in range(3):
+        random = np.random.default_rng(seed)
+        periods = random.uniform(0.05, 1.0, 600) * LONGEST
+        made = controller(jerk, longest_period=LONGEST)
+        q, dq = driven(made, said, periods, seed)
+        assert (q <= PLAIN.q_upper).all()
+        assert (q >= PLAIN.q_lower).all()
+        rates = {"dt": periods, "elapsed": np.r_[DT, periods[:-1]], "neither": np.full(600, DT)}
+        period = rates[said][:, np.newaxis]
+        acceleration = np.diff(dq, axis=0, prepend=0.0) / period
+        assert np.abs(acceleration).max() <= 10.0 + 1e-7
+        if jerk:
+            assert np.abs(np.diff(acceleration, axis=0, prepend=0.0) / period).max() <= 500.1
+        assert np.abs(q - q[0]).max() > 0.3
+
+
+def test_without_a_longest_period_a_position_limit_is_passed() -> None:
+    """The numbers above can fail."""
+    random = np.random.default_rng(0)
+    periods = random.uniform(0.05, 1.0, 1200) * LONGEST
+    q, _ = driven(controller(False), "neither", periods, 0)
+    assert max((q - PLAIN.q_upper).max(), (PLAIN.q_lower - q).max()) > 1e-2
+
+
+@pytest.mark.parametrize(
+    ("periods", "words"),
+    [
+        ({"dt": 0.0}, "dt: must be a finite number above 0"),
+        ({"elapsed": -1e-3}, "elapsed: must be a finite number above 0"),
+        ({"elapsed": np.nan}, "elapsed: must be a finite number above 0"),
+        ({"dt": 1e-3, "elapsed": 1e-3}, "dt and elapsed: are two periods"),
+    ],
+)
+def test_a_wrong_period_is_refused_and_changes_nothing(periods: Any, words: str) -> None:
+    target = d.Target(np.array([0.2, 0.3, 0.9]))
+    made = controller(True, longest_period=LONGEST)
+    q = PLAIN.start_posture()
+    for k in range(5):
+        q = made.step(q, k * DT, target, elapsed=3e-3).next_q
+    twin = copy.copy(made)
+    with pytest.raises(d.InvalidInputError, match=words):
+        made.step(q, 5 * DT, target, **periods)
+    found = made.step(q, 5 * DT, target, elapsed=1e-3)
+    expected = twin.step(q, 5 * DT, target, elapsed=1e-3).dq
+    np.testing.assert_allclose(found.dq, expected, atol=1e-12)
+
+
+def test_settings_of_periods_are_refused_by_name() -> None:
+    q = PLAIN.start_posture()
+    with pytest.raises(d.InvalidInputError, match="longest_period: must be at least dt"):
+        controller(False, longest_period=1e-3).step(q, 0.0, d.Target(np.ones(3)))
+    with pytest.raises(d.InvalidInputError, match="elapsed: needs a longest_period"):
+        controller(False).step(q, 0.0, d.Target(np.ones(3)), elapsed=1e-3)
+
+
+def test_a_period_above_the_longest_warns_once_and_is_a_reason() -> None:
+    made = controller(False, longest_period=LONGEST)
+    q = PLAIN.start_posture()
+    target = d.Target(np.array([0.2, 0.3, 0.9]))
+    with pytest.warns(UserWarning, match=r"a period of 0\.007 s is above the longest, 0\.006 s"):
+        late = made.step(q, 0.0, target, elapsed=7e-3)
+    assert late.against[0] == "period exceeded"
+    assert made.step(late.next_q, DT, target, dt=8e-3).against[0] == "period exceeded"
+    assert "period exceeded" not in made.step(q, 2 * DT, target, dt=LONGEST).against
+
+
+def test_the_clock_of_a_path_falls_behind_by_what_has_passed() -> None:
+    """An arm that stands before a path loses all the time that passes, not the stated periods."""
+    robot = PLAIN.with_limits(velocity=1e-3)
+    circle = d.Circle(radius=0.1, period=1.0).anchored(
+        d.Configuration(robot, robot.start_posture())
+    )
+    scheme = d.DoubleIndicator(extra_limits=(d.AccelerationLimits(10.0),))
+    made = d.Controller(robot, scheme, circle, dt=DT, longest_period=LONGEST)
+    q, t, behind = robot.start_posture(), 0.0, []
+    for k in range(200):
+        command = made.step(q, t, elapsed=5e-3 if k else DT)
+        q = q + 5e-3 * command.dq
+        behind.append(t - made.delay)
+        t += 5e-3
+    # The path's own time goes on slowly and never jumps back.
+    assert np.diff(behind).min() > -DT
+    assert behind[-1] < 0.1 * t
