@@ -32,7 +32,8 @@ from iiwa_dnn.networks.problems import solve_problem
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.networks.tracking import TrackingSolver
 from iiwa_dnn.qp import QP, Residuals, Solution, Status
-from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
+from iiwa_dnn.qp.agreement import Agreement
+from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.proof import Proof, prove
 from iiwa_dnn.references import (
     Circle,

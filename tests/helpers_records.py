@@ -61,6 +61,7 @@ def make_record(
         "iterations": np.full(steps, 2),
         "solution_gap": np.full((steps, references), 1e-9),
         "objective_gap": np.full((steps, references), 1e-12),
+        "feasibility_gap": np.full((steps, references), 1e-11),
         "reference_residual": np.full((steps, references), 1e-10),
         "wall_time_s": 0.5,
     }

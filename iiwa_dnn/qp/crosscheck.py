@@ -13,13 +13,20 @@ import warnings
 from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.processes import end_with
+from iiwa_dnn.qp.agreement import (
+    Agreement,
+    determined,
+    feasibility_gaps,
+    normalised,
+    objective_gaps,
+    stacked,
+)
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import point_of, prove_point
@@ -62,38 +69,6 @@ _WORTH_A_PROCESS = 10_000
 
 _AHEAD = 2
 """Blocks that a worker has before it: one in work, one waiting. More would only take memory."""
-
-_FLAT = 1e-10
-"""Curvature of cost and task rows, by the largest, below which x is not unique along it."""
-
-
-class Agreement(NamedTuple):
-    """Gaps between answers to N programs and k references; NaN where no reference has an answer.
-
-    Attributes:
-        solution_gap: Largest difference in x, (N, k); joint velocities in [rad/s].
-        objective_gap: Absolute difference in the objective, (N, k).
-        reference_residual: Largest KKT residual of each reference, (N, k); inf without an answer.
-        judge: 0 where the reference that was asked judged, 1 where the second one did, -1 where
-            neither has an answer that is believed, (N, k).
-
-    Of a proof, the gap is the bound of `Proof` and the residual is 0; without a bound, both are
-    inf.
-    """
-
-    solution_gap: Matrix
-    objective_gap: Matrix
-    reference_residual: Matrix
-    judge: NDArray[np.int8]
-
-    def worst_of(self, group: int) -> Agreement:
-        """Take the worst of each `group` of consecutive programs, as for the stages of a step."""
-        steps = len(self.judge) // group
-        gap, objective, residual, judge = (
-            array.reshape(steps, group, self.judge.shape[1]) for array in self
-        )
-        worst = np.where((judge < 0).any(axis=1), -1, judge.max(axis=1)).astype(np.int8)
-        return Agreement(gap.max(axis=1), objective.max(axis=1), residual.max(axis=1), worst)
 
 
 @dataclass(frozen=True)
@@ -155,24 +130,30 @@ class CrossCheck:
         n, m, p = sizes
         points = np.zeros((len(answers), 2 * n + m + p))
         points[:, : answers.shape[1]] = answers
-        qps = [QP.from_data(data, sizes) for data in programs]
-        shape = (len(qps), len(self.solvers))
-        gaps = np.full((3, *shape), np.nan)
-        judge = np.full(shape, -1, dtype=np.int8)
+        scaled = normalised(programs, sizes)
+        judge = np.empty((len(points), len(self.solvers)), dtype=np.int8)
+        gaps = np.empty((2, *judge.shape))
+        steps = np.empty((*judge.shape, n))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # OSQP's, of dense matrices
-            for i, (qp, point) in enumerate(zip(qps, points, strict=True)):
-                for k, name in enumerate(self.solvers):
-                    compare = _proven if name == PROOF else self._compared
-                    *gaps[:, i, k], judge[i, k] = compare(name, qp, point)
-        return Agreement(gaps[0], gaps[1], gaps[2], judge)
+            for i, k in np.ndindex(judge.shape):
+                name = self.solvers[k]
+                qp = QP.from_data((programs if name == PROOF else scaled)[i], sizes)
+                steps[i, k], *gaps[:, i, k], judge[i, k] = self._compared(name, qp, points[i])
+        block = stacked(programs, sizes)
+        objective = objective_gaps(block, points[:, :n], steps)
+        feasibility = np.where(judge.T < 0, np.nan, feasibility_gaps(block, points[:, :n])).T
+        return Agreement(gaps[0], objective, feasibility, gaps[1], judge)
 
-    def _compared(self, name: str, qp: QP, point: Vector) -> tuple[float, float, float, int]:
-        """Compare x of a point (2 n + m + p,) with a solver's; returns the entries of `Agreement`.
+    def _compared(self, name: str, qp: QP, point: Vector) -> tuple[Vector, float, float, int]:
+        """Compare x of a point (2 n + m + p,) with a solver's.
 
-        Where the gap is above the tolerance and x is not unique, since no cost acts along all
-        directions, it is measured in the norm of P.
+        Returns:
+            The step in x away from the solver's (n,), and the solution gap, the residual and the
+            judge of `Agreement`.
         """
+        if name == PROOF:
+            return _proven(qp, point)
         n = qp.sizes[0]
         residuals = []
         for solver in (name, SECOND.get(name) or "proxqp"):
@@ -181,17 +162,12 @@ class CrossCheck:
             if residual <= self.reference_tolerance:
                 break
         else:
-            return np.nan, np.nan, residuals[0], -1
+            return np.full(n, np.nan), np.nan, residuals[0], -1
         step = point[:n] - reference[:n]
-        curved = qp.P @ step
-        # As a difference of points: subtracting two objectives would cancel.
-        objective_gap = float(abs(curved @ (point[:n] + reference[:n]) / 2.0 + qp.q @ step))
-        gap = float(np.abs(step).max())
+        gap = np.abs(step).max()
         if gap > self.tolerance:
-            curvatures = np.linalg.eigvalsh(qp.P + qp.A.T @ qp.A)
-            if curvatures[0] <= _FLAT * curvatures[-1]:
-                gap = float(np.sqrt(max(float(step @ curved), 0.0)))
-        return gap, objective_gap, residual, len(residuals) - 1
+            gap = np.abs(determined(qp, reference, residual, step)).max()
+        return step, float(gap), residual, len(residuals) - 1
 
 
 def references() -> list[str]:
@@ -241,11 +217,15 @@ def _ask_proxqp(qp: QP) -> Vector:
     return point if results.info.status == proxqp.PROXQP_SOLVED else np.full_like(point, np.nan)
 
 
-def _proven(name: str, qp: QP, point: Vector) -> tuple[float, float, float, int]:
-    """Prove a point (2 n + m + p,); returns the bound, and the other entries of `Agreement`."""
+def _proven(qp: QP, point: Vector) -> tuple[Vector, float, float, int]:
+    """Prove a point (2 n + m + p,); returns as `CrossCheck._compared`.
+
+    Of all steps within the bound it is the one that changes the objective most, to first order.
+    """
     bound = prove_point(qp, point).bound
     proven = bound < np.inf
-    return bound, np.nan, 0.0 if proven else np.inf, 0 if proven else -1
+    step = np.copysign(bound, qp.P @ point[: qp.sizes[0]] + qp.q)
+    return step, bound, 0.0 if proven else np.inf, 0 if proven else -1
 
 
 class CheckPool:

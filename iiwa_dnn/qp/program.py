@@ -51,8 +51,8 @@ FIELDS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
 
 
 @lru_cache
-def _places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
-    """Place and shape of each field in `QP.data`."""
+def places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
+    """Return place and shape of each field in `QP.data`."""
     shapes = field_shapes(sizes)
     ends = np.cumsum([math.prod(shape) for shape in shapes]).tolist()
     return tuple(
@@ -77,7 +77,7 @@ class _Field:
         self._index = FIELDS.index(name)
 
     def __get__(self, qp: QP, owner: type[QP]) -> NDArray[np.float64]:
-        place, shape = _places(qp.sizes)[self._index]
+        place, shape = places(qp.sizes)[self._index]
         return qp.data[place].reshape(shape)
 
 

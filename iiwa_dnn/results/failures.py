@@ -5,7 +5,7 @@ from typing import Any
 
 from iiwa_dnn.files import percent
 from iiwa_dnn.naming import DONE, KINDS, describe
-from iiwa_dnn.results.metrics import JOINT_LIMITS, compute_metrics
+from iiwa_dnn.results.metrics import GAPS, JOINT_LIMITS, compute_metrics
 from iiwa_dnn.results.record import Record
 
 LIMIT_SLACK = 1e-9
@@ -135,9 +135,12 @@ def _crosscheck(check: Mapping[str, Any], steps: int) -> Iterator[str]:
     """Report disagreements, and what the references could not judge."""
     first = check["first_disagreement"]
     if first is not None:
+        said = GAPS[first.get("quantity", "solution_gap")].format(
+            solver=first["solver"], gap=_show(first["gap"])
+        )
+        tolerance = _show(first["tolerance"])
         yield (
-            f"{_at(first)}: the gap to {first['solver']} is {_show(first['gap'])} rad/s, tolerance "
-            f"{_show(first['tolerance'])}; {counted(check['disagreements'])} in all"
+            f"{_at(first)}: {said}, tolerance {tolerance}; {counted(check['disagreements'])} in all"
         )
     if not check["judged"]:  # in continuous mode the gap is a lag
         return

@@ -34,6 +34,13 @@ JOINT_LIMITS = {
 }
 """Metrics of the excess over the joints' limits: the limited quantity, and the unit."""
 
+GAPS = {
+    "solution_gap": "the gap to {solver} is {gap} rad/s",
+    "objective_gap": "the objective differs from that of {solver} by {gap} of its terms",
+    "feasibility_gap": "a bound or row is violated by {gap} of its terms",
+}
+"""Gaps of a cross-check, each at most the tolerance, and the words for one that is not."""
+
 _AT_LIMIT = 1.0 - 1e-9
 
 
@@ -206,9 +213,9 @@ def _crosscheck(record: Record) -> dict[str, Any]:
     """Count and size the differences to the reference solvers.
 
     An answer is believed only if the reference's own residual is within its tolerance; the gaps
-    of the others are counted as `reference_failures` and enter no maximum. A command outside of the
-    bounds and rows of its own step disagrees whatever the references say; of a stopped step there
-    is nothing to check.
+    of the others are counted as `reference_failures` and enter no maximum. An answer disagrees if
+    one of `GAPS` is above the tolerance. A command outside of the bounds and rows of its own step
+    disagrees whatever the references say; of a stopped step there is nothing to check.
     """
     check = record.settings["check"]
     kind = record.filled("kind")
@@ -219,19 +226,24 @@ def _crosscheck(record: Record) -> dict[str, Any]:
     asked = ~(np.isnan(gap) & np.isnan(residual)) & (kind != _STOPPED)[:, np.newaxis]
     believed = asked & (residual <= check["reference_tolerance"]) & ~np.isinf(gap)
     excess = record.filled("excess")
+    judged = list(GAPS) if len(record.feasibility_gap) else ["solution_gap"]
+    gaps = np.hstack([*(getattr(record, name) for name in judged), excess[:, np.newaxis]])
     # Not `gap > tolerance`, which a NaN would pass.
     outside = ~(excess <= EXCESS_TOLERANCE) & (kind != _STOPPED)
-    disagrees = np.column_stack([believed & ~(gap <= check["tolerance"]), outside]) & converged
+    beyond = np.tile(believed, len(judged)) & ~(gaps[:, :-1] <= check["tolerance"])
+    disagrees = np.column_stack([beyond, outside]) & converged
     checked = asked.all(axis=1) & bool(check["solvers"])
     first = _first(record, disagrees.any(axis=1))
     if first is not None:
         step = first["step"]
-        gaps = np.where(disagrees[step], [*gap[step], excess[step]], -np.inf)
-        judge = int(gaps.argmax())
+        worst = int(np.where(disagrees[step], gaps[step], -np.inf).argmax())
+        pairs = [(name, solver) for name in judged for solver in check["solvers"]]
+        quantity, solver = [*pairs, ("solution_gap", BOUNDS)][worst]
         first |= {
-            "solver": [*check["solvers"], BOUNDS][judge],
-            "gap": gaps[judge],
-            "tolerance": check["tolerance"] if judge < len(check["solvers"]) else EXCESS_TOLERANCE,
+            "quantity": quantity,
+            "solver": solver,
+            "gap": gaps[step, worst],
+            "tolerance": EXCESS_TOLERANCE if solver == BOUNDS else check["tolerance"],
         }
     return {
         "solver": "+".join(check["solvers"]) or "none",
@@ -243,8 +255,7 @@ def _crosscheck(record: Record) -> dict[str, Any]:
         "judged_by": _judged_by(record, asked),
         "disagreements": disagrees.any(axis=1).sum(),
         "reference_failures": (asked & ~believed).sum(),
-        "max_solution_gap": _max(gap[believed]),
-        "max_objective_gap": _max(record.objective_gap[believed]),
+        **{f"max_{name}": _max(getattr(record, name)[believed]) for name in judged},
         "max_reference_residual": _max(residual[np.isfinite(residual)]),
         "judged": converged and bool(check["solvers"]),
         "tolerance": check["tolerance"],

@@ -101,10 +101,14 @@ class Record:
     ]
     solution_gap: Annotated[
         Array,
-        Column("Largest joint velocity difference to each reference [rad/s]", ("N", "k")),
+        Column(
+            "Largest joint velocity difference to each reference [rad/s], where x is unique",
+            ("N", "k"),
+        ),
     ]
     objective_gap: Annotated[
-        Array, Column("Difference in the objective to each reference", ("N", "k"))
+        Array,
+        Column("Difference in the objective to each reference, relative to its terms", ("N", "k")),
     ]
     reference_residual: Annotated[
         Array, Column("Largest KKT residual of each reference's own answer", ("N", "k"))
@@ -203,6 +207,14 @@ class Record:
             "none",
             ("N", "k"),
             np.int8,
+        ),
+    ] = ABSENT
+    feasibility_gap: Annotated[
+        Array,
+        Column(
+            "Largest violation of a bound or row, relative to its terms; of length zero where only "
+            "`solution_gap` was judged",
+            ("N", "k"),
         ),
     ] = ABSENT
     frame_position: Annotated[
@@ -325,7 +337,8 @@ class Record:
             # Not np.load, which takes any file that is no archive for a pickled object.
             with Path(path).open("rb") as file:
                 stored = np.lib.npyio.NpzFile(file, allow_pickle=False)
-                arrays: dict[str, Any] = {name: stored[name] for name in COLUMNS}
+                names = COLUMNS.keys() - (LATER - set(stored.files))
+                arrays: dict[str, Any] = {name: stored[name] for name in names}
                 settings = json.loads(str(stored["settings"]))
             if not len(arrays["dq_solver"]):
                 arrays["dq_solver"] = arrays["dq"]
@@ -349,6 +362,9 @@ OPTIONAL = frozenset(
     item.name for item in fields(Record) if item.default is not MISSING and item.name in COLUMNS
 )
 """Columns that may have the length zero."""
+
+LATER = frozenset({"feasibility_gap"})
+"""Optional columns that files of an earlier version lack."""
 
 Record.__doc__ = "\n        ".join(
     [

@@ -149,10 +149,7 @@ def simulate(
         columns |= dict(zip(("distance", "nearest"), nearest, strict=True))
     return Record(
         **columns,
-        solution_gap=agreement.solution_gap,
-        objective_gap=agreement.objective_gap,
-        reference_residual=agreement.reference_residual,
-        judge=agreement.judge,
+        **agreement._asdict(),
         settings={
             **settings,
             "status": _status(recorder, controller, loop.fault),

@@ -146,12 +146,13 @@ def test_crosscheck_counts_only_what_is_believed():
         "reference_failures": 2,
         "max_solution_gap": 9e-6,
         "max_objective_gap": 1e-11,
+        "max_feasibility_gap": 1e-11,
         "max_reference_residual": 1e-3,
         "judged": True,
         "tolerance": 1e-6,
         "first_disagreement": {
-            "steps": 1, "step": 1, "time_s": pytest.approx(0.1), "solver": "osqp", "gap": 9e-6,
-            "tolerance": 1e-6,
+            "steps": 1, "step": 1, "time_s": pytest.approx(0.1), "quantity": "solution_gap",
+            "solver": "osqp", "gap": 9e-6, "tolerance": 1e-6,
         },
     }  # fmt: skip
     assert failures(record) == [
@@ -165,6 +166,25 @@ def test_crosscheck_counts_only_what_is_believed():
     assert (nobody["solver"], nobody["steps_checked"], nobody["judged"]) == ("none", 0, False)
     assert nobody["max_solution_gap"] is nobody["max_reference_residual"] is None
     assert failures(make_record(solvers=())) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("objective_gap", "the objective differs from that of osqp by 2e-06 of its terms"),
+        ("feasibility_gap", "a bound or row is violated by 2e-06 of its terms"),
+    ],
+)
+def test_each_of_the_three_gaps_is_judged(name, said):
+    record = sample(make_record(solvers=("proxqp", "osqp")), name, (4, 1), 2e-6)
+    check = compute_metrics(record)["crosscheck"]
+    assert (check["disagreements"], check[f"max_{name}"]) == (1, 2e-6)
+    assert (check["first_disagreement"]["quantity"], check["max_solution_gap"]) == (name, 1e-9)
+    assert failures(record) == [f"step 4 (t = 0.4 s): {said}, tolerance 1e-06; 1 step in all"]
+    not_believed = sample(record, "reference_residual", (4, 1), 1e-3)
+    assert compute_metrics(not_believed)["crosscheck"]["disagreements"] == 0
+    nothing = sample(record, name, (4, 1), np.nan)
+    assert "by not a number of its terms" in failures(nothing)[0]
 
 
 def test_in_continuous_mode_the_gap_is_a_lag_and_not_judged():

@@ -9,6 +9,8 @@ import pytest
 
 from helpers_records import heart_record, make_record
 from iiwa_dnn.errors import FileError, InvalidInputError
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL, Record
 
 ROWS = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(3)]
@@ -54,7 +56,7 @@ def test_round_trip(tmp_path, steps, solvers):
 
 
 def test_columns_that_a_run_lacks_have_the_length_zero(tmp_path):
-    record = make_record(settings={"rows": ROWS})
+    record = make_record(settings={"rows": ROWS}, feasibility_gap=())
     for name in OPTIONAL:
         array = getattr(record, name)
         assert len(array) == 0
@@ -79,6 +81,21 @@ def test_copies_are_not_stored(heart, tmp_path):
             lengths.append((len(stored["dq_solver"]), len(stored["rotation_desired"])))
     assert lengths == [(0, 1), (40, 41)]
     np.testing.assert_array_equal(Record.load(tmp_path / "b.npz").rotation_desired, turning)
+
+
+def test_a_file_of_before_all_three_gaps_is_read_and_judged_by_the_first(tmp_path):
+    make_record().save(tmp_path / "new.npz")
+    with np.load(tmp_path / "new.npz") as stored:
+        arrays = dict(stored)
+    del arrays["feasibility_gap"]
+    arrays["objective_gap"][3] = np.nan  # as of a proof then; in other units, and not judged
+    np.savez(tmp_path / "old.npz", **arrays)
+    loaded = Record.load(tmp_path / "old.npz")
+    assert len(loaded.feasibility_gap) == 0
+    assert failures(loaded) == []
+    check = compute_metrics(loaded)["crosscheck"]
+    assert "max_objective_gap" not in check
+    assert check["max_solution_gap"] == 1e-9
 
 
 def test_a_record_does_not_change_with_what_it_was_made_of():

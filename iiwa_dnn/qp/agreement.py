@@ -1,0 +1,155 @@
+r"""Agreement of an answer with a reference: in the solution, in the objective, and in feasibility.
+
+An answer x is judged beside the point :math:`[x_r | y | z | z_{box}]` of a reference by three gaps:
+
+(a) the largest violation of a row :math:`a^T x \le b`, over :math:`\max(w, |a|^T |x| + |b|)`;
+
+(b) the difference of the objectives, over
+:math:`\max(w, \tfrac12 |x|^T |P| |x|, |q|^T |x|)`;
+
+(c) the largest entry of :math:`x - x_r` in the range of
+
+.. math::
+
+    S = P + A^T A + G_+^T G_+ + I_+ ,
+
+all rows scaled to length 1, where + selects rows and bounds with a multiplier at the reference.
+
+w is 1, or the largest coefficient of the row or the cost where all of them are slight. In the null
+space of S the cost is linear and no row with a multiplier leaves its limit, so a step along it
+leaves the objective as it is: where it is feasible, it leads to another solution. Where there is
+only one, and each active row has a multiplier, S is definite and (c) the largest entry of x - x_r.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector
+from iiwa_dnn.qp.program import QP, places
+
+USUAL = 1e3
+"""Largest coefficient of a cost or a row, or one over it, up to which it is taken as it is."""
+
+_ACTIVE = 1e-6
+"""Multiplier above which a row or bound is held, relative to the largest one if that is above 1."""
+
+_FLAT = 1e-8
+"""Eigenvalue of S, relative to the largest, up to which x is free along its eigenvector."""
+
+_NOISE = 3.0
+"""Multiple of a reference's residual up to which it explains a gradient."""
+
+
+class Agreement(NamedTuple):
+    """Gaps between answers to N programs and k references; NaN where no reference has an answer.
+
+    Attributes:
+        solution_gap: Largest difference in x where x is unique, (N, k); of joint velocities in
+            [rad/s].
+        objective_gap: Difference in the objective, relative to its terms, (N, k).
+        feasibility_gap: Largest violation of a row or bound, relative to its terms, (N, k).
+        reference_residual: Largest KKT residual of each reference, (N, k); inf without an answer.
+        judge: 0 where the reference that was asked judged, 1 where the second one did, -1 where
+            neither has an answer that is believed, (N, k).
+
+    Of a proof, the solution gap is the bound of `Proof`, the objective gap the largest that this
+    bound allows, to first order, and the residual 0; without a bound, gap and residual are inf.
+    """
+
+    solution_gap: Matrix
+    objective_gap: Matrix
+    feasibility_gap: Matrix
+    reference_residual: Matrix
+    judge: NDArray[np.int8]
+
+    def worst_of(self, group: int) -> Agreement:
+        """Take the worst of each `group` of consecutive programs, as for the stages of a step."""
+        steps = len(self.judge) // group
+        *gaps, judge = (array.reshape(steps, group, self.judge.shape[1]) for array in self)
+        worst = np.where((judge < 0).any(axis=1), -1, judge.max(axis=1)).astype(np.int8)
+        return Agreement._make([*(gap.max(axis=1) for gap in gaps), worst])
+
+
+def stacked(programs: Matrix, sizes: Sizes) -> QPViews:
+    """View N programs, one `QP.data` a row, as the eight fields, each with a first axis of N."""
+    parts = [(programs[:, place], shape) for place, shape in places(sizes)]
+    return QPViews(*[part.reshape(len(part), *shape) for part, shape in parts])
+
+
+@np.errstate(divide="ignore", invalid="ignore")
+def units(coefficients: Matrix) -> Matrix:
+    """Return the unit of each row (..., n): its largest coefficient, and 1 of usual ones, (...).
+
+    It is rounded down to a power of two, so that nothing is rounded by a division.
+    """
+    largest = np.abs(coefficients).max(axis=-1, initial=0.0)
+    usual = (largest == 0.0) | ((largest >= 1.0 / USUAL) & (largest <= USUAL))
+    return np.where(usual, 1.0, np.exp2(np.floor(np.log2(largest))))
+
+
+def normalised(programs: Matrix, sizes: Sizes) -> Matrix:
+    """Divide the cost and the rows of N programs, one `QP.data` a row, by their `units`."""
+    n = sizes[0]
+    block = stacked(programs, sizes)
+    cost = units(programs[:, np.newaxis, : n * n + n])
+    G = units(block.G)
+    A = units(block.A)
+    bounds = np.ones((len(programs), 2 * n))
+    divisors = [cost.repeat(n * n + n, 1), G.repeat(n, 1), G, A.repeat(n, 1), A, bounds]
+    return programs / np.concatenate(divisors, axis=1)
+
+
+@np.errstate(invalid="ignore")
+def feasibility_gaps(block: QPViews, x: Matrix) -> Vector:
+    """Compute the largest violation at N points (N, n), relative to its row's terms, (N,)."""
+    eye = np.broadcast_to(np.eye(x.shape[1]), block.P.shape)
+    rows = np.concatenate([block.A, -block.A, block.G, eye, -eye], axis=1)
+    limits = np.concatenate([block.b, -block.b, block.h, block.ub, -block.lb], axis=1)
+    terms = np.einsum("kji,ki->kj", np.abs(rows), np.abs(x)) + np.abs(limits)
+    excess = np.einsum("kji,ki->kj", rows, x) - limits
+    relative = excess / np.maximum(np.minimum(units(rows), 1.0), terms)
+    return np.asarray(np.where(limits < np.inf, relative, 0.0).max(axis=1, initial=0.0))
+
+
+@np.errstate(invalid="ignore")
+def objective_gaps(block: QPViews, x: Matrix, steps: Matrix) -> Matrix:
+    """Compute the difference of the objectives at x (N, n) and at x - steps (N, k, n), (N, k).
+
+    It is relative to the objective's terms at x.
+    """
+    size = np.abs(x)
+    curved = 0.5 * np.einsum("ki,kij,kj->k", size, np.abs(block.P), size)
+    linear = (np.abs(block.q) * size).sum(axis=1)
+    coefficients = np.maximum(np.abs(block.P).max(axis=2, initial=0.0), np.abs(block.q))
+    terms = np.max([curved, linear, np.minimum(units(coefficients), 1.0)], axis=0)
+    # By the gradient halfway: subtracting two objectives would cancel.
+    halfway = x[:, np.newaxis] - 0.5 * steps
+    gradient = 0.5 * halfway @ (block.P + block.P.swapaxes(1, 2)) + block.q[:, np.newaxis]
+    return np.asarray(np.abs((gradient * steps).sum(axis=2)) / terms[:, np.newaxis])
+
+
+def determined(qp: QP, reference: Vector, residual: float, step: Vector) -> Vector:
+    """Return the part of a step (n,) away from a reference that leads to no other solution.
+
+    Args:
+        qp: The program, normalised.
+        reference: Its point by the reference, (2 n + m + p,).
+        residual: Largest KKT residual of that point; a step whose gradient it explains is none.
+        step: The step in x, (n,).
+    """
+    n, _, p = qp.sizes
+    rows = np.vstack([qp.A, qp.G, np.eye(n)])
+    length = np.linalg.norm(rows, axis=1)
+    force = length * np.abs(reference[n:])
+    held = force > _ACTIVE * max(1.0, force[p:].max())
+    held[:p] = length[:p] > 0.0
+    directions = rows[held] / length[held, np.newaxis]
+    eigenvalues, vectors = np.linalg.eigh(qp.P + directions.T @ directions)
+    along = vectors.T @ step
+    flat = eigenvalues <= _FLAT * eigenvalues[-1]
+    free = flat | (eigenvalues * np.abs(along) <= _NOISE * residual)
+    return np.asarray(step - vectors[:, free] @ along[free])
