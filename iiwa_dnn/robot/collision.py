@@ -25,8 +25,8 @@ from iiwa_dnn.files import one_line, read_toml, write_text
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.loading import robots_folder
 from iiwa_dnn.robot.obstacles import box_around
-from iiwa_dnn.robot.robot import Robot, source_of
-from iiwa_dnn.robot.shapes import read_shapes
+from iiwa_dnn.robot.robot import Robot
+from iiwa_dnn.robot.shapes import read_shapes, source_of
 
 SAMPLES = 10_000
 """Random postures in which the distances of the pairs are measured."""

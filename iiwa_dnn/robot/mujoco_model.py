@@ -20,7 +20,8 @@ import pinocchio as pin
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, MissingDependencyError, import_extra
-from iiwa_dnn.robot.robot import Robot, source_of
+from iiwa_dnn.robot.robot import Robot
+from iiwa_dnn.robot.shapes import source_of
 
 TIP_SITE = "tip"
 """Name of the site at the tip frame."""

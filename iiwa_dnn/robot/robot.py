@@ -13,12 +13,15 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.robot.arms import STARTS
+from iiwa_dnn.robot.start import best_start
 
 _LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
 """Rows of `Robot.limits`, and the arguments of `Robot.with_limits`."""
 
-_BENT = 0.15
-"""Distance of an unknown arm's start from the middle of its joints, in ranges of the joints."""
+_CANDIDATES = 200
+_MIDDLE = (0.2, 0.8)
+"""Random postures among which the start of an unknown arm is chosen, and the part of the range of
+each joint in which they are."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -222,14 +225,19 @@ class Robot:
 
         If a start is known (`iiwa_dnn.robot.arms.STARTS`), it is that one, but for joints outside
         their limits there: they start a twentieth of their range inside the nearer limit. The
-        joints of any other robot begin bent to either side in turn, 0.15 of their ranges from the
-        middle, where it may all the same be singular or in a collision.
+        start of any other robot is the best of a few random postures (`best_start`), each joint in
+        the middle of its range.
         """
         start = np.array(STARTS.get(self.name, ()))
         if start.size != self.dof:
-            start = self._inside(np.where(np.arange(self.dof) % 2, 0.5 - _BENT, 0.5 + _BENT))
+            return self._best_start.copy()
         inside = (self.q_lower < start) & (start < self.q_upper)
         return np.where(inside, start, np.clip(start, *self._inside(np.array([[0.05], [0.95]]))))
+
+    @cached_property
+    def _best_start(self) -> checks.Array:
+        ratios = np.random.default_rng(0).uniform(*_MIDDLE, (_CANDIDATES, self.dof))
+        return best_start(self, self._inside(ratios))
 
     def draw(self, random: np.random.Generator, count: int) -> checks.Array:
         """Draw joint positions inside the limits, evenly, (count, n) [rad]."""
@@ -267,10 +275,3 @@ def frame_id(model: pin.Model, name: str) -> int:
         raise NotFoundError("frame", str(name), frame_names(model))
     is_link = model.existFrame(name, pin.FrameType.BODY)
     return int(model.getFrameId(name, pin.FrameType.BODY) if is_link else model.getFrameId(name))
-
-
-def source_of(robot: Robot) -> tuple[Path, str]:
-    """Return file and text of a robot's URDF, or raise an InvalidInputError if it has no file."""
-    if robot.path is None:
-        raise InvalidInputError("robot", "must come from a URDF file", robot)
-    return robot.path, str(robot.urdf)

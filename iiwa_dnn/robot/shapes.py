@@ -1,19 +1,33 @@
 """The shapes of a robot's URDF: its collision shapes, and the meshes that it is drawn with."""
 
+from __future__ import annotations
+
 import warnings
 from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import one_line
-from iiwa_dnn.robot.robot import Robot, source_of
 from iiwa_dnn.robot.urdf import parser_messages
+
+if TYPE_CHECKING:
+    from iiwa_dnn.robot.robot import Robot
 
 Mesh = tuple[pin.GeometryObject, NDArray[np.float64], NDArray[np.int32]]
 """A shape with its corners in the frame of the joint that carries it [m], (k, 3), and triangles of
 these, (t, 3)."""
+
+
+def source_of(robot: Robot) -> tuple[Path, str]:
+    """Return file and text of a robot's URDF, or raise an InvalidInputError if it has no file."""
+    if robot.path is None:
+        raise InvalidInputError("robot", "must come from a URDF file", robot)
+    return robot.path, str(robot.urdf)
 
 
 def read_shapes(robot: Robot, kind: pin.GeometryType) -> list[pin.GeometryObject]:

@@ -32,10 +32,9 @@ def test_every_arm_starts_inside_its_limits_and_not_singular(name: str) -> None:
     robot = d.load_robot(name)
     if name in ARMS:
         np.testing.assert_array_equal(robot.start_posture(), ARMS[name].start)
-    # Of another name, or with a joint locked, its joints begin bent, where no arm is singular.
     other = dataclasses.replace(robot, name="some")
     locked = d.load_robot(name, locked=robot.joint_names[0])
-    for start, least in ((robot, 0.1), (other, 0.03), (locked, 0.0)):
+    for start, least in ((robot, 0.1), (other, 0.1), (locked, 0.01)):
         q = start.start_posture()
         assert is_inside(start, q)
         assert np.linalg.svd(d.Configuration(start, q).jacobian, compute_uv=False)[-1] >= least

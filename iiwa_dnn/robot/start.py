@@ -1,0 +1,55 @@
+"""Start postures of arms that are not known by name."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pinocchio as pin
+
+from iiwa_dnn.checks import Array
+from iiwa_dnn.robot.shapes import read_shapes
+
+if TYPE_CHECKING:
+    from iiwa_dnn.robot.robot import Robot
+
+_TESTED = 20
+"""Postures that are tested for collisions, the best ones."""
+
+
+def best_start(robot: Robot, postures: Array) -> Array:
+    """Choose the posture out of (k, n) [rad] that is farthest from singular ones, (n,).
+
+    Its measure is the least singular value of the tip's Jacobian that is not zero everywhere, with
+    the rows of rotation times the robot's reach. Of the best ones, those come first in which fewer
+    collision shapes of the robot's file meet; pairs that meet in all of them are not counted.
+
+    Source: C. A. Klein, B. E. Blaho, "Dexterity measures for the design and control of
+    kinematically redundant manipulators", Int. J. Robotics Research 6(2), 1987.
+    """
+    data = robot.model.createData()
+    reach = robot.reach if 0.0 < robot.reach < np.inf else 1.0
+    units = np.repeat([1.0, reach], 3)[:, np.newaxis]
+    at_tip = (robot.tip_id, pin.LOCAL_WORLD_ALIGNED)
+    jacobians = [pin.computeFrameJacobian(robot.model, data, q, *at_tip) for q in postures]
+    values = np.linalg.svd(units * np.reshape(jacobians, (-1, 6, robot.dof)), compute_uv=False)
+    rank = (values > 1e-6 * values.max()).sum(axis=1).max()
+    best = postures[np.argsort(-values[:, rank - 1], kind="stable")[:_TESTED]]
+    return np.array(best[_count_collisions(robot, best).argmin()])
+
+
+def _count_collisions(robot: Robot, postures: Array) -> Array:
+    """Count the pairs of collision shapes that meet in some of the postures (k, n), (k,)."""
+    geometry = pin.GeometryModel()
+    with suppress(ValueError, RuntimeError):  # no file, or a mesh is missing
+        for shape in read_shapes(robot, pin.GeometryType.COLLISION):
+            geometry.addGeometryObject(shape)
+    geometry.addAllCollisionPairs()
+    data = robot.model.createData()
+    scratch = pin.GeometryData(geometry)
+    meet = np.zeros((len(postures), len(geometry.collisionPairs)), dtype=bool)
+    for row, q in zip(meet, postures, strict=True):
+        pin.computeCollisions(robot.model, data, geometry, scratch, q, False)
+        row[:] = [result.isCollision() for result in scratch.collisionResults]
+    return np.asarray((meet & ~meet.all(axis=0)).sum(axis=1))
