@@ -256,13 +256,17 @@ class Command:
 
     @property
     def against(self) -> tuple[str, ...]:
-        """Reasons, bounds and rows that keep the command from what tasks and cost ask, in words."""
+        """Reasons, bounds and rows that keep the command from what tasks and cost ask, in words.
+
+        Relations of joints that the positions do not fulfil are among them.
+        """
         sides, rows = np.split(self.blocking, [self._layout.sizes[0]])
         if self.action is Action.NONE:
             sides, rows = self._layout.multipliers(self.row, ACTIVE)
         names = self._layout.names
         codes = names.codes(self.bounds, sides, self.past)
-        return (*self.reasons, *map(describe, in_the_way(names.settings, codes, rows)))
+        words = map(describe, in_the_way(names.settings, codes, rows))
+        return (*self.reasons, *words, *names.off(self.past[Q]))
 
     @property
     def qp(self) -> QP:

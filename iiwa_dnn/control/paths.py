@@ -17,7 +17,7 @@ from iiwa_dnn.robot.collision import unwatched_links
 from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.limits import TipSpeedLimit, largest_gain
-from iiwa_dnn.schemes.program import StepProgram
+from iiwa_dnn.schemes.program import LimitNames, StepProgram
 from iiwa_dnn.schemes.tasks import GainTask
 
 References = Reference | Mapping[str, Reference]
@@ -68,6 +68,8 @@ def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> 
     robot = program.robot
     if problem := robot.outside(start.q):
         yield f"the start posture {problem}"
+    for coupling in LimitNames(program, dt).off(start.q):
+        yield f"{coupling} at the start: they come to it within the limits"
     yield from _doubts_of_tasks(program, dt)
     if dt > SLOWEST:
         yield f"a control period of {dt:g} s is long: the arm follows each command blindly"

@@ -27,6 +27,7 @@ the sizes stay. A scheme without a task keeps its cost. A row that asks for moti
 for :math:`h' = \tau h` with the largest feasible :math:`\tau \le 1`, found as s is.
 
 Rows of joints that follow others have the weight 0: they are limits, and both programs keep them.
+Where the joints are off their relation and the way back is too quick, it is :math:`\tau` of it.
 
 Sources: O. L. Mangasarian, R. R. Meyer, "Nonlinear perturbation of linear programs", SIAM J.
 Control and Optimization 17 (1979), for the exactness of the factors; Y. Nakamura, H. Hanafusa,
@@ -78,6 +79,9 @@ Damped to rest, an arm pulled beyond its reach ends up exactly stretched: it fin
 
 FASTEST = 10.0
 """Task velocity [m/s] to which a larger one is cut in the softened program: no arm is so quick."""
+
+REACHED = 1e-9
+"""Difference of two velocities that is rounding [rad/s], or of a row's right-hand side from 0."""
 
 BLOCKING = 1e-4
 """Multiplier, relative to the largest, above which a bound or row stands in the way."""
@@ -174,8 +178,9 @@ def largest_factor(
         point: Point of the program with the factor as the last variable, (2 n + 2 + m + p,),
             overwritten.
         figures: Figures of the step's answer, (5,), as of `settled`.
-        retreats: Whether the factor is that of the negative right-hand sides h, without the task;
-            else it is the scaling factor of the task.
+        retreats: Whether the factor is that of what limits ask for, negative right-hand sides h and
+            those of joints that follow others, without the task; else it is the scaling factor of
+            the task.
 
     Returns:
         1, or `ALMOST` the factor in [0, 1]; -1 if not even 0 is feasible, or the network does not
@@ -186,7 +191,7 @@ def largest_factor(
     wider = qp_views(data, n + 1, qp.h.size, qp.b.size)
     _copy_cost(qp, wider)
     _copy_limits(qp, wider)
-    longest = _longest_asked(qp, retreats)
+    longest = _longest_asked(qp, yielding.weights, retreats)
     wider.q[n] = -1.0
     wider.ub[n] = longest
     for j in range(qp.h.size):
@@ -194,12 +199,12 @@ def largest_factor(
             wider.G[j, n] = -qp.h[j] / longest
             wider.h[j] = 0.0
     for j in range(qp.b.size):
-        if yielding.weights[j] == 0.0:
+        if yielding.weights[j] == 0.0 or not retreats:
             copied(wider.A[j], qp.A[j])
-            wider.b[j] = qp.b[j]
-        elif not retreats:
-            copied(wider.A[j], qp.A[j])
+        if (yielding.weights[j] == 0.0) == retreats:
             wider.A[j, n] = -qp.b[j] / longest
+        elif not retreats:
+            wider.b[j] = qp.b[j]
     settings = yielding.settings.copy()
     if retreats:
         settings[TOLERANCE] = max(settings[TOLERANCE], RETREAT)
@@ -210,12 +215,15 @@ def largest_factor(
 
 
 @compiled
-def _longest_asked(qp: QPViews, retreats: bool) -> float:
-    """Return the largest task velocity, or retreat, that a program asks for; 1 if there is none.
+def _longest_asked(qp: QPViews, weights: Vector, retreats: bool) -> float:
+    """Return the largest velocity that tasks, or limits, ask for; 1 if there is none.
 
     In this unit the factor's column is near one, though a retreat may be of a nanometre.
     """
-    longest = 0.0 if retreats else largest_entry(qp.b)
+    longest = 0.0
+    for j in range(qp.b.size):
+        if not retreats or weights[j] == 0.0:
+            longest = max(longest, abs(qp.b[j]))
     for j in range(qp.h.size):
         longest = max(longest, -qp.h[j]) if retreats else longest
     return longest if longest > 0.0 else 1.0
@@ -254,7 +262,7 @@ def scale_task(qp: QPViews, weights: Vector, factor: float) -> None:
 def soften_task(qp: QPViews, weights: Vector, retreat: float) -> None:
     """Turn a step's program, with weights (p,) of its rows, into the softened one.
 
-    Its tau is `retreat`.
+    Its tau is `retreat`, for rows h < 0 and those of joints that follow others.
     """
     n = qp.q.size
     shrink = FASTEST / max(FASTEST, largest_entry(qp.b))
@@ -270,6 +278,8 @@ def soften_task(qp: QPViews, weights: Vector, retreat: float) -> None:
             add_soft(qp, qp.A[j : j + 1], qp.b[j : j + 1], weights[j] * weights[j])
             qp.A[j, :] = 0.0
             qp.b[j] = 0.0
+        else:
+            qp.b[j] *= retreat
     for j in range(qp.h.size):
         if qp.h[j] < 0.0:
             qp.h[j] *= retreat
@@ -332,7 +342,7 @@ def _move_within(
     for j in range(equalities):
         if yielding.weights[j] == 0.0:
             copied(nearest.A[j], qp.A[j])
-            nearest.b[j] = qp.b[j]
+            nearest.b[j] = _rate_within(qp, j, x)
     _copy_limits(qp, nearest)
     point = np.empty(2 * n + m + equalities)
     found = settled(nearest, yielding.settings, np.zeros(3 * n + m + equalities), point, figures)
@@ -340,6 +350,21 @@ def _move_within(
     if found or (equalities > 0 and all_finite(point, 0, n)):
         copied(x, point[:n])
     return found
+
+
+@compiled
+def _rate_within(qp: QPViews, j: int, x: Vector) -> float:
+    """Return the right-hand side of equality row j; if no bound admits it, the rate of x (n,)."""
+    lowest = 0.0
+    highest = 0.0
+    for i in range(x.size):
+        if qp.A[j, i] != 0.0:
+            lowest += min(qp.A[j, i] * qp.lb[i], qp.A[j, i] * qp.ub[i])
+            highest += max(qp.A[j, i] * qp.lb[i], qp.A[j, i] * qp.ub[i])
+    rate = float(qp.b[j])
+    if not lowest - REACHED <= rate <= highest + REACHED:
+        rate = min(max(row_dot(qp.A, j, x), lowest), highest)
+    return rate
 
 
 @compiled

@@ -22,6 +22,7 @@ from iiwa_dnn.control.command import NOT_SETTLED, SOLVED, RowViews, note_command
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.relaxed import (
     MOST_SYSTEMS,
+    REACHED,
     Yielding,
     attained,
     largest_entry,
@@ -40,7 +41,7 @@ from iiwa_dnn.control.stopping import (
 )
 from iiwa_dnn.networks.integrators.base import TOLERANCE
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import row_dot
+from iiwa_dnn.qp.dense import row_dot, times
 from iiwa_dnn.qp.layout import QPViews, copied, qp_views
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
@@ -63,9 +64,6 @@ There the joints would race for next to nothing."""
 
 POSITION_GAIN = 20.0
 """Rate at which the wanted velocity falls towards a position limit [1/s]."""
-
-REACHED = 1e-9
-"""Difference of two velocities that is rounding [rad/s], or of a row's right-hand side from 0."""
 
 TOWARDS = (1.0, 0.5, 0.25, 0.125)
 """Shares of the way from the braking motion in hand to the wanted command that are tried."""
@@ -150,7 +148,7 @@ def yield_step(
             copied(qp.ub, own.ub)
     if kind == STOPPED:
         copied(views.program, data)
-        rest = _brake(own, past, yielding, views.figures, x)
+        rest = _brake(own, arrays, past, yielding, views.figures, x)
         views.point[:] = 0.0
         copied(views.point, x)
     views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
@@ -362,7 +360,7 @@ def _make_stoppable(
         _step_straight(past, yielding, wanted)
         nearest_within(limits, wanted, yielding, views.figures)
     brake = np.zeros(x.size)
-    left = _brake(limits, past, yielding, views.figures, brake)
+    left = _brake(limits, arrays, past, yielding, views.figures, brake)
     for k in range(len(TOWARDS)):
         for i in range(dof):
             x[i] = brake[i] + TOWARDS[k] * (wanted[i] - brake[i])
@@ -374,36 +372,65 @@ def _make_stoppable(
 
 
 @compiled
-def _brake(limits: QPViews, past: Matrix, yielding: Yielding, figures: Vector, dq: Vector) -> float:
+def _brake(
+    limits: QPViews,
+    arrays: ProgramArrays,
+    past: Matrix,
+    yielding: Yielding,
+    figures: Vector,
+    dq: Vector,
+) -> float:
     """Write the next command (n,) of the braking motion in hand, or of the quickest one.
 
-    It is zero without acceleration limits. The figures (5,) are those of `settled`.
+    It is zero without acceleration limits. The quickest one keeps the bounds as far as they do not
+    lead away from rest; no row asks it for motion. The figures (5,) are those of `settled`.
 
     Returns:
-        Periods that are left afterwards; 0 if the motion was not in hand.
+        Periods that are left afterwards; 0 if no motion is in hand.
     """
     dq[:] = 0.0
     if yielding.limits.size == 0:
         return 0.0
     rest: float = past[REST, 0]
-    periods = rest
+    dof = past.shape[1]
     dt = yielding.periods.dt
+    periods = rest
     if rest == 0.0:
         periods = least_periods(past[LAST], past[BEFORE], yielding.limits, dt, yielding.cubic)
-    for i in range(past.shape[1]):
-        if periods < np.inf:
-            last = past[LAST, i]
-            fastest = max(yielding.limits[2 * past.shape[1] + i], abs(last))
-            change = yielding.limits[3 * past.shape[1] + i] * dt
-            dq[i] = next_velocity(last, past[BEFORE, i], periods, yielding.cubic)
-            # Where the control period has changed, the curve has too.
-            dq[i] = min(max(dq[i], last - change), last + change)
-            dq[i] = min(max(dq[i], -fastest), fastest)
-        if rest == 0.0 or yielding.periods.vary:
-            dq[i] = min(max(dq[i], limits.lb[i]), limits.ub[i])
-    if rest == 0.0 and yielding.coupled:
-        nearest_within(limits, dq, yielding, figures)
-    return max(rest - 1.0, 0.0)
+    if periods < np.inf:
+        _slow_down(past, yielding, periods, dq)
+    if rest > 0.0 and not yielding.periods.vary:
+        return max(rest - 1.0, 0.0)
+    lb = limits.lb.copy()
+    ub = limits.ub.copy()
+    for i in range(dq.size if periods < np.inf else 0):
+        lb[i] = min(lb[i], 0.0)
+        ub[i] = max(ub[i], 0.0)
+    # Joints that follow others go on to, as they brake.
+    rates = np.zeros(limits.b.size)
+    idle = np.empty(limits.h.size)
+    idle[:] = np.inf
+    times(limits.A, dq, rates)
+    nearest_within(
+        QPViews(limits.P, limits.q, limits.G, idle, limits.A, rates, lb, ub), dq, yielding, figures
+    )
+    if rest > 0.0:
+        return max(rest - 1.0, 0.0)
+    return max(stopping_time(arrays, past, yielding, dq[:dof]), 0.0)
+
+
+@compiled
+def _slow_down(past: Matrix, yielding: Yielding, periods: float, dq: Vector) -> None:
+    """Write the next command (n,) on the straight way to rest in so many periods."""
+    dof = past.shape[1]
+    for i in range(dof):
+        last = past[LAST, i]
+        fastest = max(yielding.limits[2 * dof + i], abs(last))
+        change = yielding.limits[3 * dof + i] * yielding.periods.dt
+        dq[i] = next_velocity(last, past[BEFORE, i], periods, yielding.cubic)
+        # Where the control period has changed, the curve has too.
+        dq[i] = min(max(dq[i], last - change), last + change)
+        dq[i] = min(max(dq[i], -fastest), fastest)
 
 
 @compiled

@@ -39,6 +39,7 @@ from iiwa_dnn.schemes.parts import (
     enter_task,
 )
 from iiwa_dnn.schemes.step import Step, StepViews
+from iiwa_dnn.schemes.tasks import JointCouplingTask
 
 SchemeT = TypeVar("SchemeT", bound="Scheme")
 
@@ -217,6 +218,9 @@ _KINDS = (JERK, ACCELERATION, VELOCITY)
 
 _CLOSE = 1e-9
 """Difference of two bounds that is rounding, in units of the velocity limit."""
+
+OFF = 1e-6
+"""What a relation of joints lacks from which on it is said [rad]."""
 
 COSTS, TASKS, SOFT_TASKS, LIMITS = range(4)
 """Kinds of blocks, in the order in which they stand."""
@@ -520,8 +524,19 @@ class LimitNames:
         """Take the limits of a step program and its control period [s]."""
         self.settings = program.settings()
         self.periods = constant_periods(dt)
+        self._robot = program.robot
+        self._couplings = [task for task in program.tasks if isinstance(task, JointCouplingTask)]
         numbers = (program.rate_limits or MotionLimits()).numbers(program.robot)
         self._limits = numbers.reshape(6, -1)
+
+    def off(self, q: Vector) -> list[str]:
+        """State which relations of joints the positions q (n,) [rad] do not fulfil."""
+        found = [(task.coefficients, task.missing(self._robot, q)) for task in self._couplings]
+        return [
+            f"{' and '.join(joints)}: {missing:.3g} rad off their JointCouplingTask"
+            for joints, missing in found
+            if abs(missing) > OFF
+        ]
 
     def codes(self, bounds: Matrix, sides: NDArray[Any], past: Matrix) -> NDArray[np.int8]:
         """Give the bounds on some sides of a program's joints their codes.

@@ -504,7 +504,8 @@ class JointCouplingTask(JointTask):
 
     .. math::  c^T \dot q = \delta\,(c_0 - c^T q)
 
-    It is a limit where the tasks yield: a linkage is not pulled apart.
+    It is a limit where the tasks yield: a linkage is not pulled apart. Joints that begin off the
+    relation come to it as quickly as the other limits admit; an arm that brakes does not.
 
     Attributes:
         coefficients: c by joint name.
@@ -518,3 +519,8 @@ class JointCouplingTask(JointTask):
 
     def _relations(self) -> list[tuple[Mapping[str, float], float]]:
         return [(self.coefficients, self.offset)]
+
+    def missing(self, robot: Robot, q: Vector) -> float:
+        """Return what the relation lacks at joint positions q (n,), c_0 - c^T q [rad]."""
+        constants = self.constants(robot)
+        return float(constants[-1] - constants[1:-1] @ q)
