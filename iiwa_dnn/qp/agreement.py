@@ -52,7 +52,8 @@ class Agreement(NamedTuple):
             [rad/s].
         objective_gap: Difference in the objective, relative to its terms, (N, k).
         feasibility_gap: Largest violation of a row or bound, relative to its terms, (N, k).
-        reference_residual: Largest KKT residual of each reference, (N, k); inf without an answer.
+        reference_residual: Largest KKT residual of each reference, the one that judged or was asked
+            last, (N, k); inf without an answer.
         judge: 0 where the reference that was asked judged, 1 where the second one did, -1 where
             neither has an answer that is believed, (N, k).
 
@@ -65,6 +66,11 @@ class Agreement(NamedTuple):
     feasibility_gap: Matrix
     reference_residual: Matrix
     judge: NDArray[np.int8]
+
+    @property
+    def largest(self) -> Matrix:
+        """Largest of the three gaps, (N, k); NaN if one is."""
+        return np.asarray(np.maximum.reduce(self[:3]))
 
     def worst_of(self, group: int) -> Agreement:
         """Take the worst of each `group` of consecutive programs, as for the stages of a step."""
@@ -150,6 +156,6 @@ def determined(qp: QP, reference: Vector, residual: float, step: Vector) -> Vect
     directions = rows[held] / length[held, np.newaxis]
     eigenvalues, vectors = np.linalg.eigh(qp.P + directions.T @ directions)
     along = vectors.T @ step
-    flat = eigenvalues <= _FLAT * eigenvalues[-1]
-    free = flat | (eigenvalues * np.abs(along) <= _NOISE * residual)
+    slope = eigenvalues * np.abs(along)
+    free = (eigenvalues <= _FLAT * eigenvalues[-1]) | (slope <= _NOISE * residual)
     return np.asarray(step - vectors[:, free] @ along[free])

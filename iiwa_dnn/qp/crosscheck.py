@@ -1,9 +1,9 @@
 """Cross-check of an answer: the same program, put to an established solver, or a proof.
 
-A reference gets the program and nothing of the network's state, and is believed only where its own
-KKT residual is small. If the one that was asked has no such answer, a second one is asked, and the
-agreement says which of both judged. "proof" stands among the references for `iiwa_dnn.qp.proof`,
-which asks no other solver. `CheckPool` is the check behind a running loop.
+A reference gets the program, in units near 1, and nothing of the network's state, and is believed
+only where its own KKT residual is small. If the one that was asked has no such answer, a second one
+is asked, and the agreement says which of both judged. "proof" stands among the references for
+`iiwa_dnn.qp.proof`, which asks no other solver. `CheckPool` is the check behind a running loop.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class CrossCheck:
     Attributes:
         solvers: Names of the references: solvers that qpsolvers finds installed, and ``"proof"``;
             none switches the check off.
-        tolerance: Largest gap in x that counts as agreement [rad/s].
+        tolerance: Largest gap that counts as agreement, in x [rad/s], objective and feasibility.
         reference_tolerance: Largest KKT residual at which a reference is believed.
     """
 
@@ -155,19 +155,15 @@ class CrossCheck:
         if name == PROOF:
             return _proven(qp, point)
         n = qp.sizes[0]
-        residuals = []
-        for solver in (name, SECOND.get(name) or "proxqp"):
+        for judge, solver in enumerate((name, SECOND.get(name) or "proxqp")):
             reference, residual = _answer(solver, qp)
-            residuals.append(residual)
             if residual <= self.reference_tolerance:
-                break
-        else:
-            return np.full(n, np.nan), np.nan, residuals[0], -1
-        step = point[:n] - reference[:n]
-        gap = np.abs(step).max()
-        if gap > self.tolerance:
-            gap = np.abs(determined(qp, reference, residual, step)).max()
-        return step, float(gap), residual, len(residuals) - 1
+                step = point[:n] - reference[:n]
+                gap = np.abs(step).max()
+                if gap > self.tolerance:
+                    gap = np.abs(determined(qp, reference, residual, step)).max()
+                return step, float(gap), residual, judge
+        return np.full(n, np.nan), np.nan, residual, -1
 
 
 def references() -> list[str]:

@@ -65,8 +65,7 @@ def test_solvers_and_the_proof_agree_with_an_answer_and_with_no_other(arm, limit
         check = d.CrossCheck((name,))
         agreement = check.check_block(programs, layout.sizes, points)
         assert (agreement.reference_residual <= check.reference_tolerance).all()
-        for gap in agreement[:3]:
-            assert (gap <= check.tolerance).all()
+        assert (agreement.largest <= check.tolerance).all()
         agreement = check.check_block(programs, layout.sizes, others)
         assert not (agreement.solution_gap <= check.tolerance).any()
 
