@@ -23,7 +23,11 @@ def reference(number: int, size: float, rng: np.random.Generator) -> iiwa_dnn.Re
         iiwa_dnn.Circle(radius=size, period=period),
         iiwa_dnn.Lissajous(amplitudes=(size, size / 2, size / 3), period=period),
         iiwa_dnn.Line(offset=tuple(size * rng.standard_normal(3)), period=period),
-        iiwa_dnn.Waypoints(np.linspace(0.0, period, 5), size * rng.standard_normal((5, 3))),
+        iiwa_dnn.Waypoints(
+            np.linspace(0.0, period, 5),
+            size * rng.standard_normal((5, 3)),
+            interpolation="cubic",
+        ),
     )
     return paths[number % 5]
 

@@ -128,6 +128,12 @@ WORDS: dict[str, tuple[str, Any, str, str]] = {
         "X",
         "ratio of the path's times to those in a file [1]",
     ),
+    "smooth": (
+        "reference.noise",
+        float | None,
+        "X",
+        "standard deviation of the noise in a file's points, which is smoothed [m]",
+    ),
     "weight": (
         "scheme.weight",
         float | None,

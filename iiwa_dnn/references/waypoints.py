@@ -4,20 +4,33 @@ from __future__ import annotations
 
 import os
 import warnings
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from iiwa_dnn.checks import Array, Vector3, finite_array, one_of, positive, read_only
+from iiwa_dnn.checks import (
+    Array,
+    Vector3,
+    finite_array,
+    not_negative,
+    one_of,
+    positive,
+    read_only,
+)
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.references.base import Reference
 from iiwa_dnn.references.rotations import added, combined, scaled, turn_target
+from iiwa_dnn.references.smoothing import smoothed, smoothed_turns
+from iiwa_dnn.references.splines import Spline, spline_of_positions, spline_of_turns
 
 Ends = Literal["clamped", "closed"]
+Interpolation = Literal["limited", "cubic"]
 
 _COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
 _CLOSED_WITHIN = 1e-9  # [rad]
@@ -25,15 +38,9 @@ _CLOSED_WITHIN = 1e-9  # [rad]
 _UNIT_WITHIN = 0.01
 """Difference of a quaternion's norm from 1 that is forgiven: rounding to few digits."""
 
-_BESIDE = 1e-10
-"""Time before the start and after the end at which a path of poses rests already [s]."""
-
-_ROUNDS = 6
-"""Rounds before and after a closed path of poses, whose ends are then without effect."""
-
 
 # Constants: 1 if closed, else 0; number of pieces p; knots [s], (p + 1,); of each piece the
-# displacement's coefficients of x^3, x^2, x and 1, and those of `_fit_turns`, (p, 8, 3).
+# displacement's coefficients of x^3, x^2, x and 1, and those of the turn, (p, 8, 3).
 
 
 @compiled
@@ -91,12 +98,14 @@ def waypoints_path(t: float, constants: Array, target: Array) -> None:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Waypoints(Reference):
-    """A smooth path through points or poses: velocity and acceleration are continuous.
+    """A smooth path through points or poses, by cubic splines that stay near their rows.
 
     Positions follow `scipy.interpolate.CubicSpline`, orientations
-    `scipy.spatial.transform.RotationSpline`. Time counts from the first row and displacement from
-    the first point. Before the start and after the end the path rests at its first and last point;
-    a closed path repeats instead.
+    `scipy.spatial.transform.RotationSpline`: velocity and acceleration are continuous. Where they
+    would leave the rows, as about a pause, they have other slopes (`iiwa_dnn.references.splines`);
+    the acceleration jumps at these rows, and a warning says so. Time counts from the first row and
+    displacement from the first point. Before the start and after the end the path rests at its
+    first and last point; a closed path repeats instead.
 
     A path of points is relative: `anchored` moves its first point to a pose, whose orientation it
     keeps. A path of poses is absolute, in the robot's base frame; `anchored` moves it all the same,
@@ -109,6 +118,15 @@ class Waypoints(Reference):
             point must be the first one, and m >= 3.
         quaternions: Orientations w, x, y, z of the poses, of norm 1, shape (m, 4), or None. Either
             sign will do; neighbours are less than half a turn apart.
+        interpolation: "limited", or "cubic": the cubic splines, wherever they lead.
+        noise: Standard deviation of recorded points along each axis [m]. Above 0 the path goes
+            through smoothed rows, and a warning says what that has moved; the first and the last
+            row of a closed path are then equal up to noise.
+        turn_noise: The same of the orientations [rad]; by default as many as `noise` has metres,
+            as of an arm a metre long.
+        jumps: Numbers of the rows at which the acceleration jumps, from 0, shape (k,).
+        moved: Distances that smoothing has moved the points by [m], shape (m,).
+        turned: Angles that smoothing has turned the orientations by [rad], shape (m,).
 
     Raises:
         InvalidInputError: If a parameter is not as said above.
@@ -120,69 +138,95 @@ class Waypoints(Reference):
     points: Array
     ends: Ends = "clamped"
     quaternions: Array | None = None
+    interpolation: Interpolation = "limited"
+    noise: float = 0.0
+    turn_noise: float | None = None
+    jumps: NDArray[np.intp] = field(init=False)
+    moved: Array = field(init=False)
+    turned: Array = field(init=False)
 
     def __post_init__(self) -> None:
+        self._check()
+        knots = self.times - self.times[0]
+        is_closed = self.ends == "closed"
+        points = self.points
+        if self.noise > 0.0:
+            points = smoothed(knots, points, self.noise, is_closed)
+            self._set(moved=read_only(np.linalg.norm(points - self.points, axis=1)))
+        limited = self.interpolation == "limited"
+        moves = spline_of_positions(knots, points - points[0], is_closed, limited)
+        splines = {"m": moves}
+        turns = np.zeros_like(moves.pieces)
+        if self.quaternions is not None:
+            poses = self._poses(knots, self.quaternions)
+            base = np.concatenate([points[0], poses[0].as_matrix().ravel(), np.zeros(6)])
+            self._set(base=read_only(base))
+            splines["rad"] = spline_of_turns(knots, poses, is_closed, limited)
+            about_base = [poses[:-1].apply(own) for own in splines["rad"].pieces.swapaxes(0, 1)]
+            turns = np.stack([*about_base, (poses[:-1] * poses[0].inv()).as_rotvec()], axis=1)
+        pieces = np.concatenate([moves.pieces, turns], axis=1)
+        head = [float(is_closed), float(len(pieces))]
+        self._set(constants=np.concatenate([head, knots, pieces.ravel()]))
+        jumps = np.any([spline.jumps for spline in splines.values()], axis=0)
+        self._set(jumps=np.flatnonzero(jumps))
+        for remark in self._remarks(splines):
+            warnings.warn(remark, stacklevel=3)  # of the line that makes the path
+
+    def _check(self) -> None:
+        """Check all parameters but the quaternions; raises InvalidInputError."""
         times = finite_array("times", self.times, (-1,))
         points = finite_array("points", self.points, (len(times), 3))
         one_of("ends", self.ends, ("clamped", "closed"))
+        one_of("interpolation", self.interpolation, ("limited", "cubic"))
         if len(times) < 2:
             raise InvalidInputError("times", "at least 2 points are needed", times)
         for row in np.flatnonzero(times[1:] <= times[:-1]):
             problem = f"must increase: point {row + 2} is at {times[row + 1]:g} s"
             raise InvalidInputError("times", problem, times)
-        self._set(times=times, points=points)
-        knots, moves = self._fit_moves()
-        turns = np.zeros_like(moves)
-        if self.quaternions is not None:
-            turns = self._fit_turns(knots, self.quaternions)
-        pieces = np.concatenate([moves, turns], axis=1)
-        head = [float(self.ends == "closed"), float(len(pieces))]
-        self._set(constants=np.concatenate([head, knots, pieces.ravel()]))
+        noise = not_negative("noise", self.noise)
+        turn_noise = noise if self.turn_noise is None else self.turn_noise
+        self._set(noise=noise, turn_noise=not_negative("turn_noise", turn_noise))
+        unmoved = read_only(np.zeros(len(times)))
+        self._set(times=times, points=points, moved=unmoved, turned=unmoved)
 
-    def _fit_moves(self) -> tuple[Array, Array]:
-        """Fit the displacements; return the knots [s], (m,), and coefficients, (m - 1, 4, 3)."""
-        from scipy.interpolate import CubicSpline  # its 0.3 s are for those who use it
-
-        kind = "periodic" if self.ends == "closed" else "clamped"
-        times = self.times - self.times[0]
-        spline = CubicSpline(times, self.points - self.points[0], bc_type=kind)
-        return spline.x, spline.c.swapaxes(0, 1)
-
-    def _fit_turns(self, knots: Array, quaternions: Array) -> Array:
-        """Check the quaternions, begin at the first pose, and fit the turns.
-
-        Returns:
-            Coefficients of x^3, x^2 and x of each piece's rotation vector about the base frame's
-            axes, and the rotation vector from the first pose to the piece's, (m - 1, 4, 3).
-        """
-        from scipy.spatial.transform import Rotation, RotationSpline
+    def _poses(self, knots: Array, quaternions: Array) -> Any:
+        """Check the quaternions, and return the orientations, smoothed if there is noise."""
+        from scipy.spatial.transform import Rotation
 
         quaternions = finite_array("quaternions", quaternions, (len(knots), 4))
         norm = max(np.linalg.norm(quaternions, axis=1), key=lambda each: abs(each - 1.0))
         if abs(norm - 1.0) > _UNIT_WITHIN:
             raise InvalidInputError("quaternions", f"must have norm 1, not {norm:.3g}", quaternions)
+        self._set(quaternions=quaternions)
         turns = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
         if (turns[1:] * turns[:-1].inv()).magnitude().max() > np.pi - 1e-6:
             raise InvalidInputError("quaternions", "two neighbours are half a turn apart")
-        base = np.concatenate([self.points[0], turns[0].as_matrix().ravel(), np.zeros(6)])
-        self._set(quaternions=quaternions, base=read_only(base))
-        pieces = len(knots) - 1
-        if self.ends == "closed":
-            if (turns[-1] * turns[0].inv()).magnitude() > _CLOSED_WITHIN:
-                problem = "the last one of a closed path must be the first one"
-                raise InvalidInputError("quaternions", problem, quaternions)
-            first = _ROUNDS * pieces
-            rounds = np.arange(-_ROUNDS, _ROUNDS + 1)[:, np.newaxis]
-            times = np.append(rounds * knots[-1] + knots[:-1], (_ROUNDS + 1) * knots[-1])
-            fitted = Rotation.concatenate([*[turns[:-1]] * rounds.size, turns[:1]])
-        else:
-            first = 1
-            times = np.concatenate([[-_BESIDE], knots, [knots[-1] + _BESIDE]])
-            fitted = Rotation.concatenate([turns[:1], turns, turns[-1:]])
-        spline = RotationSpline(times, fitted).interpolator
-        own = spline.c[:3, first : first + pieces]  # about the axes of each piece's first pose
-        about_base = [turns[:-1].apply(coefficients) for coefficients in own]
-        return np.stack([*about_base, (turns[:-1] * turns[0].inv()).as_rotvec()], axis=1)
+        if self.turn_noise:
+            given = turns
+            turns = smoothed_turns(knots, given, self.turn_noise, self.ends == "closed")
+            self._set(turned=read_only((turns * given.inv()).magnitude()))
+        if self.ends == "closed" and (turns[-1] * turns[0].inv()).magnitude() > _CLOSED_WITHIN:
+            problem = "the last one of a closed path must be the first one"
+            raise InvalidInputError("quaternions", problem, quaternions)
+        return turns
+
+    def _remarks(self, splines: dict[str, Spline]) -> Iterator[str]:
+        """State what smoothing has moved, and where the acceleration jumps, by unit."""
+        for done, moved, unit in (("moved", self.moved, "mm"), ("turned", self.turned, "mrad")):
+            if moved.any():
+                usual = 1e3 * np.sqrt(np.mean(moved**2))
+                yield (
+                    f"smoothing has {done} the rows by {usual:.3g} {unit} (root of the mean "
+                    f"square) and at most {1e3 * moved.max():.3g} {unit}"
+                )
+        for unit, spline in splines.items():
+            if count := np.count_nonzero(spline.jumps):
+                first = ", ".join(f"{t:.4g}" for t in self.times[:-1][spline.jumps][:5])
+                yield (
+                    f"the acceleration jumps at {count} of {len(self.times)} rows (at {first}"
+                    f"{', ...' * (count > 5)} s): the cubic spline would leave the rows by up to "
+                    f"{spline.excursion:.2g} {unit}"
+                )
 
     @classmethod
     def from_csv(
@@ -190,6 +234,9 @@ class Waypoints(Reference):
         path: str | os.PathLike[str],
         ends: Ends = "clamped",
         stretch: float = 1.0,
+        interpolation: Interpolation = "limited",
+        noise: float = 0.0,
+        turn_noise: float | None = None,
     ) -> Waypoints:
         """Read points or poses from a CSV file in [s] and [m].
 
@@ -198,8 +245,11 @@ class Waypoints(Reference):
 
         Args:
             path: The file. Empty lines in it are skipped.
-            ends: As for :class:`Waypoints`.
+            ends: As for :class:`Waypoints`, as the last three.
             stretch: Ratio of the path's times to those of the rows.
+            interpolation: "limited" or "cubic".
+            noise: Standard deviation of the points [m].
+            turn_noise: Standard deviation of the orientations [rad].
 
         Raises:
             FileError: If the file cannot be read or is not as said above, naming the line.
@@ -208,11 +258,14 @@ class Waypoints(Reference):
         positive("stretch", stretch)
         table = _read(path)
         quaternions = table[:, 4:] if table.shape[1] > 4 else None
-        try:
-            made = cls(stretch * table[:, 0], table[:, 1:4], ends, quaternions)
-        except ValueError as error:
-            raise FileError(path, one_line(error)) from error
-        for message in made._abrupt_ends():
+        options: Any = {"interpolation": interpolation, "noise": noise, "turn_noise": turn_noise}
+        with warnings.catch_warnings(record=True) as remarks:
+            warnings.simplefilter("always")
+            try:
+                made = cls(stretch * table[:, 0], table[:, 1:4], ends, quaternions, **options)
+            except ValueError as error:
+                raise FileError(path, one_line(error)) from error
+        for message in (*(remark.message for remark in remarks), *made._abrupt_ends()):
             warnings.warn(f"{path}: {message}", stacklevel=2)
         return made
 

@@ -2,6 +2,7 @@
 
 import json
 import math
+import warnings
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -20,6 +21,17 @@ CORNERS = [[1, 2, 3], [1.2, 2, 3.1], [1.2, 2.3, 3], [1, 2, 3]]
 TURNS = Rotation.from_rotvec([[3.0, 0.2, 0], [2.8, 0.9, 0.3], [2.4, 0.2, -0.8], [3.0, 0.2, 0]])
 QUATERNIONS = TURNS.as_quat()[:, [3, 0, 1, 2]] * [[1], [-1], [1], [-1]]
 POSE = d.Target([0.4, 0.1, 0.5], Rotation.from_rotvec([2.9, 0.4, -0.2]).as_matrix())
+
+
+def waypoints(
+    ends: Any = "clamped", quaternions: Any = None, interpolation: Any = "limited"
+) -> d.Waypoints:
+    """The corners as a path, whose limited slopes are warned of."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return d.Waypoints([5, 6, 8, 9], CORNERS, ends, quaternions, interpolation)
+
+
 CLOSED = [
     d.Heart(scale=2e-3, period=7.0),
     d.Circle(radius=0.2, period=5.0, normal=(1.0, -2.0, 0.5), begin=0.0),
@@ -34,13 +46,15 @@ CLOSED = [
     ),
     d.Tilting(d.Heart(5e-3, 6.0), 0.4, (0.0, 1.0, 0.0), begin=0.0),
     d.Tilting(d.Line(), 0.4, begin=0.0),
-    d.Tilting(d.Waypoints([5, 6, 8, 9], CORNERS, "closed", QUATERNIONS), 0.2, begin=0.0),
-    d.Waypoints([5, 6, 8, 9], CORNERS, "closed"),
-    d.Waypoints([5, 6, 8, 9], CORNERS, "closed", QUATERNIONS),
+    d.Tilting(waypoints("closed", QUATERNIONS, "cubic"), 0.2, begin=0.0),
+    waypoints("closed", interpolation="cubic"),
+    waypoints("closed", QUATERNIONS, "cubic"),
+    waypoints("closed", QUATERNIONS),
 ]
 OPEN = [
-    d.Waypoints([5, 6, 8, 9], CORNERS),
-    d.Waypoints([5, 6, 8, 9], CORNERS, quaternions=QUATERNIONS),
+    waypoints(interpolation="cubic"),
+    waypoints(quaternions=QUATERNIONS, interpolation="cubic"),
+    waypoints(quaternions=QUATERNIONS),
 ]
 SOFT = [
     d.Circle(radius=0.2, period=5.0, normal=(1.0, -2.0, 0.5)),
@@ -49,7 +63,7 @@ SOFT = [
     d.Cone(0.05, 0.3),
     d.Tilting(d.Lissajous((0.1, 0.2, 0.3), (3, 2, 5), (0.3, 0, -1), 5.0, begin=0.3), 0.2),
     d.Tilting(d.Heart(5e-3, 6.0), 0.4, (0.0, 1.0, 0.0), begin=4.0),
-    d.Tilting(d.Waypoints([5, 6, 8, 9], CORNERS, "closed", QUATERNIONS), 0.2),
+    d.Tilting(waypoints("closed", QUATERNIONS), 0.2),
 ]
 """Paths with a soft start."""
 TIMES = np.random.default_rng(4).uniform(-5.0, 25.0, 300)
@@ -105,6 +119,7 @@ def test_an_anchor_moves_the_start_and_keeps_the_axes(reference: d.Reference) ->
         np.testing.assert_allclose(moved.data[12:], free.data[12:], rtol=0, atol=1e-15)
 
 
+@pytest.mark.filterwarnings("ignore:the acceleration jumps")
 @pytest.mark.parametrize("reference", CLOSED + OPEN + SOFT, ids=lambda path: type(path).__name__)
 def test_settings_say_how_to_make_it_again(reference: d.Reference) -> None:
     settings = reference.settings()
@@ -240,6 +255,9 @@ REFUSED = [
     (d.Waypoints, {"times": [0], "points": [[0, 0, 0]]}, "times"),
     (d.Waypoints, {"times": [0, 0], "points": np.eye(3)[:2]}, "times"),
     (d.Waypoints, TURNED | {"ends": "open"}, "ends"),
+    (d.Waypoints, TURNED | {"interpolation": "linear"}, "interpolation"),
+    (d.Waypoints, TURNED | {"noise": -1.0}, "noise"),
+    (d.Waypoints, TURNED | {"turn_noise": math.nan}, "turn_noise"),
     (d.Waypoints, TURNED | {"quaternions": QUATERNIONS[:3]}, "quaternions"),
     (d.Waypoints, TURNED | {"quaternions": np.eye(4)}, "quaternions"),  # half a turn apart
     (d.Waypoints, TURNED | {"quaternions": QUATERNIONS[[0, 1, 2, 2]]}, "quaternions"),

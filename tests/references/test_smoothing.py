@@ -1,0 +1,107 @@
+"""Smoothed recordings: nearer to the truth than their rows, at rest at the ends, or periodic."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from iiwa_dnn import FileError, InvalidInputError, Waypoints
+
+NOISE = 1e-3
+T = 10.0
+
+pytestmark = pytest.mark.filterwarnings("ignore:smoothing has")
+
+
+def recorded(times: NDArray[np.float64], whole: bool) -> tuple[Any, Rotation, Any, Rotation]:
+    """Points and orientations of two turns, or of three eased ones, and the same with noise."""
+    rng = np.random.default_rng(7)
+    share = times / T if whole else 3.0 * (times / T) ** 2 - 2.0 * (times / T) ** 3
+    angle = 2.0 * np.pi * share
+    points = 0.1 * np.stack([np.cos(angle), np.sin(2.0 * angle), 0.0 * angle], axis=1)
+    turns = Rotation.from_rotvec(np.stack([0.0 * angle, 0.0 * angle, angle], axis=1))
+    noisy = points + NOISE * rng.standard_normal(points.shape)
+    shaken = Rotation.from_rotvec(NOISE * rng.standard_normal(points.shape)) * turns
+    return points, turns, noisy, shaken
+
+
+def root_mean_square(values: Any) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+@pytest.mark.parametrize("ends", ["clamped", "closed"])
+@pytest.mark.parametrize("uneven", [False, True])
+def test_noise_goes_and_the_path_stays(ends: str, uneven: bool) -> None:
+    times = np.linspace(0.0, T, 301)
+    if uneven:
+        times = times + 0.3 * np.sin(2.0 * np.pi * times / T)
+    points, turns, noisy, shaken = recorded(times, whole=ends == "closed")
+    quaternions = shaken.as_quat()[:, [3, 0, 1, 2]]
+    quaternions[::3] *= -1.0
+    with pytest.warns(UserWarning, match=r"smoothing has (moved|turned) the rows by .* m") as said:
+        path = Waypoints(times, noisy, ends, quaternions, noise=NOISE)  # type: ignore[arg-type]
+    targets = path.sample(times)
+    errors = targets.position - points
+    assert root_mean_square(errors) < 0.5 * root_mean_square(noisy - points)
+    angles = (Rotation.from_matrix(targets.rotation) * turns.inv()).magnitude()
+    assert root_mean_square(angles) < 0.5 * root_mean_square((shaken * turns.inv()).magnitude())
+    inner = np.s_[:-1] if ends == "closed" else np.s_[:]
+    moved = np.linalg.norm(targets.position - noisy, axis=1)
+    np.testing.assert_allclose(path.moved[inner], moved[inner], rtol=0, atol=1e-12)
+    assert root_mean_square(moved) == pytest.approx(np.sqrt(3.0) * NOISE, rel=0.15)
+    assert root_mean_square(path.turned) == pytest.approx(np.sqrt(3.0) * NOISE, rel=0.2)
+    assert f"at most {1e3 * path.moved.max():.3g} mm" in str(said[0].message)
+    assert f"at most {1e3 * path.turned.max():.3g} mrad" in str(said[1].message)
+    t = np.linspace(0.0, T, 3001)
+    rates = np.diff(path.sample(t).data[:, 12:], axis=0) / (t[1] - t[0])
+    assert np.abs(rates).max() < 0.5  # 0.16 of the truth, some 20 of the rows
+    if ends == "clamped":
+        assert np.abs(path.sample([0.0, T - 1e-12]).data[:, 12:]).max() < 1e-8
+    else:
+        before, after = path.sample([T - 1e-9, T + 1e-9]).data
+        np.testing.assert_allclose(before, after, rtol=0, atol=1e-8)
+
+
+@pytest.mark.filterwarnings("ignore:the acceleration jumps")
+@pytest.mark.parametrize("ends", ["clamped", "closed"])
+def test_squared_distances_add_up_to_the_noise_weighted_by_time(ends: Any) -> None:
+    """Half of the rows lie in a tenth of the time, where they are four times as noisy."""
+    times = np.concatenate([np.linspace(0.0, 1.0, 150, endpoint=False), np.linspace(1.0, T, 151)])
+    points, _, noisy, _ = recorded(times, whole=ends == "closed")
+    noisy += (times < 1.0)[:, np.newaxis] * 3.0 * (noisy - points)
+    noisy[-1] = noisy[0]
+    path = Waypoints(times, noisy, ends, noise=NOISE)
+    squares = path.moved**2 / 3.0
+    weights = np.gradient(times)
+    assert (weights @ squares) / weights.sum() == pytest.approx(NOISE**2, rel=0.1)
+    assert squares.mean() > 2.0 * NOISE**2
+
+
+def test_orientations_have_a_noise_of_their_own() -> None:
+    times = np.linspace(0.0, T, 101)
+    points, _, _, shaken = recorded(times, whole=False)
+    quaternions = shaken.as_quat()[:, [3, 0, 1, 2]]
+    path = Waypoints(times, points, quaternions=quaternions, turn_noise=NOISE)
+    assert not path.moved.any()
+    assert root_mean_square(path.turned) > NOISE
+    path = Waypoints(times, points, quaternions=quaternions, noise=NOISE, turn_noise=0.0)
+    assert not path.turned.any()
+    assert Waypoints(times, points, noise=2e-3).settings()["turn_noise"] == 2e-3
+
+
+def test_a_closed_recording_has_to_close(tmp_path) -> None:
+    times = np.linspace(0.0, T, 51)
+    _, _, noisy, _ = recorded(times, whole=True)
+    noisy[-1] += 7.0 * NOISE
+    with pytest.raises(InvalidInputError, match="the last row of a closed path must be"):
+        Waypoints(times, noisy, "closed", noise=NOISE)
+    file = tmp_path / "path.csv"
+    rows = [",".join(map(repr, row)) for row in np.column_stack([times, noisy]).tolist()]
+    file.write_text("\n".join(["t,x,y,z", *rows]))
+    with pytest.raises(FileError, match="up to the noise"):
+        Waypoints.from_csv(file, "closed", noise=NOISE)
+    with pytest.warns(UserWarning, match=r"path.csv: smoothing has moved the rows by .* mm"):
+        read = Waypoints.from_csv(file, "closed", noise=2.0 * NOISE)
+    assert read.moved.max() > 0.0
