@@ -22,15 +22,16 @@ def best_start(robot: Robot, postures: Array) -> Array:
     """Choose the posture out of (k, n) [rad] that is farthest from singular ones, (n,).
 
     Its measure is the least singular value of the tip's Jacobian that is not zero everywhere, with
-    the rows of rotation times the robot's reach. Of the best ones, those come first in which fewer
-    collision shapes of the robot's file meet; pairs that meet in all of them are not counted.
+    the rows of rotation times the robot's reach, or without them if there are fewer than six
+    joints. Of the best ones, those come first in which fewer collision shapes of the robot's file
+    meet; pairs that meet in all of them are not counted.
 
     Source: C. A. Klein, B. E. Blaho, "Dexterity measures for the design and control of
     kinematically redundant manipulators", Int. J. Robotics Research 6(2), 1987.
     """
     data = robot.model.createData()
     reach = robot.reach if 0.0 < robot.reach < np.inf else 1.0
-    units = np.repeat([1.0, reach], 3)[:, np.newaxis]
+    units = np.repeat([1.0, reach if robot.dof >= 6 else 0.0], 3)[:, np.newaxis]
     at_tip = (robot.tip_id, pin.LOCAL_WORLD_ALIGNED)
     jacobians = [pin.computeFrameJacobian(robot.model, data, q, *at_tip) for q in postures]
     values = np.linalg.svd(units * np.reshape(jacobians, (-1, 6, robot.dof)), compute_uv=False)

@@ -35,9 +35,9 @@ def write_arm(path: Path, rows: list[tuple[str, str, float, float]], shapes: dic
     return str(path)
 
 
-def least(robot: d.Robot, q: np.ndarray, reach: float) -> float:
+def least(robot: d.Robot, q: np.ndarray, reach: float = 1.0, rows: int = 6) -> float:
     """Compute the least singular value of the Jacobian, its rows of rotation times a reach."""
-    jacobian = np.array(d.Configuration(robot, q).jacobian)
+    jacobian = np.array(d.Configuration(robot, q).jacobian)[:rows]
     jacobian[3:] *= reach
     return float(np.sqrt(max(0.0, np.linalg.eigvalsh(jacobian @ jacobian.T)[0])))
 
@@ -55,6 +55,21 @@ def test_an_unknown_arm_starts_far_from_singular_postures_and_from_its_limits(tm
     start = d.Configuration(robot, q)
     path = d.Circle(radius=0.1, period=6.0).anchored(start)
     assert d.failures(d.simulate(robot, d.DoubleIndicator(), path, q, dt=2e-2)) == []
+
+
+def test_with_fewer_than_six_joints_the_position_counts(tmp_path) -> None:
+    rows = [
+        ("0 0 0.1", "1 0 0", -0.8, 0.8),
+        ("0 0.1 0", "0 1 0", -1, 4),
+        ("0 0 -0.2", "0 1 0", -3, 0),
+    ]
+    tip = '<link name="foot"/><joint name="ankle" type="fixed"><parent link="l3"/>'
+    tip += '<child link="foot"/><origin xyz="0 0 -0.2"/></joint>'
+    file = Path(write_arm(tmp_path / "leg.urdf", rows, {}))
+    file.write_text(file.read_text().replace("</robot>", f"{tip}</robot>"))
+    leg = d.load_robot(file)
+    others = [least(leg, q, rows=3) for q in leg.draw(np.random.default_rng(5), 200)]
+    assert least(leg, leg.start_posture(), rows=3) > 0.9 * max(others)
 
 
 def test_an_unknown_arm_does_not_start_in_a_collision(tmp_path) -> None:
