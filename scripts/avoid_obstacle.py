@@ -18,12 +18,13 @@ START = [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]  # [rad]
 BALL = iiwa_dnn.Sphere([0.12, -0.04, 0.775], 0.07)  # without the rows the elbow goes through it
 FLOOR = iiwa_dnn.HalfSpace([0.0, 0.0, 1.0], -0.05)
 DISTANCE = 0.02  # [m]
+QUICK = iiwa_dnn.AccelerationLimits(float("inf"))  # the elbow evades at 27 rad/s^2
 
 
 def run(avoid, dt, robot):
     """Draw the heart, with or without rows that avoid collisions; returns the record."""
     heart = iiwa_dnn.Heart(scale=6.5e-3).anchored(iiwa_dnn.Configuration(robot, START))
-    scheme = iiwa_dnn.DoubleIndicator(extra_limits=(avoid,) if avoid else ())
+    scheme = iiwa_dnn.DoubleIndicator(extra_limits=(QUICK, avoid) if avoid else ())
     return iiwa_dnn.simulate(robot, scheme, heart, START, dt=dt)
 
 

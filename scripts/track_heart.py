@@ -1,8 +1,12 @@
-"""Draw the paper's heart with the KUKA LBR iiwa 7 R800, every step checked; see --help."""
+"""Draw the paper's heart with the KUKA LBR iiwa 7 R800, every step checked; see --help.
+
+As in the paper, accelerations and jerks are not limited.
+"""
 
 import sys
 
 from iiwa_dnn.app.main import main
 
 if __name__ == "__main__":
-    sys.exit(main(["track", *sys.argv[1:]]))
+    paper = ("--acceleration-limit", "none", "--jerk-limit", "none")
+    sys.exit(main(["track", *paper, *sys.argv[1:]]))

@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 from tyro.conf import Positional
 
-from iiwa_dnn import InvalidInputError, Record, Robot, failures
+from iiwa_dnn import InvalidInputError, Record, Robot, compute_metrics
 from iiwa_dnn.app.command_line import SETTINGS_FILE, shown
 from iiwa_dnn.app.track import load
 from iiwa_dnn.errors import import_extra
@@ -20,7 +20,7 @@ from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.results.pictures import obstacles_of
 from iiwa_dnn.results.plots import envelope
-from iiwa_dnn.results.report import markdown_table
+from iiwa_dnn.results.report import markdown_table, verdict
 from iiwa_dnn.robot.obstacles import outline
 from iiwa_dnn.robot.shapes import visual_shapes
 
@@ -169,8 +169,7 @@ class Replay:
         self.clock = gui.add_slider("time [s]", 0.0, end, 1e-3 * end, 0.0)
         self.marks = gui.add_html(self._bar())
         self.speed = gui.add_dropdown("speed", ("0.1", "0.5", "1", "2", "5"), initial_value="1")
-        verdict = failures(record) or ["completed within all limits"]
-        gui.add_markdown("\n".join(f"- {line}" for line in verdict))
+        gui.add_markdown("\n".join(f"- {line}" for line in verdict(compute_metrics(record))))
         self._readout = gui.add_markdown("")
         self._distances = np.linalg.norm(position_error(record), axis=1)
         self._angles = orientation_error(record)

@@ -49,6 +49,7 @@ from iiwa_dnn.results.pictures import save_pictures
 from iiwa_dnn.results.plots import CAPTIONS
 from iiwa_dnn.results.report import save_run, summary
 from iiwa_dnn.robot.mujoco_model import prepare_renderer
+from iiwa_dnn.schemes.limits import RateLimits, own_rate_limits
 from iiwa_dnn.simulation import Disturbances, IdealPlant, Push, count_steps
 from iiwa_dnn.studies.paper import JOINT_LIMIT, published
 
@@ -76,6 +77,11 @@ def cross_check(solver: str = "proxqp", tolerance: float = 1e-6) -> CrossCheck:
     return CrossCheck(CHECKS.get(str(solver), (solver,)), tolerance)
 
 
+def rate_limit(kind: type[RateLimits], limit: Any) -> RateLimits:
+    """Make a limit of a kind from a number, one number a joint, or ``"robot"`` or ``"none"``."""
+    return kind({"robot": None, "none": float("inf")}.get(str(limit), limit))
+
+
 PLANTS: Choices = {"ideal": IdealPlant, "mujoco": MujocoPlant}
 PATHS: dict[str, Callable[..., Any]] = {
     "heart": Heart,
@@ -87,8 +93,8 @@ PATHS: dict[str, Callable[..., Any]] = {
 }
 PARTS: Choices = {
     "reference.along": Circle,
-    "limits.acceleration": AccelerationLimits,
-    "limits.jerk": JerkLimits,
+    "limits.acceleration": partial(rate_limit, AccelerationLimits),
+    "limits.jerk": partial(rate_limit, JerkLimits),
     "limits.tip_speed": TipSpeedLimit,
     "limits.obstacles": CollisionAvoidance.from_toml,
     "run.check": cross_check,
@@ -166,15 +172,15 @@ WORDS: dict[str, tuple[str, Any, str, str]] = {
     ),
     "acceleration_limit": (
         "limits.acceleration",
-        float | Literal["robot"] | None,
+        float | Literal["robot", "none"] | None,
         "X",
-        "acceleration limit [rad/s^2], or robot: its own",
+        "acceleration limit [rad/s^2], or none (the robot's own)",
     ),
     "jerk_limit": (
         "limits.jerk",
-        float | Literal["robot"] | None,
+        float | Literal["robot", "none"] | None,
         "X",
-        "jerk limit [rad/s^3], or robot: its own",
+        "jerk limit [rad/s^3], or none (the robot's own)",
     ),
     "obstacles": (
         "limits.obstacles",
@@ -320,9 +326,13 @@ def export(options: Words) -> int:
     folder = claim_folder(options.out or Path("controller"), tables, options.overwrite)
     write_settings(folder, tables)
     exports.c99(controller, folder, arguments["q0"])
-    if controller.robot.name == "iiwa7" and "position" not in tables["limits"]:
+    limits = tables["limits"]
+    if controller.robot.name == "iiwa7" and "position" not in limits:
         line = "position limits of 2.5 rad are the paper's, wider than those of joints 2, 4 and 6"
         print(f"{line}; for a real arm take --joint-limit datasheet", file=sys.stderr)
+    if limits.get("acceleration") == "none":
+        line = "accelerations are not limited; for a real arm take --acceleration-limit robot"
+        print(line, file=sys.stderr)
     if not options.quiet:
         print(f"written to {folder}; to test it: make -C {folder}")
     return 0
@@ -455,7 +465,7 @@ def _made(place: str, value: Any) -> Any:
         return value
     if not isinstance(value, dict):  # of the first argument
         first = next(iter(signature(PARTS[place]).parameters))
-        value = {first: None if value == "robot" else value}
+        value = {first: value}
     return call(PARTS[place], place, value)
 
 
@@ -465,9 +475,13 @@ def load(table: Tables) -> Any:
 
 
 def bounded(sheet: Robot, table: Tables) -> tuple[Robot, list[Any]]:
-    """Return a robot with the bounds of a table [limits], by default the paper's, and its parts."""
+    """Return a robot with the bounds of a table [limits], by default the paper's, and its parts.
+
+    Where the table gives no acceleration or jerk limit, the robot's own holds.
+    """
     parts = [key.removeprefix("limits.") for key in PARTS if key.startswith("limits.")]
-    values = objects((*BOUNDS, *parts), "limits", table)
+    own = {limit.quantity: "robot" for limit in own_rate_limits(sheet)}
+    values = objects((*BOUNDS, *parts), "limits", own | table)
     bounds = {key: values[key] for key in ("lower", "upper", "velocity") if key in values}
     angle = values.get("position", JOINT_LIMIT if sheet.name == "iiwa7" else "datasheet")
     if angle != "datasheet":
@@ -475,5 +489,5 @@ def bounded(sheet: Robot, table: Tables) -> tuple[Robot, list[Any]]:
         bounds = {"lower": -upper, "upper": upper, **bounds}
     robot = sheet.with_limits(**bounds)
     speed = checks.positive("speed", values.get("speed", 1.0))
-    robot = robot.with_limits(velocity=speed * robot.dq_max)
-    return robot, [values[key] for key in parts if key in values]
+    limits = [values[key] for key in parts if key in values]
+    return robot.with_limits(velocity=speed * robot.dq_max), limits

@@ -39,9 +39,7 @@ from iiwa_dnn.qp.layout import copied
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes import (
-    AccelerationLimits,
     CollisionAvoidance,
-    JerkLimits,
     JointLimits,
     KineticEnergy,
     Limit,
@@ -49,6 +47,7 @@ from iiwa_dnn.schemes import (
     PoseTask,
     Scheme,
     Task,
+    own_rate_limits,
 )
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.limits import (
@@ -320,8 +319,7 @@ class Shield:
                 checks.not_negative("tracking_error", tracking_error),
             ]
         )
-        given = ((AccelerationLimits(), robot.ddq_max), (JerkLimits(), robot.dddq_max))
-        rates = tuple(limit for limit, most in given if np.isfinite(most).any())
+        rates = own_rate_limits(robot)
         self.motion = MotionLimits(rates).numbers(robot)
         self.limits: list[Limit] = [JointLimits(), *rates]
         if obstacles is not None:

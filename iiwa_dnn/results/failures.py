@@ -16,8 +16,9 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
     """List the reasons why a run is not a success; its exit code is then 1.
 
     A run fails if it did not complete its path, if a step was not solved, had no solution or broke
-    a limit, and, in converged mode, if a reference disagreed, gave no answer to be believed, or was
-    not asked.
+    a limit, if it went beyond one of the robot's own that its scheme does not name (`unlimited`),
+    and, in converged mode, if a reference disagreed, gave no answer to be believed, or was not
+    asked.
 
     Args:
         run: The record, or its metrics.
@@ -29,10 +30,30 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
         return failures(compute_metrics(run))
     check = run["crosscheck"]
     judged = [*_policies(run), *_unsolved(run)] if run["settings"]["mode"] == "converged" else []
-    reasons = [*_incomplete(run), *judged, *_crosscheck(check, run["steps"]), *_broken_limits(run)]
+    limits = [*unlimited(run, named=False), *_incomplete(run)]
+    reasons = [*limits, *judged, *_crosscheck(check, run["steps"]), *_broken_limits(run)]
     if not reasons and any(steps for kind, steps in check["kinds"].items() if kind != "own"):
         return [programs_checked(check)]
     return reasons
+
+
+def unlimited(metrics: Mapping[str, Any], named: bool) -> Iterator[str]:
+    """Name the accelerations and jerks that went beyond the robot's own limits, unlimited.
+
+    Args:
+        metrics: The metrics.
+        named: Whether the scheme names a limit of that kind, none or a larger one (True), or
+            nobody gave one (False).
+    """
+    units = dict(JOINT_LIMITS.values())
+    for quantity, found in metrics["beyond_robot"].items():
+        if found["named"] == named:
+            most = found["limited"]
+            was = "not limited" if most is None else f"limited to {_show(most)}"
+            yield (
+                f"{quantity} was {was}: up to {_show(found['largest'])} {units[quantity]} at "
+                f"{found['joint']}, the robot's limit is {_show(found['limit'])}; {_at(found)}"
+            )
 
 
 def programs_checked(check: Mapping[str, Any]) -> str:

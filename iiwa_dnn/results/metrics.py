@@ -77,21 +77,34 @@ def rotation_angle(rotation: Array, desired: Array) -> Array:
 
 def limits(record: Record, key: str, unlimited: float = np.inf) -> Array:
     """Return a limit of each joint out of the settings, (n,); None there stands for no limit."""
-    values = record.settings[key]
+    values = record.settings.get(key) or [None] * record.dof
     return np.array([unlimited if value is None else value for value in values], dtype=float)
 
 
-def _rate_excess(record: Record, order: int) -> Array:
-    """Compute the excess of each joint's acceleration or jerk over its limit, (N, n).
+@np.errstate(invalid="ignore")  # of commands that are not finite
+def joint_rates(record: Record, quantity: str) -> tuple[Array, float]:
+    """Compute the joints' accelerations [rad/s^2] or jerks [rad/s^3], and their rounding.
 
-    Finite differences of the commands, from rest, less the rounding that they carry on; the order
-    is 1 for the acceleration [rad/s^2], 2 for the jerk [rad/s^3].
+    Args:
+        record: The run.
+        quantity: One of `RATES`.
+
+    Returns:
+        Finite differences of the commands, from rest, (N, n), and the rounding that they carry on.
     """
+    order = 1 + list(RATES).index(quantity)
     dt = record.settings["dt"]
-    from_rest = np.vstack([np.zeros((order, record.dof)), record.dq])
-    rates = np.diff(from_rest, order, axis=0) / dt**order
-    rounding = 8.0 * np.finfo(float).eps * np.abs(record.dq).max(initial=1.0) * (2.0 / dt) ** order
-    excess: Array = np.abs(rates) - (limits(record, RATES[order - 1]) + rounding)
+    commands = record.sent if len(record.sent) else record.dq
+    from_rest = np.vstack([np.zeros((order, record.dof)), commands])
+    rounding = 8.0 * np.finfo(float).eps * np.abs(commands).max(initial=1.0) * (2.0 / dt) ** order
+    return np.diff(from_rest, order, axis=0) / dt**order, rounding
+
+
+@np.errstate(invalid="ignore")
+def _rate_excess(record: Record, quantity: str, limit: Array) -> Array:
+    """Compute the excess of the joints' accelerations or jerks over a limit (n,), (N, n)."""
+    rates, rounding = joint_rates(record, quantity)
+    excess: Array = np.abs(rates) - (limit + rounding)
     return excess
 
 
@@ -105,9 +118,32 @@ def _excesses(record: Record) -> dict[str, Array]:
         ),  # unlike max(), lets a NaN through
         "velocity_limit_violation_rad_s": np.abs(record.dq) - limits(record, "dq_max"),
     }
-    for order, (setting, name) in enumerate(zip(RATES, list(JOINT_LIMITS)[2:], strict=True), 1):
-        if setting in record.settings:
-            found[name] = _rate_excess(record, order)
+    for name, (quantity, _) in list(JOINT_LIMITS.items())[2:]:
+        limit = limits(record, RATES[quantity])
+        if np.isfinite(limit).any():
+            found[name] = _rate_excess(record, quantity, limit)
+    return found
+
+
+def beyond_robot(record: Record) -> dict[str, dict[str, Any]]:
+    """State how far accelerations and jerks went beyond the robot's own limits, by quantity.
+
+    What the scheme kept within them, and what the robot does not limit, is left out. ``limited`` is
+    the scheme's limit, None for none; ``named`` tells whether the scheme names one, or none.
+    """
+    found = {}
+    for quantity, setting in RATES.items():
+        own = limits(record, f"robot_{setting}")
+        kept = limits(record, setting)
+        excess = _rate_excess(record, quantity, np.where(own < kept, own, np.inf))
+        if worst := _worst(record, excess):
+            joint = record.settings["joints"].index(worst["joint"])
+            found[quantity] = worst | {
+                "largest": own[joint] + excess[worst["step"], joint],
+                "limit": own[joint],
+                "limited": kept[joint],
+                "named": setting in record.settings,
+            }
     return found
 
 
@@ -120,7 +156,8 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     ``mse_position_error_m2`` is the mean over the N+1 samples *and* the three axes, which is most
     likely the paper's MSE: a third of the mean squared distance. ``duration_s`` is the time
     simulated; ``settings["duration"]`` was asked for. ``violations`` says of each broken limit
-    where its excess is largest, ``unsolved`` of the answers above the tolerance which is the first,
+    where its excess is largest, ``beyond_robot`` how far a rate went that nothing kept within the
+    robot's own limit, ``unsolved`` of the answers above the tolerance which is the first,
     ``incidents`` which bounds, inequality rows and policies acted, and for how many steps. A run in
     physics also has ``physics`` (torques, settled error), one that tracks several frames ``frames``
     (largest errors of those beside the first), one that avoids collisions ``collisions`` (the
@@ -158,6 +195,7 @@ def compute_metrics(record: Record) -> dict[str, Any]:
             "active_limit_steps": _active(record).any(axis=1).sum(),
             **{name: excess.max(initial=0.0) for name, excess in excesses.items()},
             "violations": {name: _worst(record, excess) for name, excess in excesses.items()},
+            "beyond_robot": beyond_robot(record),
             "unsolved": _unsolved(record),
             "network_iterations": {
                 "mean": record.iterations.mean() if record.steps else None,

@@ -17,8 +17,15 @@ import numpy as np
 from iiwa_dnn.checks import Array
 from iiwa_dnn.files import prepare_folder, write_atomically
 from iiwa_dnn.naming import short_names
-from iiwa_dnn.results.metrics import frame_errors, limits, orientation_error, position_error
-from iiwa_dnn.results.record import Record
+from iiwa_dnn.results.metrics import (
+    beyond_robot,
+    frame_errors,
+    joint_rates,
+    limits,
+    orientation_error,
+    position_error,
+)
+from iiwa_dnn.results.record import RATES, Record
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,6 +47,8 @@ CAPTIONS = {
 _JOINTS = {
     "q": (r"$q_{{{}}}$", "Joint angle [rad]", "q_upper"),
     "dq": (r"$\dot{{q}}_{{{}}}$", "Joint velocity [rad/s]", "dq_max"),
+    "acceleration": (r"$\ddot{{q}}_{{{}}}$", "Joint acceleration [rad/s²]", "robot_ddq_max"),
+    "jerk": (r"$\dddot{{q}}_{{{}}}$", "Joint jerk [rad/s³]", "robot_dddq_max"),
     "torque": (r"$\tau_{{{}}}$", "Joint torque [N m]", "torque_max"),
 }
 _ERRORS = (
@@ -108,8 +117,8 @@ def envelope(t: Array, curve: Array, buckets: int = BUCKETS) -> tuple[Array, Arr
 def overview_figure(record: Record) -> Figure:
     """Draw path, joints, errors and kinetic index; (a)-(d) are the panels of the paper's Fig. 1.
 
-    A run in physics, one that avoids collisions and one that tracks several frames have further
-    panels.
+    A run in physics, one that avoids collisions, one that tracks several frames and one that went
+    beyond the robot's own acceleration or jerk limits have further panels.
     """
     further: dict[Panel, Array] = {
         partial(draw_joints, name="torque"): record.torque,
@@ -123,6 +132,7 @@ def overview_figure(record: Record) -> Figure:
         draw_error,
         draw_orientation_error,
         draw_kinetic_index,
+        *(partial(draw_joints, name=quantity) for quantity in beyond_robot(record)),
         *(draw for draw, column in further.items() if len(column)),
     ]
     return _draw_panels(record, panels, 2, 2.7)
@@ -165,8 +175,8 @@ def draw_path(axes: Axes, record: Record) -> None:
 def draw_joints(axes: Axes, record: Record, name: str) -> None:
     """Draw one curve a joint over time, told apart by luminance and dashes.
 
-    The name is ``"q"``, ``"dq"`` or ``"torque"``; limits near the curves have the color of their
-    joint.
+    The name is ``"q"``, ``"dq"``, ``"acceleration"``, ``"jerk"`` or ``"torque"``; limits near the
+    curves have the color of their joint.
     """
     import matplotlib
 
@@ -176,7 +186,8 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, record.dof))
     names = short_names(record.settings)
     labels = [symbol.format(name) if name.isdigit() else name for name in names]
-    for joint, curve in enumerate(getattr(record, name).T):
+    curves = joint_rates(record, name)[0] if name in RATES else getattr(record, name)
+    for joint, curve in enumerate(curves.T):
         dashes = _DASHES[joint % len(_DASHES)]
         style = {"color": colors[joint], "linestyle": dashes, "label": labels[joint]}
         _draw_curve(axes, record.t[: len(curve)], curve, **style)

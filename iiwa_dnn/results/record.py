@@ -16,7 +16,9 @@ from iiwa_dnn.files import one_line, percent, plain, write_atomically
 IntArray = NDArray[np.int64]
 CodeArray = NDArray[np.int8]
 
-RATES = ("ddq_max", "dddq_max")
+RATES = {"acceleration": "ddq_max", "jerk": "dddq_max"}
+"""Setting of the limits that a scheme names, by what is limited: None where it names none. The
+robot's own are there under the same name after ``robot_``."""
 
 
 class Column(NamedTuple):
@@ -117,6 +119,10 @@ class Record:
     torque: Annotated[
         Array,
         Column("Joint torques of a run in physics [N m], the largest of each step", ("N", "n")),
+    ] = ABSENT
+    sent: Annotated[
+        Array,
+        Column("Commands to an arm that moves in another way than they say [rad/s]", ("N", "n")),
     ] = ABSENT
     bound_multiplier: Annotated[
         Array,

@@ -14,7 +14,13 @@ from tabulate import tabulate
 
 from iiwa_dnn.files import prepare_folder, write_json, write_text
 from iiwa_dnn.naming import DONE, describe, unwatched
-from iiwa_dnn.results.failures import completed, counted, failures, programs_checked
+from iiwa_dnn.results.failures import (
+    completed,
+    counted,
+    failures,
+    programs_checked,
+    unlimited,
+)
 from iiwa_dnn.results.metrics import JOINT_LIMITS, compute_metrics
 from iiwa_dnn.results.plots import CAPTIONS, save_figures
 from iiwa_dnn.results.record import Record
@@ -93,7 +99,7 @@ def report(
     parts = [
         f"# {settings['robot']}: {counted(metrics['steps'])}, {settings['mode']}",
         "## Verdict",
-        *(f"- {line}" for line in _verdict(metrics)),
+        *(f"- {line}" for line in verdict(metrics)),
         "## Results",
         markdown_table(("quantity", "value", "unit"), rows(metrics, paper)),
         "## Settings",
@@ -118,7 +124,7 @@ def made(versions: Mapping[str, str]) -> dict[str, str]:
 
 def summary(metrics: Mapping[str, Any]) -> str:
     """Sum up a run in aligned lines of ASCII, for the terminal, the verdict first."""
-    lines = [("verdict", line) for line in _verdict(metrics)]
+    lines = [("verdict", line) for line in verdict(metrics)]
     lines += [(name, f"{value} {unit}") for name, value, unit in rows(metrics)]
     table = tabulate(lines, tablefmt="plain", disable_numparse=True)
     return re.sub(" +$", "", table, flags=re.MULTILINE).replace("²", "^2").replace("³", "^3")
@@ -164,14 +170,19 @@ def _at(metrics: Mapping[str, Any], place: str) -> Any:
     return found
 
 
-def _verdict(metrics: Mapping[str, Any]) -> list[str]:
-    """State the reasons of a failure, or the success no stronger than the check; and warn."""
+def verdict(metrics: Mapping[str, Any]) -> list[str]:
+    """State the reasons of a failure, or the success no stronger than the check; and warn.
+
+    Limits that were not to hold, and by how much the run went beyond them, come first.
+    """
     check = metrics["crosscheck"]
-    success = "completed within all limits; not judged by a reference"
+    beyond = [*unlimited(metrics, named=True)]
+    kept = "within all other limits" if beyond else "within all limits"
+    success = f"completed {kept}; not judged by a reference"
     if check["judged"]:
-        solved = f"all {counted(metrics['steps'])} solved, within all limits"
+        solved = f"all {counted(metrics['steps'])} solved, {kept}"
         success = f"{solved} and in agreement with {' or '.join(check['judged_by'])}"
-    said = failures(metrics) or [success]
+    said = beyond + (failures(metrics) or [success])
     links = (metrics["settings"].get("collisions") or {}).get("unwatched")
     return [*said, f"Beware: {unwatched(links)}."] if links else said
 

@@ -18,6 +18,7 @@ from iiwa_dnn.schemes.limits import (
     JerkLimits as JerkLimits,
     JointLimits as JointLimits,
     TipSpeedLimit as TipSpeedLimit,
+    own_rate_limits as own_rate_limits,
 )
 from iiwa_dnn.schemes.literature import (
     DoubleIndicator as DoubleIndicator,

@@ -201,11 +201,12 @@ def positive_rates(argument: str, value: ArrayLike) -> float | tuple[float, ...]
 
 
 @dataclass(frozen=True)
-class _RateLimits(Limit):
+class RateLimits(Limit):
     """A limit of each joint on a derivative of its velocity.
 
     Attributes:
-        limit: The limit, one number or one a joint, above 0; None takes the robot's.
+        limit: The limit, one number or one a joint, above 0; None takes the robot's, inf states
+            that there is none.
     """
 
     _checks: ClassVar[Checks] = {"limit": positive_rates}
@@ -229,14 +230,15 @@ class _RateLimits(Limit):
 
 
 @dataclass(frozen=True)
-class AccelerationLimits(_RateLimits):
+class AccelerationLimits(RateLimits):
     """Bounds on the change of the joint velocities from one command to the next.
 
     A joint can always stop before its position limit. Where a row of a task or another limit
     conflicts with the bounds, the task yields (`iiwa_dnn.control.policies`), the bounds never do.
 
     Attributes:
-        limit: Largest acceleration [rad/s^2], one number or (n,); None takes `Robot.ddq_max`.
+        limit: Largest acceleration [rad/s^2], one number or (n,); None takes `Robot.ddq_max`, inf
+            states that it is not limited.
     """
 
     quantity = "acceleration"
@@ -244,15 +246,25 @@ class AccelerationLimits(_RateLimits):
 
 
 @dataclass(frozen=True)
-class JerkLimits(_RateLimits):
+class JerkLimits(RateLimits):
     """Bounds on the change of the joint accelerations from one command to the next.
 
     Attributes:
-        limit: Largest jerk [rad/s^3], one number or (n,); None takes `Robot.dddq_max`.
+        limit: Largest jerk [rad/s^3], one number or (n,); None takes `Robot.dddq_max`, inf states
+            that it is not limited.
     """
 
     quantity = "jerk"
     row = 4
+
+
+def own_rate_limits(robot: Robot) -> tuple[RateLimits, ...]:
+    """Return the acceleration and jerk limits that a robot has, to hold where nobody gives others.
+
+    They are those of `Shield` and of ``iiwa-dnn track``.
+    """
+    known = (AccelerationLimits(), JerkLimits())
+    return tuple(limit for limit in known if np.isfinite(robot.limits[limit.row]).any())
 
 
 @compiled
@@ -292,7 +304,7 @@ class MotionLimits(Limit):
     """
 
     kernel = staticmethod(motion_limits)
-    limits: tuple[_RateLimits, ...] = ()
+    limits: tuple[RateLimits, ...] = ()
     couplings: tuple[JointCouplingTask, ...] = ()
 
     def constants(self, robot: Robot) -> Vector:
@@ -391,8 +403,9 @@ def merged(limits: Sequence[Limit], tasks: Sequence[Task]) -> list[Limit]:
 
     Of the tasks those count that hold joints together.
     """
-    rates = tuple(limit for limit in limits if isinstance(limit, _RateLimits))
-    others = [limit for limit in limits if not isinstance(limit, _RateLimits)]
+    named = [limit for limit in limits if isinstance(limit, RateLimits)]
+    rates = tuple(each for each in named if each.limit is None or np.isfinite(each.limit).any())
+    others = [limit for limit in limits if not isinstance(limit, RateLimits)]
     held = tuple(t for t in tasks if isinstance(t, JointCouplingTask) and t.weight is None)
     return [*others, MotionLimits(rates, held)] if rates else others
 

@@ -26,7 +26,14 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.costs import KineticEnergy
-from iiwa_dnn.schemes.limits import SHARE, MotionLimits, approach, constant_periods, merged
+from iiwa_dnn.schemes.limits import (
+    SHARE,
+    MotionLimits,
+    RateLimits,
+    approach,
+    constant_periods,
+    merged,
+)
 from iiwa_dnn.schemes.parts import (
     Cost,
     Limit,
@@ -431,7 +438,7 @@ class StepProgram:
         """Return what names in words need (`iiwa_dnn.naming.in_the_way`).
 
         ``rows`` has for each inequality row its part, its number in it from 1, and its name if any,
-        and ``bounding`` the limits without rows, as they bound.
+        and ``bounding`` the limits that bound without a kind of their own (`naming.KINDS`).
         """
         limits = self.scheme.limits
         rows: list[dict[str, object]] = []
@@ -440,7 +447,11 @@ class StepProgram:
             count = limit.row_count(self.robot)
             part: dict[str, object] = {"part": type(limit).__name__}
             rows += [part | {"row": i + 1} | (named[i] if named else {}) for i in range(count)]
-        names = [type(limit).__name__ for limit in limits if not limit.row_count(self.robot)]
+        names = [
+            type(limit).__name__
+            for limit in limits
+            if not (limit.row_count(self.robot) or isinstance(limit, RateLimits))
+        ]
         return {"rows": rows, "bounding": names}
 
 

@@ -26,6 +26,7 @@ class Outcome(NamedTuple):
         placement: Placement of the first tracked frame before the step, of the true arm, (12,).
         action: Action in place of the network's answer.
         clipped: 1 for each joint whose command was clipped, (n,); None if no command may be.
+        sent: Command to a plant that moves in another way [rad/s], (n,); None for an exact one.
         torque: Largest joint torques of the step [N m], (n,); None for a plant without motors.
         ends: Whether the run ends before this step: a policy or the plant stopped it.
     """
@@ -37,6 +38,7 @@ class Outcome(NamedTuple):
     placement: Vector
     action: Action = Action.NONE
     clipped: NDArray[np.int8] | None = None
+    sent: Vector | None = None
     torque: Vector | None = None
     ends: bool = False
 
@@ -108,7 +110,9 @@ class Loop:
             action = commands[0].action
             dq = velocity
         place = controller.placement(self.q) if self._misled else commands[0].placement
-        return self._move(dq, Outcome(commands, velocity, dq, self.q, place, action, clipped))
+        sent = None if self.plant.exact else dq
+        planned = Outcome(commands, velocity, dq, self.q, place, action, clipped, sent)
+        return self._move(dq, planned)
 
     def _ask(self, q: Vector, t: float) -> tuple[list[Command], Vector, Action]:
         """Ask for a step's commands, one a stage; return them, their mean, and the action.

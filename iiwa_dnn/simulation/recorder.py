@@ -149,8 +149,9 @@ class Recorder:
 
     def _add_incident(self, k: int, outcome: Outcome) -> None:
         """Note what did not go as planned in step k."""
-        if outcome.torque is not None:
-            self._array("torque")[k] = outcome.torque
+        for name, values in (("torque", outcome.torque), ("sent", outcome.sent)):
+            if values is not None:
+                self._array(name)[k] = values
         if outcome.clipped is not None and outcome.clipped.any():
             self._array("clipped")[k] = outcome.clipped
         if outcome.action is not Action.NONE:

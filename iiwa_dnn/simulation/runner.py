@@ -22,6 +22,7 @@ from iiwa_dnn.results.record import RATES, Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import avoidance_of
+from iiwa_dnn.schemes.limits import MotionLimits, RateLimits
 from iiwa_dnn.simulation.loop import Loop
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
 from iiwa_dnn.simulation.noise import NoiseEntry, SignalChain
@@ -189,10 +190,10 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     program = controller.program
     integrator = solver.settler if controller.mode == "converged" else solver.follower
     ends = [path.duration for path in by_frame(controller.reference, "").values()]
-    limits: dict[str, Any] = {}
-    if program.rate_limits is not None:
-        of_rates = program.rate_limits.numbers(robot).reshape(6, -1)[3:5]
-        limits |= dict(zip(RATES, of_rates, strict=False))
+    of_rates = (program.rate_limits or MotionLimits()).numbers(robot).reshape(6, -1)[3:5]
+    kept = dict(zip(RATES, of_rates, strict=True))
+    named = [each.quantity for each in controller.scheme.limits if isinstance(each, RateLimits)]
+    limits: dict[str, Any] = {RATES[quantity]: kept[quantity] for quantity in named}
     if (avoidance := avoidance_of(controller.scheme)) is not None:
         limits["collisions"] = avoidance.overview(robot)
     return {
@@ -210,6 +211,9 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         "q_lower": robot.q_lower,
         "q_upper": robot.q_upper,
         "dq_max": robot.dq_max,
+        **{
+            f"robot_{name}": own for name, own in zip(RATES.values(), robot.limits[3:], strict=True)
+        },
         **limits,
         "beyond_reach": beyond_reach(controller.reference, robot),
         "q0": start.q,

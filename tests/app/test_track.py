@@ -149,6 +149,7 @@ def test_a_path_from_a_csv_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 def test_a_run_is_repeated_bit_for_bit_by_its_settings_and_quietly(tmp_path, capsys) -> None:
     # OSQP repeats itself to the last digit, ProxQP does not.
     words = ("circle", "--noise", "0.01", "--seed", "5", "--filter-window", "4", "--check", "osqp")
+    words += ("--acceleration-limit", "none")
     track(tmp_path / "a", *words, "--weight", "0.3", "--lock", "iiwa7_joint_3")
     capsys.readouterr()
     file = tmp_path / "a" / "settings.toml"
@@ -193,6 +194,36 @@ def test_a_broken_limit_is_said_and_exits_1(quiet, tmp_path, capsys) -> None:
     assert captured.err.startswith("iiwa-dnn track: the start posture ")  # which is outside
 
 
+def test_the_robots_own_rates_hold_unless_the_words_say_none(tmp_path, capsys) -> None:
+    """A motion that a hand recorded, twice as quick, beside the limits of libfranka."""
+    t = np.linspace(0.0, 1.2, 61)
+    sideways = 0.04 * np.sin(2.0 * np.pi * t / 1.2) ** 2 * np.sin(2.0 * np.pi * t / 0.4)
+    rows = [f"{time},0,{y},0" for time, y in zip(t, sideways, strict=True)]
+    (tmp_path / "hand.csv").write_text("\n".join(["t,x,y,z", *rows]))
+    words = ("track", tmp_path / "hand.csv", "--robot", "fr3", "--stretch", "0.5", "--no-plots")
+    none = ("--acceleration-limit", "none", "--jerk-limit", "none")
+    again = ("--config", tmp_path / "beyond" / "settings.toml")
+    found = {}
+    for name, more in {"kept": (), "beyond": none, "again": again}.items():
+        code = call(*words, *more, "--check", "none", "--out", tmp_path / name)
+        record, _ = results(tmp_path / name)
+        padded = np.vstack([np.zeros((2, 7)), record["dq"]])
+        acceleration = np.abs(np.diff(padded, axis=0)).max() / 1e-3
+        jerk = np.abs(np.diff(padded, 2, axis=0)).max() / 1e-6
+        found[name] = (code, acceleration, jerk, capsys.readouterr().out.splitlines()[0])
+    code, acceleration, jerk, verdict = found["kept"]
+    assert acceleration <= 10.0
+    assert jerk <= 5000.0
+    assert code == 1
+    assert re.match(r"verdict +path completed \d", verdict)  # the path yields
+    assert found["beyond"] == found["again"]
+    code, acceleration, jerk, verdict = found["beyond"]
+    assert code == 0
+    assert acceleration > 20.0
+    said = f"acceleration was not limited: up to {acceleration:.3g} rad/s.2 at joint\\d"
+    assert re.match(f"verdict +{said}", verdict)
+
+
 BALL = """distance = 0.03
 [[obstacle]]
 shape = "sphere"
@@ -204,7 +235,7 @@ radius = 0.05
 def test_obstacles_are_kept_away_from(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "ball.toml"
     file.write_text(BALL)
-    words = ("--obstacles", file, "--dt", "5e-3", "--duration", "3")
+    words = ("--obstacles", file, "--dt", "5e-3", "--duration", "3", "--acceleration-limit", "none")
     record, metrics = track(tmp_path / "run", *words)
     assert record["distance"].min() >= 0.03
     assert "Sphere 1" in (metrics["collisions"]["first"], metrics["collisions"]["second"])
@@ -219,7 +250,8 @@ def test_the_script_from_anywhere_and_as_in_this_process(tmp_path: Path) -> None
     # No terminal, no progress bar; and any warning would be on standard error.
     assert (done.returncode, done.stderr) == (0, "")
     assert "\x1b" not in done.stdout  # piped, so without colour
-    track(tmp_path / "there", *words)
+    # Its accelerations and jerks are not limited, as the paper's.
+    track(tmp_path / "there", "--acceleration-limit", "none", "--jerk-limit", "none", *words)
     # The same seed gives the same record, bit for bit, in another process too.
     here, there = (tmp_path / name / "record.npz" for name in ("here", "there"))
     assert here.read_bytes() == there.read_bytes()

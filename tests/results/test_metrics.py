@@ -104,9 +104,9 @@ def test_acceleration_and_jerk_are_judged_where_the_scheme_limits_them():
     dq = rng.uniform(-1.0, 1.0, (10, 7))
     padded = np.vstack([np.zeros((2, 7)), dq])
     most = [np.abs(np.diff(padded, order, axis=0)).max(axis=0) / 0.1**order for order in (1, 2)]
-    free = make_record(dq=dq, settings={"ddq_max": [None] * 7, "dddq_max": [None] * 7})
-    assert compute_metrics(free)["jerk_limit_violation_rad_s3"] == 0.0
-    assert "jerk_limit_violation_rad_s3" not in compute_metrics(make_record(dq=dq))
+    for settings in ({"ddq_max": [None] * 7, "dddq_max": [None] * 7}, {}):
+        free = compute_metrics(make_record(dq=dq, settings=settings))
+        assert not {"acceleration_limit_violation_rad_s2", "jerk_limit_violation_rad_s3"} & {*free}
     at_once = make_record(dq=np.ones((10, 7)), settings={"ddq_max": [9.0] * 7})  # from rest
     assert failures(at_once)[0].startswith("joint acceleration limit broken by 1 rad/s²")
     at_limit = make_record(dq=dq, settings={"ddq_max": most[0], "dddq_max": most[1]})
@@ -115,6 +115,51 @@ def test_acceleration_and_jerk_are_judged_where_the_scheme_limits_them():
     acceleration, jerk = failures(broken)
     assert acceleration.startswith("joint acceleration limit broken by 0.5 rad/s²; joint ")
     assert jerk.startswith("joint jerk limit broken by 3 rad/s³; joint ")
+
+
+def beyond(own, **limits):
+    """Failures and `beyond_robot` of a run whose joint 3 has 5 rad/s² and 50 rad/s³, from rest."""
+    dq = np.zeros((10, 7))
+    dq[4:, 2] = 0.5
+    settings = {f"robot_{name}": [None, None, most, *[None] * 4] for name, most in own.items()}
+    limits = {name: [most] * 7 for name, most in limits.items()}
+    metrics = compute_metrics(make_record(dq=dq, settings=settings | limits))
+    return failures(metrics), metrics["beyond_robot"]
+
+
+def test_what_went_beyond_the_robots_own_limits_is_named_by_how_far():
+    rates = {"ddq_max": 2.0, "dddq_max": 60.0}
+    said = "acceleration was not limited: up to 5 rad/s² at joint 3, the robot's limit is 2; step 4"
+    reasons, found = beyond(rates)
+    assert [reason[: len(said)] for reason in reasons] == [said]
+    assert list(found) == ["acceleration"]  # the jerk is below its limit
+    assert found["acceleration"].pop("largest") == pytest.approx(5.0, rel=1e-12)
+    where = {"joint": "joint 3", "step": 4, "time_s": pytest.approx(0.4)}
+    assert found["acceleration"] == where | {"limit": 2.0, "limited": None, "named": False}
+    both = beyond({"ddq_max": 2.0, "dddq_max": 40.0})[0]
+    assert both[1].startswith("jerk was not limited: up to 50 rad/s³ at joint 3, ")
+    # A scheme that names a larger limit, or none, said so; that is no failure.
+    for limit in (None, 5.5):
+        reasons, found = beyond(rates, ddq_max=limit)
+        assert reasons == []
+        assert found["acceleration"]["named"]
+        assert found["acceleration"]["limited"] == limit
+    assert beyond({"ddq_max": None}) == ([], {})
+    assert beyond({}) == ([], {})
+    assert beyond({"ddq_max": 5.0, "dddq_max": 50.0}) == ([], {})
+    reasons, found = beyond(rates, ddq_max=1.0)  # one that is kept, or broken, is the scheme's
+    assert reasons[0].startswith("joint acceleration limit broken by 4 rad/s²")
+    assert found == {}
+
+
+def test_of_an_arm_with_masses_the_commands_are_judged():
+    sent = np.zeros((10, 7))
+    moved = sent.copy()
+    moved[5, 1] = 0.9  # a push
+    own = {"robot_ddq_max": [5.0] * 7, "ddq_max": [5.0] * 7}
+    assert failures(make_record(dq=moved, sent=sent, settings=own)) == []
+    assert failures(make_record(dq=sent, sent=moved, settings=own))
+    assert failures(make_record(dq=moved, settings=own))
 
 
 @pytest.mark.parametrize("name", ["q", "dq", "position"])

@@ -118,6 +118,18 @@ def test_a_run_has_the_panels_of_what_it_has(heart):
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("$y$ [m]", "$z$ [m]")
 
 
+def test_rates_beyond_the_robots_limits_are_drawn_beside_them():
+    dq = np.zeros((10, 7))
+    dq[4:, 2] = 0.5
+    own = {"robot_ddq_max": [2.0] * 7, "robot_dddq_max": [45.0] * 7}
+    record = make_record(dq=dq, settings=own)
+    assert labels_of(record)[6:] == ["Joint acceleration [rad/s²]", "Joint jerk [rad/s³]"]
+    assert labels_of(make_record(dq=dq, settings=own | {"dddq_max": [40.0] * 7}))[7:] == []
+    lines = axes_of(draw_joints, record, "acceleration").lines
+    np.testing.assert_allclose(lines[2].get_ydata(), [0.0] * 4 + [5.0] + [0.0] * 5, atol=1e-12)
+    assert {line.get_ydata()[0] for line in lines[7:]} == {2.0}  # near them
+
+
 def test_curves_are_told_apart_without_colour_and_by_their_joints_names(heart):
     axes = axes_of(draw_joints, heart, "q")
     joints = axes.lines[:7]

@@ -7,7 +7,7 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_records import heart_record, make_record
-from iiwa_dnn.results.report import markdown_table, report, save_run, summary
+from iiwa_dnn.results.report import markdown_table, report, save_run, summary, verdict
 from iiwa_dnn.studies.paper import published
 
 KIND = np.array([0, 0, 1, 2, 2, 2, 3, 3, 3, 4])
@@ -72,7 +72,7 @@ def test_the_summary_has_the_reports_rows_in_ascii(run):
 
 
 @pytest.mark.parametrize(
-    ("changes", "row", "verdict"),
+    ("changes", "row", "said"),
     [
         ({}, "proxqp: 10 own programs checked",
          "all 10 steps solved, within all limits and in agreement with proxqp"),
@@ -88,12 +88,32 @@ def test_the_summary_has_the_reports_rows_in_ascii(run):
          "all 1 step solved, within all limits and in agreement with proxqp"),
     ],
 )  # fmt: skip
-def test_verdicts_claim_no_more_than_was_checked(changes, row, verdict, tmp_path):
+def test_verdicts_claim_no_more_than_was_checked(changes, row, said, tmp_path):
     record = make_record(**changes)
     text = report(d.compute_metrics(record))
     assert rows_of(text)["cross-check"] == [row]
-    assert f"- {verdict}\n" in text
-    assert verdict in summary(d.compute_metrics(record))
+    assert f"- {said}\n" in text
+    assert said in summary(d.compute_metrics(record))
+
+
+def test_what_was_not_limited_comes_first_and_no_row_is_of_a_limit_that_is_not_there():
+    dq = np.zeros((10, 7))
+    dq[4:, 2] = 0.5
+    own = {"robot_ddq_max": [2.0] * 7, "robot_dddq_max": [None] * 7, "dddq_max": [None] * 7}
+    said = "acceleration was not limited: up to 5 rad/s² at joint 3, the robot's limit is 2;"
+    failed = summary(d.compute_metrics(make_record(dq=dq, settings=own))).splitlines()
+    assert re.match(rf"verdict +{said.replace('²', '.2')}", failed[0])
+    assert "within all" not in failed[1]
+    metrics = d.compute_metrics(make_record(dq=dq, settings=own | {"ddq_max": [None] * 7}))
+    first, second = verdict(metrics)
+    assert first.startswith(said)
+    assert second == "all 10 steps solved, within all other limits and in agreement with proxqp"
+    text = report(metrics)
+    assert f"- {first}\n- {second}\n" in text
+    assert {row for row in rows_of(text) if row.startswith("beyond")} == {
+        "beyond position limits",
+        "beyond velocity limits",
+    }
 
 
 def test_a_failed_run_lists_every_reason(tmp_path):

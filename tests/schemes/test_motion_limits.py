@@ -17,6 +17,7 @@ from iiwa_dnn.schemes.limits import (
     constant_periods,
     joint_bounds,
     largest_gain,
+    own_rate_limits,
     varying_periods,
 )
 from judge_limits import Breach, breaches
@@ -272,6 +273,28 @@ def test_a_jerk_limit_is_no_reason_to_refuse_a_late_step() -> None:
     first = controller.step(PAPER_Q0, 0.0)
     late = controller.step(first.next_q, 1e-3, dt=0.3)
     assert np.abs(late.dq - first.dq).max() <= 0.3 * 10.0 + 1e-12
+
+
+def test_a_limit_that_is_none_makes_the_program_without_it() -> None:
+    none = (d.AccelerationLimits(np.inf), d.JerkLimits([np.inf] * 7))
+    start = paper_start()
+    target = d.Target(start.position + [0.0, 0.1, 0.0], start.rotation)
+    programs = [
+        d.DoubleIndicator(extra_limits=limits).build_qp(start, target, 1e-3)
+        for limits in ((), none)
+    ]
+    np.testing.assert_array_equal(programs[0].data, programs[1].data)
+    assert programs[0].sizes == programs[1].sizes
+
+
+def test_a_robots_own_rates_are_those_that_it_has() -> None:
+    kinds = {"iiwa7": (d.AccelerationLimits,), "fr3": (d.AccelerationLimits, d.JerkLimits)}
+    for name, expected in kinds.items():
+        robot = d.load_robot(name)
+        assert tuple(map(type, own_rate_limits(robot))) == expected
+        rates = d.Shield(robot).motion.reshape(6, -1)[3:5]
+        np.testing.assert_array_equal(rates, [robot.ddq_max, robot.dddq_max])
+    assert own_rate_limits(d.load_robot("iiwa7").with_limits(acceleration=np.inf)) == ()
 
 
 def test_limits_are_the_robots_or_ones_own() -> None:

@@ -14,11 +14,12 @@ from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.simulation import NOISE_ENTRIES, gaussian_noise
 
+UNLIMITED = paper_robot().with_limits(acceleration=np.inf)  # white noise is beyond any limit
 OPTIONS = {
     "plain": {},
-    "noisy": {"noise": 0.01, "filter_window": 10, "seed": 3},
+    "noisy": {"noise": 0.01, "filter_window": 10, "seed": 3, "robot": UNLIMITED},
     "midpoint": {"motion": "midpoint"},
-    "rk4": {"motion": "rk4", "noise": 0.01},
+    "rk4": {"motion": "rk4", "noise": 0.01, "robot": UNLIMITED},
     "continuous": {"mode": "continuous", "dt": 1e-4, "duration": 0.01},
 }
 
@@ -134,15 +135,15 @@ def test_a_network_that_diverges_is_called_that() -> None:
     circle = d.Circle(0.05, period=1.0).anchored(paper_start())
     record = run(reference=circle, solver=solver, mode="continuous", duration=0.2)
     reasons = d.failures(record)
-    assert len(reasons) == 2  # the path, and why it ended
-    assert "the network diverged: take a smaller dt" in reasons[1]
+    assert len(reasons) == 3  # accelerations, the path, and why it ended
+    assert "the network diverged: take a smaller dt" in reasons[2]
 
 
 def test_a_joint_that_meets_its_limit_stays_inside_and_the_tip_on_its_path() -> None:
     # Without it, joint 1 would go to -2.48 rad.
     lower = np.full(7, -2.5)
     lower[0] = -2.42
-    robot = paper_robot().with_limits(lower=lower)
+    robot = UNLIMITED.with_limits(lower=lower)
     options = {"reference": heart(period=2.0), "duration": 1.0, "check": d.CrossCheck()}
     assert run(**options).q[:, 0].min() < -2.47
     record = run(robot=robot, **options)

@@ -5,7 +5,17 @@ import pytest
 
 from helpers_kinematics import dh_pose
 from helpers_physics import distance, heart_in_physics
-from iiwa_dnn import Record, failures
+from iiwa_dnn import (
+    AccelerationLimits,
+    Configuration,
+    CrossCheck,
+    DoubleIndicator,
+    Heart,
+    Record,
+    failures,
+    load_robot,
+    simulate,
+)
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
 from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
 
@@ -71,6 +81,28 @@ def test_back_within_a_second_after_the_push(disturbed):
     moved = record.position[600] - disturbed.position[600]
     assert moved @ np.array(force) > 0.0
     assert limits_are_kept(record)
+
+
+def test_a_push_is_no_command_beyond_the_acceleration_limits():
+    robot = load_robot("iiwa7")
+    push = Push((20.0, 0.0, 0.0), start=0.1, duration=0.05)
+    record = simulate(
+        robot,
+        DoubleIndicator(extra_limits=(AccelerationLimits(),)),
+        Heart().anchored(Configuration(robot, robot.start_posture())),
+        robot.start_posture(),
+        dt=1e-3,
+        duration=0.2,
+        plant=MujocoPlant(Disturbances(push=push)),
+        check=CrossCheck(()),
+    )
+    moved, sent = (
+        np.abs(np.diff(np.vstack([np.zeros(7), velocities]), axis=0)) / 1e-3
+        for velocities in (record.dq, record.sent)
+    )
+    assert (moved > robot.ddq_max).any()
+    assert (sent <= robot.ddq_max).all()
+    assert failures(record) == []
 
 
 def test_a_state_that_is_not_a_number_ends_the_run(monkeypatch):
