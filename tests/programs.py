@@ -134,6 +134,29 @@ def degenerate(rng: np.random.Generator) -> QP:
     return QP(P, q, G, G @ x + slack, A, A @ x, -np.ones(n), np.ones(n))
 
 
+def with_point(rng: np.random.Generator, flat: bool = False) -> tuple[QP, Vector]:
+    """A program of 2 to 12 variables and its KKT point [x | y | z | z_box]; if flat, a linear one.
+
+    Up to n constraints are active, with multipliers between 0.1 and 2.
+    """
+    n = int(rng.integers(2, 13))
+    p = int(rng.integers(0, n // 2 + 1))
+    m = int(rng.integers(0, 2 * n + 1))
+    P = np.zeros((n, n)) if flat else _positive_definite(rng, n, 1e2 ** rng.uniform())
+    x = rng.standard_normal(n)
+    rows = rng.standard_normal((p + m, n))
+    multipliers = np.zeros(m + n)
+    active = rng.permutation(m + n)[: n - p]
+    multipliers[active] = rng.uniform(0.1, 2.0, active.size)
+    slack = np.where(multipliers > 0.0, 0.0, 0.1 + rng.exponential(size=m + n))
+    y = rng.standard_normal(p)
+    z, z_box = np.split(multipliers, [m])
+    q = -(P @ x + rows.T @ np.concatenate([y, z]) + z_box)
+    h = rows[p:] @ x + slack[:m]
+    qp = QP(P, q, rows[p:], h, rows[:p], rows[:p] @ x, x - 1.0, x + slack[m:])
+    return qp, np.concatenate([x, y, z, z_box])
+
+
 def badly_scaled(rng: np.random.Generator, kind: str) -> QP:
     """A solvable program of one of the kinds in `SCALINGS`, 5 to 29 variables."""
     rows, multipliers, cost = SCALINGS[kind]
@@ -148,6 +171,20 @@ def badly_scaled(rng: np.random.Generator, kind: str) -> QP:
     b = A @ x
     e, f = (10.0 ** (rows * rng.uniform(-6.0, 6.0, size)) for size in (n, n // 3))
     return QP(cost * P, cost * q, e[:, None] * G, e * h, f[:, None] * A, f * b)
+
+
+def in_other_units(
+    qp: QP, point: Vector, units: Vector, rows: Vector, cost: float
+) -> tuple[QP, Vector]:
+    """The same program of x / units (n,), its rows [A; G] and its cost times factors; its point."""
+    p = qp.b.size
+    A = np.outer(rows[:p], units) * qp.A
+    G = np.outer(rows[p:], units) * qp.G
+    P = cost * np.outer(units, units) * qp.P
+    scaled = QP(P, cost * units * qp.q, G, rows[p:] * qp.h, A, rows[:p] * qp.b,
+                qp.lb / units, qp.ub / units)  # fmt: skip
+    of_point = np.concatenate([1.0 / units, cost / rows, cost * units])
+    return scaled, of_point * point
 
 
 def _positive_definite(rng: np.random.Generator, n: int, condition: float) -> Matrix:

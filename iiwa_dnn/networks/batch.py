@@ -7,7 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.problems import solve_cost_of_any_size
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.layout import Matrix
 from iiwa_dnn.qp.program import FIELDS, QP, real_array
@@ -96,4 +95,4 @@ def _solve(qp: QP, tol: float) -> Solution:
         qp.check_numbers()
     except InvalidInputError:
         qp = QP.from_data(np.nan * qp.data, qp.sizes)
-    return solve_cost_of_any_size(DNNSolver(tol=tol), qp)
+    return DNNSolver(tol=tol).solve(qp)

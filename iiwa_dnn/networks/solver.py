@@ -1,38 +1,35 @@
 """The dynamic neural network as a solver of quadratic programs."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network, enter_rates
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
-from iiwa_dnn.networks.integrators.base import CompiledAnswer, Settled, enter_answer
+from iiwa_dnn.networks.integrators.base import CompiledAnswer, enter_answer
 from iiwa_dnn.networks.integrators.explicit import follow
-from iiwa_dnn.networks.integrators.implicit import settle, settle_program
-from iiwa_dnn.networks.integrators.scaling import settle_scaled, settle_steep
+from iiwa_dnn.networks.integrators.implicit import settle
+from iiwa_dnn.networks.integrators.scaling import (
+    Scaling,
+    balanced,
+    is_ordinary,
+)
 from iiwa_dnn.networks.projection import ProjectionNetwork, is_projection
 from iiwa_dnn.qp.certificates import find_certificate
 from iiwa_dnn.qp.dense import is_convex
-from iiwa_dnn.qp.layout import Sizes, Vector, check_size, data_size
+from iiwa_dnn.qp.layout import Sizes, Triple, Vector, check_size, data_size
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.qp.solution import Solution, Status
 
 SHARPENED = 1e-14
 SHARPENING = 20
-"""Tolerance of `DNNSolver.sharpen`, and the linear systems of each of its two rounds."""
-
-
-@compiled
-def is_answer(data: Vector, n: int, primal: float, dual: float, gap: float, tol: float) -> bool:
-    """Check that residuals are `within` a tolerance and the cost of `QP.data` is convex."""
-    return within(primal, dual, gap, tol) and is_convex(
-        data[: n * n].reshape(n, n), np.empty((n, n))
-    )
+STEEP = 1e5
+"""Tolerance of `DNNSolver.sharpen`, the linear systems of each of its two rounds, and the largest
+entry of the cost in the first of them."""
 
 
 @dataclass(frozen=True)
@@ -48,17 +45,21 @@ class DNNSolver:
         tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
         settler: Integrator of `solve`, which runs until the residuals are below `tol`.
         follower: Integrator of `advance`, which runs for a given time.
+        eps_rel: Tolerance on each entry of a residual, relative to the sum of its absolute terms;
+            rounding passes in any case (`iiwa_dnn.qp.residuals`).
     """
 
     network: Network = field(default_factory=ProjectionNetwork)
     tol: float = 1e-9
     settler: ImplicitEuler = field(default_factory=ImplicitEuler)
     follower: Integrator = field(default_factory=ExplicitEuler)
+    eps_rel: float = 0.0
     _warm: dict[Sizes, Vector] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the settings; raises InvalidInputError naming the argument."""
         checks.positive("tol", self.tol)
+        checks.not_negative("eps_rel", self.eps_rel)
         checks.instance("network", self.network, Network)
         checks.instance("settler", self.settler, ImplicitEuler)
 
@@ -121,38 +122,82 @@ class DNNSolver:
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and judge the point it has reached.
 
-        Where it does not settle and no certificate is found, it starts once more, from zero, in
-        coordinates in which nothing of the program stands out.
+        If it does not settle and no certificate is found, it starts once more, from zero, in units
+        in which nothing of the program stands out, and goes on in those of the program. If the
+        largest entry of the cost or of a row is below 1e-3 or above 1e3, it begins with the former.
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).
 
         Returns:
-            The solution; `found` only if every residual is at most `tol` and P is convex.
+            The solution; `found` only if P is convex and `QP.accepts` the point. Its iterations are
+            the linear systems of all attempts, at most those of the settler.
         """
+        plan = [False, True, False] if is_projection(self.network) else [False]
+        if not is_ordinary(checks.instance("qp", qp, QP).data, *qp.sizes):
+            qp = QP(*qp.views)  # P becomes symmetric
+            plan = plan[1:] or plan
         state = self._take(qp)
-        n, m, p = qp.sizes
-        point = np.empty(2 * n + m + p)
-        settled = self.settler.settle(self.network, qp, state, point, self.tol)
-        status = self._status(qp, settled)
-        certificate = None
-        if status is Status.NOT_SETTLED:
-            status, certificate = find_certificate(qp, point)
-        if status is Status.NOT_SETTLED and is_projection(self.network):
-            left = self.settler.max_steps - settled[0]
-            settled = settle_scaled(qp, state, point, self.tol, left, settled)
-            status = self._status(qp, settled)
+        taken = 0
+        time = 0.0
+        for is_scaled in plan:
+            if is_scaled and taken > 0:
+                state[:] = 0.0
+            scaling = balanced(qp) if is_scaled else None
+            left = self.settler.max_steps - taken
+            solution = self._attempt(qp, scaling, state, self.tol, left)
+            taken += solution.iterations
+            time += solution.network_time
+            again = solution.status in (Status.NOT_SETTLED, Status.NOT_FINITE)
+            if not again or taken >= self.settler.max_steps:
+                break
         # Without a solution the state is not kept: the multipliers grow without bound then, and
         # would spoil every later call.
-        if status is Status.SOLVED:
+        if solution.found:
             self._keep(qp.sizes, state)
+        if taken > solution.iterations:
+            solution = solution._replace(iterations=taken, network_time=time)
+        return solution
+
+    def _attempt(
+        self, qp: QP, scaling: Scaling | None, state: Vector, tol: float, budget: int
+    ) -> Solution:
+        """Settle the network, and judge the point that it reaches.
+
+        Args:
+            qp: The program.
+            scaling: The program in other units, in which the network settles; None: in its own.
+            state: State of the program as it is, (size,), advanced.
+            tol: Tolerance that ends the steps, in the program's units.
+            budget: Largest number of linear systems.
+        """
+        n, m, p = qp.sizes
+        point = np.empty(2 * n + m + p)
+        settler = self.settler
+        if budget < settler.max_steps:
+            settler = replace(settler, max_steps=budget)
+        if scaling is None:
+            settled = settler.settle(self.network, qp, state, point, tol)
+            find = partial(find_certificate, qp, point)
+        else:
+            state /= scaling.of_state
+            tol *= scaling.of_tolerance
+            settled = settler.settle(self.network, scaling.qp, state, point, tol)
+            find = partial(scaling.find_certificate, qp, point.copy())
+            state *= scaling.of_state
+            point *= scaling.of_point
+            settled = *settled[:2], *qp.residuals(point)
+        status = self._status(qp, point, settled[2:])
+        certificate = None
+        if status is Status.NOT_SETTLED:
+            status, certificate = find()
         return Solution(point, qp.sizes, status, *settled, certificate)
 
-    def _status(self, qp: QP, settled: Settled) -> Status:
+    def _status(self, qp: QP, point: Vector, residuals: Triple) -> Status:
         """Judge a point by its residuals, and the cost by a Cholesky factor."""
-        if is_answer(qp.data, qp.sizes[0], *settled[2:], self.tol):
+        if qp.accepts(point, self.tol, self.eps_rel):
             return Status.SOLVED
-        if not math.isfinite(sum(settled[2:])):
+        if not math.isfinite(sum(residuals)):
             return Status.NOT_FINITE
         return Status.NOT_SETTLED if is_convex(qp.P, np.empty_like(qp.P)) else Status.NOT_CONVEX
 
@@ -172,19 +217,17 @@ class DNNSolver:
         state = self._warm.get(qp.sizes)
         if state is None or not solution.found or not is_projection(self.network):
             return solution
-        for settle_on in (settle_steep, settle_program):
+        for scaling in (balanced(qp, STEEP), None):
             new = state.copy()
-            point = np.empty_like(solution.point)
-            settled = settle_on(qp, new, point, SHARPENED, SHARPENING)
-            if max(settled[2:]) < solution.residuals.largest:
+            left = min(SHARPENING, self.settler.max_steps - solution.iterations)
+            if left < 1:
+                break
+            sharper = self._attempt(qp, scaling, new, SHARPENED, left)
+            if sharper.found and sharper.residuals.largest < solution.residuals.largest:
                 state = new
-                solution = Solution(
-                    point,
-                    qp.sizes,
-                    solution.status,
-                    solution.iterations + settled[0],
-                    solution.network_time + settled[1],
-                    *settled[2:],
+                solution = sharper._replace(
+                    iterations=solution.iterations + sharper.iterations,
+                    network_time=solution.network_time + sharper.network_time,
                 )
         self._keep(qp.sizes, state)
         return solution
@@ -223,7 +266,7 @@ class DNNSolver:
     def _take(self, qp: QP) -> Vector:
         """Take the warm state, or make one; nobody else has it until it is kept."""
         state = self._warm.pop(checks.instance("qp", qp, QP).sizes, None)
-        if state is None:
+        if state is None or not np.isfinite(state).all():
             state = np.zeros(checks.integer("state_size", self.network.state_size(qp), 0))
             if not is_projection(self.network):
                 check_size(

@@ -18,12 +18,15 @@ least :math:`-q^T d` over the sum of their absolute values.
 
 So a certificate has a radius, within which there is no solution. A radius of at least `RADIUS` is
 worth saying, whatever the tolerance of the solver; an infinite one proves that there is none.
-Rounding, underflow included, is counted against the certificate throughout.
+A product of a row and a vector is rounded once (T. J. Dekker, "A floating-point technique for
+extending the available precision", Numer. Math. 18, 1971), so that a residual that is zero is zero;
+rounding, underflow included, is counted against the certificate throughout.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp.layout import Matrix, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.solution import Status
@@ -31,16 +34,25 @@ from iiwa_dnn.qp.solution import Status
 RADIUS = 1e8
 """Radius from which on a certificate is claimed."""
 
-_LIMITS = np.finfo(float)
+_EPS = 2.0**-52
+_TINY = 2.0**-900
+"""Much more than underflow takes from a term."""
 _SLIGHT = 1e-5
 """Fraction of the largest entry below which a row takes no part in a polish."""
+_MULTIPLES = np.arange(1.0, 61.0)
+"""Multiples of the least entry that are tried as denominator of a vector of simple ratios."""
+_UNDERFLOW = 1e-270
+"""Absolute term of a product below which digits may be lost to underflow."""
+_SPLIT = 2.0**27 + 1.0
+"""Factor that splits a number into two halves of its digits."""
 
 
 def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
     """Look for a proof that there is no solution near, where a network has diverged.
 
     Its multipliers grow along Farkas multipliers, or x along a direction of recession. Least
-    squares on the rows that take part removes what is left of the residuals.
+    squares on the rows that take part removes what is left of the residuals, and where the entries
+    have simple ratios, they are whole numbers.
 
     Args:
         qp: The program.
@@ -54,18 +66,21 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
     n, m, p = qp.sizes
     limited = np.isfinite(np.concatenate([qp.b, qp.h]))
     multipliers = _scaled(np.where(limited, point[n : n + p + m], 0.0))
+    polished = _polished_multipliers(qp, multipliers)
     multipliers = max(
-        (multipliers, _polished_multipliers(qp, multipliers)),
+        (multipliers, polished, _whole(polished)),
         key=lambda vector: infeasibility_radius(qp, vector),
     )
-    carried, w = _carried(qp, multipliers)
+    w = np.vstack([qp.A, qp.G]).T @ multipliers
+    carried = _is_carried(qp, w)
     direction = _scaled(point[:n])
     direction = np.where(_towards_bound(qp, direction), 0.0, direction)
+    polished = _polished_direction(qp, direction)
     direction = max(
-        (direction, _polished_direction(qp, direction)),
+        (direction, polished, _whole(polished)),
         key=lambda vector: unboundedness_radius(qp, vector),
     )
-    for certificate in (np.concatenate([multipliers, np.where(carried, -w, 0.0)]), direction):
+    for certificate in (np.concatenate([multipliers, np.where(carried, 0.0 - w, 0.0)]), direction):
         status = certified(qp, certificate)
         if status is not Status.NOT_SETTLED:
             return status, certificate
@@ -109,8 +124,8 @@ def infeasibility_radius(qp: QP, multipliers: Vector) -> float:
     finite = np.isfinite(multipliers).all() and np.isfinite(limits[used]).all()
     if not finite or (multipliers[p:] < 0.0).any():
         return 0.0
-    carried, w = _carried(qp, multipliers)
-    rounding = _rounding(np.vstack([qp.A, qp.G]).T, multipliers)
+    w, rounding = _products(np.vstack([qp.A, qp.G]).T, multipliers)
+    carried = _is_carried(qp, w)
     taking_part = carried & (w != 0.0)
     bounds = np.where(w > 0.0, qp.lb, qp.ub)[taking_part]
     reach = np.maximum(np.abs(qp.lb), np.abs(qp.ub))
@@ -132,35 +147,64 @@ def unboundedness_radius(qp: QP, direction: Vector) -> float:
     if not np.isfinite(direction).all():
         return 0.0
     # Twice the symmetric part: of the smallest numbers halves would be rounded.
-    rows = np.vstack([qp.P + qp.P.T, qp.A, qp.G[np.isfinite(qp.h)]])
-    wrong = rows @ direction
-    first = qp.q.size + qp.b.size
+    curved, of_cost = _products(np.hstack([qp.P, qp.P.T]), np.tile(direction, 2))
+    along, of_rows = _products(np.vstack([qp.A, qp.G[np.isfinite(qp.h)]]), direction)
     # Below zero, an inequality's row is no residual.
-    wrong[:first] = np.abs(wrong[:first])
-    wrong = np.maximum(wrong + _rounding(rows, direction), 0.0)
-    wrong[: qp.q.size] *= 0.5
+    along[: qp.b.size] = np.abs(along[: qp.b.size])
+    wrong = 0.5 * (np.abs(curved) + of_cost).sum() + np.maximum(along + of_rows, 0.0).sum()
     outside = np.abs(direction[_towards_bound(qp, direction)]).sum()
-    return _radius(qp.q, direction, float(wrong.sum() + outside))
+    return _radius(qp.q, direction, float(wrong + outside))
 
 
 def _radius(factors: Vector, weights: Vector, residual: float) -> float:
     """Divide minus a sum of products, less its rounding, by the residual; 0 if it has none."""
-    value = -float(factors @ weights + _rounding(factors, weights))
+    total, rounding = _products(factors[np.newaxis], weights)
+    value = -float(total[0] + rounding[0])
     if not value > 0.0:
         return 0.0
     return value / residual if residual != 0.0 else np.inf
 
 
-def _rounding(rows: Matrix, vector: Vector) -> Vector:
-    """Bound the rounding of the product of rows (k, n) and a vector (n,); terms of 0 have none."""
-    terms = (rows != 0.0) @ (vector != 0.0).astype(float)
-    return np.asarray(terms * (_LIMITS.eps * (np.abs(rows) @ np.abs(vector)) + _LIMITS.tiny))
+def _products(rows: Matrix, vector: Vector) -> Matrix:
+    """Compute the product of rows (k, n) and a vector (n,), and bound its rounding, (2, k)."""
+    result = np.empty((2, len(rows)))
+    dot_twice(np.ascontiguousarray(rows), vector, result)
+    return result
 
 
-def _carried(qp: QP, multipliers: Vector) -> tuple[NDArray[np.bool_], Vector]:
-    """Compute w, (n,), and mark its entries that have the bound that they need, (n,)."""
-    w = np.vstack([qp.A, qp.G]).T @ multipliers
-    return np.where(w > 0.0, qp.lb > -np.inf, qp.ub < np.inf) | (w == 0.0), w
+@compiled
+def dot_twice(rows: Matrix, vector: Vector, result: Matrix) -> None:
+    """Write the product of rows (k, n) and a vector (n,) in twice the precision, (2, k).
+
+    The second row bounds the rounding: it is 0 where no digit was lost, NaN where a term overflows.
+    """
+    for j in range(rows.shape[0]):
+        total = 0.0
+        lost = 0.0
+        loss = 0.0
+        for i in range(rows.shape[1]):
+            a = rows[j, i]
+            b = vector[i]
+            term = a * b
+            a_high = _SPLIT * a - (_SPLIT * a - a)
+            b_high = _SPLIT * b - (_SPLIT * b - b)
+            rest = (term - a_high * b_high) - (a - a_high) * b_high - a_high * (b - b_high)
+            rest = (a - a_high) * (b - b_high) - rest
+            added = (total + term) - total
+            rest += (total - ((total + term) - added)) + (term - added)
+            total += term
+            lost += rest
+            loss += abs(rest)
+            if abs(term) < _UNDERFLOW and a != 0.0 and b != 0.0:
+                loss += _TINY
+        result[0, j] = total + lost
+        bound = _EPS * (abs(result[0, j]) + 2.0 * rows.shape[1] * loss)
+        result[1, j] = bound if loss != 0.0 else 0.0
+
+
+def _is_carried(qp: QP, w: Vector) -> NDArray[np.bool_]:
+    """Mark the entries of w (n,) that have the bound that they need, (n,)."""
+    return np.asarray(np.where(w > 0.0, qp.lb > -np.inf, qp.ub < np.inf) | (w == 0.0))
 
 
 def _towards_bound(qp: QP, vector: Vector) -> NDArray[np.bool_]:
@@ -170,16 +214,25 @@ def _towards_bound(qp: QP, vector: Vector) -> NDArray[np.bool_]:
 
 def _scaled(vector: Vector) -> Vector:
     """Divide a vector by its largest entry."""
-    return vector / max(float(np.abs(vector).max(initial=0.0)), float(_LIMITS.eps))
+    return vector / max(float(np.abs(vector).max(initial=0.0)), _EPS)
+
+
+def _whole(vector: Vector) -> Vector:
+    """Return the multiple of a vector that is nearest to whole numbers, rounded to them."""
+    sizes = np.abs(vector)
+    least = sizes.min(where=sizes > _SLIGHT * sizes.max(initial=0.0), initial=np.inf)
+    multiples = np.outer(_MULTIPLES, vector / least)
+    nearest = np.round(multiples)
+    return np.asarray(nearest[np.argmin(np.abs(multiples - nearest).max(axis=1, initial=0.0))])
 
 
 def _polished_multipliers(qp: QP, multipliers: Vector) -> Vector:
     """Find the nearest multipliers on the same rows whose residual is zero to rounding."""
     used = np.abs(multipliers) > _SLIGHT
     polished = np.where(used, multipliers, 0.0)
-    carried, w = _carried(qp, polished)
+    w = np.vstack([qp.A, qp.G]).T @ polished
     # A bound that takes part carries whatever the rows leave over; the others carry nothing.
-    left = ~(carried & (np.abs(w) > _SLIGHT))
+    left = ~(_is_carried(qp, w) & (np.abs(w) > _SLIGHT))
     rows = np.vstack([qp.A, qp.G])[used]
     polished[used] = _on_null_space(rows[:, left].T, polished[used])
     polished[qp.b.size :] = np.maximum(polished[qp.b.size :], 0.0)

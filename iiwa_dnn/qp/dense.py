@@ -11,11 +11,12 @@ from iiwa_dnn.qp.layout import Matrix, Vector, larger
 
 ASYMMETRY = 1e-5
 """Difference of P_ij and P_ji that passes, relative to sqrt(P_ii P_jj), which no entry of a
-semidefinite matrix exceeds: a matrix that was computed in single precision has it. The answer is a
-KKT point of P as it is."""
+semidefinite matrix exceeds: a matrix that was computed in single precision has it. The symmetric
+part of P is what the program means."""
 ROUNDING = 4e-15
 """Negative eigenvalues of P that pass as rounding, relative to n times its largest entry. They are
-those of a product J^T J in double precision; of single precision they are refused."""
+those of a product J^T J in double precision; of single precision they are refused. A residual of n
+variables passes as rounding at n times as much, relative to the sum of its absolute terms."""
 
 
 @compiled
@@ -148,12 +149,12 @@ def is_symmetric(P: Matrix, largest: float) -> bool:
 def is_convex(P: Matrix, K: Matrix) -> bool:
     """Check that P (n, n) is symmetric (`is_symmetric`), positive semidefinite to n `ROUNDING`.
 
-    The latter is relative to its largest entry. K (n, n) is scratch.
+    The latter is asked of its symmetric part, relative to its largest entry. K (n, n) is scratch.
     """
     largest = 0.0
     for i in range(P.shape[0]):
         for k in range(P.shape[0]):
-            K[i, k] = P[i, k]
+            K[i, k] = 0.5 * (P[i, k] + P[k, i])
             largest = larger(largest, abs(P[i, k]))
     for i in range(P.shape[0]):
         K[i, i] += ROUNDING * P.shape[0] * largest + 1e-300

@@ -36,7 +36,7 @@ from iiwa_dnn.qp.layout import (
     offsets,
     qp_views,
 )
-from iiwa_dnn.qp.residuals import residuals_of
+from iiwa_dnn.qp.residuals import is_accepted, residuals_of
 from iiwa_dnn.qp.solution import Residuals
 
 if TYPE_CHECKING:
@@ -129,6 +129,9 @@ class QP:
     ) -> None:
         """Copy the arrays as dense float64; shapes are checked here, values by `check_values`.
 
+        P is replaced by its symmetric part where the two differ by no more than `check_values`
+        allows: the part decides the answer, its residuals, and whether the program is convex.
+
         Raises:
             InvalidInputError: An array has the wrong shape; the message names it.
         """
@@ -142,6 +145,9 @@ class QP:
         if n == 0 or [v.shape for v in arrays] != field_shapes(sizes):  # rarely
             self.sizes = _check_shapes((P, q, G, h, A, b), arrays)
         self.data = np.concatenate(arrays, axis=None)
+        cost = self.P
+        if (cost != cost.T).any() and is_symmetric(cost, float(np.abs(cost).max())):
+            cost[:] = 0.5 * cost + 0.5 * cost.T
 
     @classmethod
     def from_data(cls, data: Vector, sizes: Sizes) -> QP:
@@ -202,20 +208,30 @@ class QP:
         check_size("point", point, 2 * n + m + p)
         return Residuals(*residuals_of(self.data, n, m, p, point))
 
+    def accepts(self, point: Vector, eps_abs: float = 1e-9, eps_rel: float = 0.0) -> bool:
+        """Check that a point ``[x | y | z | z_box]``, (2 n + m + p,), is an answer.
+
+        The program is convex, and each entry of the residuals is at most its tolerance: `eps_abs`,
+        `eps_rel` times the sum of its absolute terms, or rounding (`iiwa_dnn.qp.residuals`).
+        """
+        n, m, p = self.sizes
+        check_size("point", point, 2 * n + m + p)
+        return is_accepted(self.data, n, m, p, point, eps_abs, eps_rel)
+
     def check_values(self) -> None:
         """Check for values that no convex solver could make sense of.
 
         Raises:
             InvalidInputError: As `check_numbers`; or P is not symmetric, each pair of entries to
-                1e-5 sqrt(P_ii P_jj) and 4e-15 n times the largest entry, or not positive
-                semidefinite to the latter.
+                1e-5 sqrt(P_ii P_jj) and 4e-15 n times the largest entry, or its symmetric part is
+                not positive semidefinite to the latter.
         """
         if _well_formed(self.data, *self.sizes):
             return
         self.check_numbers()
         if not is_symmetric(self.P, float(np.abs(self.P).max())):
             raise InvalidInputError("P", "is not symmetric")
-        smallest = float(np.linalg.eigvalsh(self.P)[0])
+        smallest = float(np.linalg.eigvalsh(0.5 * (self.P + self.P.T))[0])
         raise InvalidInputError(
             "P", f"is not positive semidefinite: eigenvalue {smallest:.3g}, problem not convex"
         )

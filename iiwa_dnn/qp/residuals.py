@@ -1,10 +1,26 @@
-"""Residuals of a primal-dual point, all zero exactly at a KKT point; compiled."""
+r"""Residuals of a primal-dual point, all zero exactly at a KKT point, and their tolerances.
+
+**The rule of acceptance.** An entry r of a residual, whose terms have the sum s of absolute values,
+is small enough if
+
+.. math::
+
+    |r| \le \max(\varepsilon_{abs}\, w,\; \varepsilon_{rel}\, s,\; 4 \cdot 10^{-15}\, n\, s) ,
+
+the last being rounding. The weight w is 1, but that of a slight row, or of a variable with slight
+coefficients alone, is its largest coefficient if that is below `SLIGHT`: of such a row any x at all
+would be within an absolute tolerance. A slight cost counts as scaled to 1 by its largest entry, and
+with it the dual residuals and the gap.
+"""
 
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.qp.dense import add_row, row_dot
-from iiwa_dnn.qp.layout import QPViews, Triple, Vector, copied, larger, qp_views
+from iiwa_dnn.qp.dense import ROUNDING, add_row, is_convex, row_dot
+from iiwa_dnn.qp.layout import Matrix, QPViews, Triple, Vector, copied, larger, qp_views
+
+SLIGHT = 1e-3
+"""Largest coefficient of a row, a column or the cost below which it is slight."""
 
 
 @compiled
@@ -99,3 +115,103 @@ def point_of_state(data: Vector, n: int, m: int, p: int, s: Vector, point: Vecto
 def within(primal: float, dual: float, gap: float, tol: float) -> bool:
     """Check that no residual is above the tolerance, and none NaN."""
     return primal <= tol and dual <= tol and gap <= tol
+
+
+@compiled
+def weight_of(largest: float) -> float:
+    """Return the weight of an absolute tolerance: 1, or the largest coefficient if it is slight."""
+    return largest if largest < SLIGHT else 1.0
+
+
+@compiled
+def cost_size(qp: QPViews) -> float:
+    """Compute the largest absolute entry of P and q; NaN if one is NaN."""
+    largest = 0.0
+    for i in range(qp.q.size):
+        _, _, of_row = terms(qp.P, i, qp.q, False)
+        largest = larger(largest, larger(of_row, abs(qp.q[i])))
+    return largest
+
+
+@compiled
+def terms(rows: Matrix, j: int, x: Vector, is_column: bool) -> Triple:
+    """Multiply row or column j of a matrix (k, n) by the first entries of x.
+
+    Returns:
+        The product, the sum of its absolute terms, and the largest absolute entry.
+    """
+    value = 0.0
+    size = 0.0
+    largest = 0.0
+    for k in range(rows.shape[0] if is_column else rows.shape[1]):
+        entry = rows[k, j] if is_column else rows[j, k]
+        value += entry * x[k]
+        size += abs(entry * x[k])
+        largest = larger(largest, abs(entry))
+    return value, size, largest
+
+
+@compiled
+def is_accepted(
+    data: Vector, n: int, m: int, p: int, point: Vector, eps_abs: float, eps_rel: float
+) -> bool:
+    """Check a point (2n + m + p,) by the rule of acceptance, and that `QP.data` is convex."""
+    qp = qp_views(data, n, m, p)
+    return fits(qp, point, eps_abs, eps_rel) and is_convex(qp.P, np.empty((n, n)))
+
+
+@compiled
+def fits(qp: QPViews, point: Vector, eps_abs: float, eps_rel: float) -> bool:
+    """Check a point [x | y | z | z_box] by the rule of acceptance, entry by entry."""
+    n = qp.q.size
+    p = qp.b.size
+    relative = max(eps_rel, ROUNDING * n)
+    gap = 0.0
+    size = 0.0
+    for j in range(p + qp.h.size):
+        limit = qp.b[j] if j < p else qp.h[j - p]
+        if limit < np.inf:
+            value, of_row, largest = terms(
+                qp.A if j < p else qp.G, j if j < p else j - p, point, False
+            )
+            excess = abs(value - limit) if j < p else value - limit
+            if not excess <= max(eps_abs * weight_of(largest), relative * (of_row + abs(limit))):
+                return False
+            gap += limit * point[n + j]
+            size += abs(limit * point[n + j])
+    for i in range(n):
+        nearest = min(max(point[i], qp.lb[i]), qp.ub[i])
+        allowed = max(eps_abs, relative * (abs(point[i]) + abs(nearest)))
+        if not abs(point[i] - nearest) <= allowed:
+            return False
+    return _cost_fits(qp, point, eps_abs, relative, gap, size)
+
+
+@compiled
+def _cost_fits(
+    qp: QPViews, point: Vector, eps_abs: float, relative: float, gap: float, size: float
+) -> bool:
+    """Check the dual residual and the gap, of which the rows' part and its size are given."""
+    n = qp.q.size
+    at_z = n + qp.b.size
+    at_box = at_z + qp.h.size
+    cost = cost_size(qp)
+    weight = weight_of(cost) if cost > 0.0 else 1.0
+    for i in range(n):
+        multiplier = point[at_box + i]
+        bound = qp.ub[i] if multiplier > 0.0 else qp.lb[i]
+        term = bound * multiplier if multiplier != 0.0 and abs(bound) < np.inf else 0.0
+        value, of_P, largest = terms(qp.P, i, point, False)
+        in_A, of_A, largest_A = terms(qp.A, i, point[n:], True)
+        in_G, of_G, largest_G = terms(qp.G, i, point[at_z:], True)
+        value += qp.q[i]
+        of_P += abs(qp.q[i])
+        gap += point[i] * value + term
+        size += abs(point[i]) * of_P + abs(term)
+        largest = max(max(largest, abs(qp.q[i])) / weight, max(largest_A, largest_G))
+        allowed = max(
+            eps_abs * weight * weight_of(largest), relative * (of_P + of_A + of_G + abs(multiplier))
+        )
+        if not abs(value + in_A + in_G + multiplier) <= allowed:
+            return False
+    return abs(gap) <= max(eps_abs * weight, relative * size)

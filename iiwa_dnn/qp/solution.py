@@ -27,7 +27,7 @@ class Status(str, Enum):
     """The end of a solve."""
 
     SOLVED = "solved"
-    """Every residual is at most the tolerance."""
+    """Every entry of the residuals is at most its tolerance."""
     ADVANCED = "advanced"
     """The network was advanced by the time asked for, settled or not (a continuous run)."""
     NOT_SETTLED = "not settled"
@@ -173,10 +173,11 @@ def register() -> None:
 
     From then on ``qpsolvers.solve_qp(P, q, ..., solver="iiwa_dnn")`` and ``solve_problem`` run
     `iiwa_dnn.solve_problem` with ``sharpen=True``, and ``qpsolvers.available_solvers`` lists it.
-    Its keyword argument is ``eps_abs``, the absolute tolerance on primal residual, dual residual
-    and gap (1e-9). The start is always cold: ``initvals`` is not used, nor is ``verbose``. A
-    malformed or nonconvex problem raises ``qpsolvers.ProblemError``, an option of another name
-    ``TypeError``.
+    Its keyword arguments are ``eps_abs``, the absolute tolerance on primal residual, dual residual
+    and gap (1e-9), ``eps_rel``, the tolerance on each entry of a residual relative to the sum of
+    its absolute terms (0), and ``max_iter``, the largest number of linear systems solved (1000).
+    The start is always cold: ``initvals`` is not used, nor is ``verbose``. A malformed or nonconvex
+    problem raises ``qpsolvers.ProblemError``, an option of another name ``TypeError``.
     """
     from qpsolvers import solvers
 
@@ -191,11 +192,13 @@ def _solve_problem(
     initvals: Vector | None = None,
     verbose: bool = False,
     eps_abs: float = 1e-9,
+    eps_rel: float = 0.0,
+    max_iter: int = 1000,
 ) -> qpsolvers.Solution:
     """Solve a problem as qpsolvers' own functions do; see `register`."""
     from qpsolvers import ProblemError
 
     try:
-        return SOLVE[0](problem, tol=eps_abs, sharpen=True)
+        return SOLVE[0](problem, tol=eps_abs, sharpen=True, eps_rel=eps_rel, max_iter=max_iter)
     except InvalidInputError as error:
         raise ProblemError(str(error)) from error

@@ -33,3 +33,14 @@ def test_no_solution_and_bad_input_are_told_as_qpsolvers_does() -> None:
         qpsolvers.solve_qp(-one, zero, solver="iiwa_dnn")
     with pytest.raises(TypeError, match="eps_bas"):
         qpsolvers.solve_qp(one, zero, solver="iiwa_dnn", eps_bas=1.0)
+
+
+def test_tolerances_and_budget_are_options() -> None:
+    iiwa_dnn.qp.register()
+    qp, known = programs.strictly_convex(np.random.default_rng([42, 0]), 12, 1e2)
+    for options in ({"eps_abs": 1e-8, "eps_rel": 1e-6}, {"eps_rel": 0.0, "max_iter": 500}):
+        x = qpsolvers.solve_qp(*qp.to_qpsolvers().unpack(), solver="iiwa_dnn", **options)
+        np.testing.assert_allclose(x, known, atol=1e-5)
+    few = qpsolvers.solve_problem(qp.to_qpsolvers(), "iiwa_dnn", max_iter=2)
+    assert not few.found
+    assert few.extras["iterations"] == 2

@@ -1,10 +1,13 @@
 """Programs without a solution: recognised, and the proof judged by numpy."""
 
+from fractions import Fraction
+from operator import mul
+
 import numpy as np
 import pytest
 
 import programs
-from iiwa_dnn import QP, DNNSolver, Status, solve_problem
+from iiwa_dnn import QP, DNNSolver, Status
 from iiwa_dnn.qp import certificates
 
 
@@ -58,8 +61,10 @@ def test_none_without_a_solution_lacks_a_proof(make, count, outright, near, judg
 @pytest.mark.parametrize(
     ("qp", "x", "status"),
     [
-        (QP([[1e-9]], [-0.2]), 2e8, Status.NONE_OPTIMAL_NEAR),
-        (QP([[1.0]], [0.0], A=[[1e-9]], b=[1.0]), 1e9, Status.NONE_FEASIBLE_NEAR),
+        (QP([[1.0, 1.0 - 2.0**-40], [1.0 - 2.0**-40, 1.0]], [-0.125, 0.125]), 2.0**37,
+         Status.NONE_OPTIMAL_NEAR),
+        (QP(np.eye(2), [0.0, 0.0], A=[[1.0, 1.0], [1.0, 1.0 - 2.0**-30]], b=[0.0, 1.0]), 2.0**30,
+         Status.NONE_FEASIBLE_NEAR),
         (QP([[1.0]], [0.0], A=[[1e-9]], b=[1.0], lb=[-1.0], ub=[1.0]), None,
          Status.PRIMAL_INFEASIBLE),
         (QP([[1.0]], [0.0], [[1.0], [-1.0]], [0.0, -1e-3], lb=[-9.0], ub=[9.0]), None,
@@ -72,9 +77,83 @@ def test_a_status_says_what_was_shown(qp: QP, x: float | None, status: Status) -
     # A program with a solution is not called infeasible or unbounded, only far.
     assert ("within 1e8" in status.value) is (x is not None)
     if x is not None:
-        rows = np.concatenate([qp.A.ravel(), qp.G.ravel()])  # at most one
-        multipliers = -(qp.P[0, 0] * x + qp.q[0]) / rows
-        assert qp.residuals(np.array([x, *multipliers, 0.0])).largest < 1e-6
+        point = np.array([x, -x])
+        multipliers = np.linalg.lstsq(qp.A.T, -(qp.P @ point + qp.q))[0]
+        rest = np.abs(qp.P @ point + qp.q + qp.A.T @ multipliers).max()
+        assert rest <= 1e-15 * np.abs(multipliers).max(initial=0.0)
+        assert np.abs(qp.A @ point - qp.b).max(initial=0.0) == 0.0
+
+
+def test_far_solutions_of_slight_rows_and_costs_are_found() -> None:
+    """Not the absolute size of coefficients decides: in other units the same programs are plain."""
+    for qp, x in (
+        (QP([[1e-9]], [-0.2]), 2e8),
+        (QP([[1.0]], [0.0], A=[[1e-9]], b=[1.0]), 1e9),
+        (QP([[0.0]], [-1e-8], [[1e-10]], [1e-10]), 1.0),
+    ):
+        solution = DNNSolver().solve(qp)
+        assert solution.found
+        assert solution.x[0] == pytest.approx(x, rel=1e-12)
+
+
+def test_textbook_contradictions_are_proven() -> None:
+    """Whole numbers leave no residual: the certificates hold outright, without bounds too."""
+    between = QP([[1.0]], [0.0], [[1.0], [-1.0]], [1.0, -2.0])
+    thirds = QP(np.eye(2), np.ones(2), [[3.0, 5.0], [-1.0, 0.0], [0.0, -1.0]], [1.0, -2.0, -1.0])
+    falling = QP(np.diag([1.0, 0.0, 0.0]), [0.0, -1.0, 0.0], [[1.0, 1.0, 1.0]], [1.0])
+    for qp, status in (
+        (between, Status.PRIMAL_INFEASIBLE),
+        (thirds, Status.PRIMAL_INFEASIBLE),
+        (falling, Status.UNBOUNDED),
+    ):
+        solution = DNNSolver().solve(qp)
+        assert solution.status is status
+        proof = [Fraction(value) for value in solution.certificate]
+        exact = [[Fraction(v) for v in row] for row in (*qp.P, *qp.G)]
+        if status is Status.UNBOUNDED:
+            products = [sum(map(mul, row, proof)) for row in exact]
+            assert products == [0, 0, 0, 0]
+            assert sum(map(mul, map(Fraction, qp.q), proof)) < 0
+        else:
+            multipliers = proof[: qp.h.size]
+            columns = zip(*exact[qp.q.size :], strict=True)
+            assert [sum(map(mul, column, multipliers)) for column in columns] == [0] * qp.q.size
+            assert sum(map(mul, map(Fraction, qp.h), multipliers)) < 0 <= min(multipliers)
+
+
+@pytest.mark.parametrize("limit", [-1e-300, -1e-10, -1.0, -1e10])
+def test_a_row_of_zeros_that_its_limit_contradicts_is_infeasible(limit: float) -> None:
+    rng = np.random.default_rng(3)
+    qp, _ = programs.strictly_convex(rng, 5, 1e3)
+    G = np.vstack([qp.G, np.zeros(5)])
+    rows = QP(qp.P, qp.q, G, np.append(qp.h, limit), qp.A, qp.b, qp.lb, qp.ub)
+    A = np.vstack([qp.A, np.zeros(5)])
+    equations = QP(qp.P, qp.q, qp.G, qp.h, A, np.append(qp.b, limit), qp.lb, qp.ub)
+    for wrong, place in ((rows, qp.b.size + qp.h.size), (equations, qp.b.size)):
+        solution = DNNSolver().solve(wrong)
+        assert solution.status is Status.PRIMAL_INFEASIBLE
+        assert np.flatnonzero(solution.certificate).tolist() == [place]
+    for fine in (0.0, 1e-10, np.inf):
+        rows.h[-1] = fine
+        assert DNNSolver().solve(rows).found
+
+
+def test_products_in_twice_the_precision_against_fractions() -> None:
+    rng = np.random.default_rng(6)
+    for _ in range(200):
+        rows = rng.standard_normal((3, 6)) * 10.0 ** rng.integers(-8, 9, (3, 6))
+        vector = rng.standard_normal(6)
+        rows[0, -1] = -(rows[0, :-1] @ vector[:-1]) / vector[-1]  # cancels but for rounding
+        rows[1] = rng.integers(-9, 10, 6)
+        rows[2] *= rng.integers(0, 2, 6) * 1e-300
+        whole = rng.integers(-9, 10, 6).astype(float)
+        for x in (vector, whole):
+            result = np.empty((2, 3))
+            certificates.dot_twice(rows, x, result)
+            for row, value, bound in zip(rows, *result, strict=True):
+                exact = sum(map(mul, map(Fraction, row), map(Fraction, x)))
+                assert abs(Fraction(value) - exact) <= Fraction(bound)
+        assert result[1, 1] == 0.0
 
 
 def test_a_contradiction_below_rounding_is_none() -> None:
@@ -105,7 +184,6 @@ def test_wrong_evidence_proves_nothing() -> None:
     assert certificates.unboundedness_radius(slanted, np.array([-1.0, 0.0])) == pytest.approx(200)
     steep = QP([[1e308, 1e308], [1e308, 1.5e308]], [-1.0, 0.0])
     assert not certificates.unboundedness_radius(steep, np.array([10.0, -10.0])) > 0.0
-    assert solve_problem(QP([[0.0]], [-1e-8], [[1e-10]], [1e-10])).extras["status"] == "not settled"
     bounded = QP(np.zeros((1, 1)), [-1.0], ub=[5.0])
     assert certificates.unboundedness_radius(bounded, np.ones(1)) <= 5.0
 

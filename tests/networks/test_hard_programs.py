@@ -55,7 +55,10 @@ def test_rounding_in_the_cost_is_no_error_and_more_is() -> None:
     q, bounds = rng.standard_normal(10), np.full(10, 2.0)
     for P in (np.eye(10) + 1e-9 * np.eye(10, k=1), J.T @ J, single + 1e-5 * np.eye(10)):
         problem = qpsolvers.Problem(P, q, lb=-bounds, ub=bounds)
-        assert iiwa_dnn.solve_problem(problem).is_optimal(1e-9)
+        same = qpsolvers.Problem(0.5 * (P + P.T), q, lb=-bounds, ub=bounds)
+        x = iiwa_dnn.solve_problem(problem).x
+        np.testing.assert_array_equal(x, iiwa_dnn.solve_problem(same).x)
+        assert iiwa_dnn.solve_problem(same).is_optimal(1e-9)
     for P in (single.astype(float), np.diag([-1e-12, *np.ones(9)]), np.diag([-1.0, *np.ones(9)])):
         qp = QP(P, q, lb=-bounds, ub=bounds)
         assert DNNSolver().solve(qp).status is iiwa_dnn.Status.NOT_CONVEX

@@ -128,3 +128,44 @@ def test_a_slight_cost_counts_as_any_other(size: float) -> None:
     np.testing.assert_allclose(solution.z_box, [0.5 * size], rtol=1e-6)
     nothing = d.solve_problem(d.QP(np.zeros((1, 1)), np.zeros(1), **bounds))
     assert nothing.found
+
+
+def test_a_warm_state_that_is_no_number_costs_no_call() -> None:
+    qp, x = known_qp(np.random.default_rng(25), 5, 2, 1)
+    for network in (d.ProjectionNetwork(), d.DualNetwork()):
+        for wrong in (np.nan, np.inf):
+            solver = d.DNNSolver(network)
+            assert solver.solve(qp).found
+            solver.state_for(qp.sizes)[0] = wrong
+            solution = solver.solve(qp)
+            assert solution.found
+            assert np.abs(solution.x - x).max() < 1e-6
+            solver.state_for(qp.sizes)[0] = wrong
+            assert solver.advance(qp, 1e-5).status is d.Status.ADVANCED
+    huge = d.DNNSolver()
+    huge.state_for(qp.sizes)[:] = 1e300
+    assert huge.solve(qp).found
+
+
+def test_a_relative_tolerance_takes_what_an_absolute_one_leaves() -> None:
+    """A gap of 1e-9 is one rounding of a cost of 1e7; ten linear systems are too few for 1e-12."""
+    problem = qpsolvers.Problem(
+        np.diag([61.0, 2e9, 61.0, 2e9, 1000.0, 100.0]),
+        np.zeros(6),
+        A=np.array([[1.0, 0.0, 1.0, 0.0, 1.0, 0.0], [2.4, 0.0, -2.4, 0.0, 0.0, 1.0]]),
+        b=np.array([5000.0, -800.0]),
+        lb=np.array([-2e4, -0.35, -2e4, -0.35, -np.inf, -np.inf]),
+        ub=np.array([2e4, 0.35, 2e4, 0.35, np.inf, np.inf]),
+    )
+    expected = qpsolvers.solve_problem(problem, "daqp").x
+    np.testing.assert_allclose(d.solve_problem(problem).x, expected, rtol=1e-9, atol=1e-9)
+    qp, x = known_qp(np.random.default_rng(26), 30, 5, 10, inequalities=20)
+    fits = [
+        d.solve_problem(qp, eps_rel=eps, max_iter=k) for eps in (0.0, 1e-3) for k in range(1, 30)
+    ]
+    first, loose = ([s.found for s in part].index(True) for part in (fits[:29], fits[29:]))
+    assert loose < first
+    assert np.abs(fits[29 + loose].x - x).max() < 0.1
+    assert all(s.extras["iterations"] <= 1 + k % 29 for k, s in enumerate(fits))
+    with pytest.raises(d.InvalidInputError, match="eps_rel"):
+        d.solve_problem(qp, eps_rel=-1.0)

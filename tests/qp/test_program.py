@@ -8,8 +8,9 @@ import pytest
 import qpsolvers
 import scipy.sparse as spa
 
+import programs
 from helpers_qp import known_qp
-from iiwa_dnn import QP, DNNSolver, InvalidInputError, Residuals, Status, solve_problem
+from iiwa_dnn import QP, DNNSolver, InvalidInputError, Residuals, Status, prove, solve_problem
 from iiwa_dnn.qp.program import FIELDS
 from iiwa_dnn.qp.residuals import kkt_point
 
@@ -173,3 +174,67 @@ def test_multipliers_without_constraints_are_empty_as_those_of_qpsolvers() -> No
         for name in ("x", "y", "z", "z_box"):
             assert getattr(ours, name).size == getattr(theirs, name).size, (name, arguments)
         assert ours.is_optimal(1e-8)
+
+
+def test_a_point_is_accepted_by_the_rule() -> None:
+    """The rule in numpy, max(eps_abs w, eps_rel s, 4e-15 n s) for each entry, at any scale."""
+    verdicts = []
+    for seed in range(400):
+        rng = np.random.default_rng([5, seed])
+        plain, point = programs.with_point(rng, flat=seed % 4 == 0)
+        n, m, p = plain.sizes
+        units = np.full(n, 10.0 ** rng.uniform(-3.0, 3.0))
+        rows = 10.0 ** rng.uniform(-6.0, 2.0, p + m)
+        cost = 10.0 ** rng.uniform(-6.0, 4.0)
+        qp, point = programs.in_other_units(plain, point, units, rows, cost)
+        point *= 1.0 + 10.0 ** rng.uniform(-16.0, -6.0) * rng.standard_normal(point.size)
+        point[:n] = np.clip(point[:n], qp.lb, qp.ub)
+        eps_abs, eps_rel = 10.0 ** rng.uniform(-12.0, -6.0), 10.0 ** rng.uniform(-16.0, -8.0)
+        x, y, z, box = np.split(point, [n, n + p, n + p + m])
+        both, limits = np.vstack([qp.A, qp.G]), np.concatenate([qp.b, qp.h])
+        multipliers = np.concatenate([y, z])
+        bound = np.where(box > 0.0, qp.ub, np.where(box < 0.0, qp.lb, 0.0))
+        gradient = qp.P @ x + qp.q
+        size = np.abs(qp.P) @ np.abs(x) + np.abs(qp.q)
+        excess = both @ x - limits
+        largest = max(np.abs(qp.P).max(), np.abs(qp.q).max())
+        slight = largest if largest < 1e-3 else 1.0
+        columns = np.abs(np.vstack([qp.P / slight, qp.q / slight, both])).max(axis=0)
+        entries = [
+            (np.where(np.arange(p + m) < p, np.abs(excess), excess),
+             np.abs(both) @ np.abs(x) + np.abs(limits), np.abs(both).max(axis=1)),
+            (np.abs(gradient + both.T @ multipliers + box),
+             size + np.abs(both).T @ np.abs(multipliers) + np.abs(box), columns),
+            (abs(gradient @ x + limits @ multipliers + bound @ box),
+             size @ np.abs(x) + np.abs(limits) @ np.abs(multipliers) + np.abs(bound * box), 1.0),
+        ]  # fmt: skip
+        weights = [1.0, slight, slight]
+        expected = all(
+            np.all(r <= np.maximum(eps_abs * weight * np.where(w < 1e-3, w, 1.0),
+                                   max(eps_rel, 4e-15 * n) * s))
+            for (r, s, w), weight in zip(entries, weights, strict=True)
+        )  # fmt: skip
+        verdicts.append(expected)
+        assert qp.accepts(point, eps_abs, eps_rel) == expected, seed
+    assert 100 < sum(verdicts) < 300
+
+
+def test_the_symmetric_part_of_a_cost_decides() -> None:
+    skew = np.array([[0.0, -4e-6], [4e-6, 0.0]])
+    flat = np.array([[1.0, 1.0 - 1e-6], [1.0 - 1e-6, 1.0]])
+    q = np.array([-1.0, 1.0])
+    qp = QP(flat + skew, q)
+    np.testing.assert_allclose(qp.P, flat, rtol=0.0, atol=1e-16)
+    assert (qp.P == qp.P.T).all()
+    solution = solve_problem(qpsolvers.Problem(flat + skew, q), sharpen=True)
+    np.testing.assert_allclose(solution.x, [1e6, -1e6], rtol=1e-8)
+    assert prove(qpsolvers.Problem(flat + skew, q), solution).bound < 0.1
+    # Its eigenvalue -5e-7 belongs to (1, -1): no minimum, in a box neither.
+    indefinite = np.array([[1.0, 1.0 - 4e-6], [1.0 + 5e-6, 1.0]])
+    for bound in (np.inf, 100.0):
+        box = np.full(2, bound)
+        with pytest.raises(InvalidInputError, match="eigenvalue -5e-07"):
+            solve_problem(qpsolvers.Problem(indefinite, 1e-6 * q, lb=-box, ub=box))
+    # A program whose data was written into, too.
+    qp.P[:] = flat + skew
+    np.testing.assert_allclose(solve_problem(qp, sharpen=True).x, [1e6, -1e6], rtol=1e-8)

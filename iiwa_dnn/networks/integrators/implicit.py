@@ -44,7 +44,7 @@ from iiwa_dnn.networks.integrators.pseudo_transient import LONGEST
 from iiwa_dnn.networks.projection import field, is_projection, mark_active
 from iiwa_dnn.qp.layout import QPViews, Vector, check_size, copied, qp_views
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import kkt_point, within
+from iiwa_dnn.qp.residuals import fits, kkt_point, within
 
 SHORTEST = 30.0
 """Length of the first backward Euler step [rho]."""
@@ -167,8 +167,10 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
                 rate = new_rate
                 time += LONGEST
                 continue
-        if stuck > STUCK:
-            break
+        if stuck > 0:
+            kkt_point(qp, s, point)
+            if stuck > STUCK or fits(qp, point, tol, 0.0):
+                break
         taken = backward_euler(
             qp, s, step, new, 0.1 * rate, min(MAX_NEWTON, budget - systems), matrix
         )

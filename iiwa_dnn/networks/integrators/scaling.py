@@ -1,59 +1,130 @@
-"""Settling in other units: a second start in which nothing stands out, and a steeper cost.
+"""Units in which nothing of a program stands out, and a steeper cost.
 
 The variables and the rows of A and G get factors with which all rows of the KKT matrix have a size
-near 1, and the cost is divided by its largest entry. For the network that is another time constant
-for each entry of its state; its equilibria are the same.
+near 1, and the cost one with which its largest entry is near `LARGE`. For the network that is
+another time constant for each entry of its state; its equilibria are the same. The factors are
+powers of two, so that no number is rounded: residuals are the same but for units.
 
 An implicit step of length h [rho] leaves the fraction 1 / (1 + h c) of an error along which the
 cost has the curvature c, so that a steeper cost settles sooner where it is nearly flat.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from iiwa_dnn.networks.integrators.base import Settled
-from iiwa_dnn.networks.integrators.implicit import settle_program
-from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.qp.certificates import certified, find_certificate
+from iiwa_dnn.qp.layout import Matrix, Vector, qp_views
 from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import SLIGHT, cost_size, terms
+from iiwa_dnn.qp.solution import Status
 
+LARGE = 1e3
+"""Largest coefficient of a row or the cost above which a program is scaled first; the largest entry
+of a scaled cost."""
 STRICTER = 1e-4
 """Tolerance in scaled units over that in the program's own, where the residuals grow."""
 ROUNDS = 10
 """Rounds of balancing; each takes the square root of what is left."""
-STEEP = 1e5
-"""Largest entry of a cost that was made steep."""
 
 
-@np.errstate(over="ignore", invalid="ignore")
-def settle_scaled(
-    qp: QP, state: Vector, point: Vector, tol: float, budget: int, before: Settled
-) -> Settled:
-    """Settle a program from zero in scaled units, then in its own.
+@compiled
+def is_ordinary(data: Vector, n: int, m: int, p: int) -> bool:
+    """Check that the cost and each row of `QP.data` has a largest entry from `SLIGHT` to `LARGE`.
 
-    The state is (3 n + m + p,), the point (2 n + m + p,); systems and time of the progress `before`
-    are added.
+    A cost of zeros is ordinary, and so is a row of zeros that holds. P is symmetric to the bit.
+    """
+    qp = qp_views(data, n, m, p)
+    for i in range(n):
+        for k in range(i):
+            if qp.P[i, k] != qp.P[k, i]:
+                return False
+    for j in range(p + m):
+        _, _, largest = terms(qp.A if j < p else qp.G, j if j < p else j - p, qp.q, False)
+        holds = qp.b[j] == 0.0 if j < p else qp.h[j - p] >= 0.0
+        if not (SLIGHT <= largest <= LARGE or (largest == 0.0 and holds)):
+            return False
+    cost = cost_size(qp)
+    return SLIGHT <= cost <= LARGE or cost == 0.0
+
+
+class Scaling(NamedTuple):
+    """A program in other units.
+
+    Attributes:
+        qp: The program in these units.
+        of_state: Units of the entries of a state, ``[x | y | z | u | l]`` (3 n + m + p,); those of
+            a point come first.
+        of_tolerance: Tolerance in these units, relative to that of the program as it was given.
+    """
+
+    qp: QP
+    of_state: Vector
+    of_tolerance: float
+
+    @property
+    def of_point(self) -> Vector:
+        """Units of the entries of a point ``[x | y | z | z_box]``, (2 n + m + p,)."""
+        n, m, p = self.qp.sizes
+        return self.of_state[: 2 * n + m + p]
+
+    def find_certificate(self, given: QP, point: Vector) -> tuple[Status, Vector | None]:
+        """Look for a certificate of the program as it was given, with a point in these units."""
+        status, certificate = find_certificate(self.qp, point)
+        if certificate is not None:
+            x, multipliers = np.split(self.of_point, [given.q.size])
+            certificate = certificate * (x if certificate.size == x.size else multipliers)
+            status = certified(given, certificate)
+        return status, certificate
+
+
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")
+def balanced(qp: QP, largest: float = LARGE) -> Scaling:
+    """Scale a program so that the rows of its KKT matrix have a size near 1.
+
+    Args:
+        qp: The program.
+        largest: Largest entry of the cost in the new units.
     """
     n, m, p = qp.sizes
     rows = np.vstack([qp.A, qp.G])
-    units = balanced(np.block([[qp.P, rows.T], [rows, np.zeros((m + p, m + p))]]))
-    own, of_rows = np.split(units, [n])
-    rows = of_rows[:, np.newaxis] * rows * own
-    limits = of_rows * np.concatenate([qp.b, qp.h])
-    P = own[:, np.newaxis] * qp.P * own
-    q = own * qp.q
-    cost = max(np.abs(P).max(), np.abs(q).max(), 1e-300)
+    limits = np.concatenate([qp.b, qp.h])
+    cost = cost_size(qp.views) or 1.0
+    matrix = np.block([[qp.P / cost, rows.T], [rows, np.zeros((m + p, m + p))]])
+    of_x, of_rows = np.split(factors(matrix), [n])
+    # A row of zeros gets a limit near 1: if it cannot hold, its multiplier is seen to grow.
+    of_rows = np.where(rows.any(axis=1) | ~np.isfinite(limits), of_rows, _power(1.0 / limits))
+    P = qp.P * np.outer(of_x, of_x)
+    q = of_x * qp.q
+    of_cost = float(_power(np.abs(np.append(P, q)).max() / largest))
+    rows = rows * np.outer(of_rows, of_x)
+    limits = of_rows * limits
     scaled = QP(
-        P / cost, q / cost, rows[p:], limits[p:], rows[:p], limits[:p], qp.lb / own, qp.ub / own
+        P / of_cost,
+        q / of_cost,
+        rows[p:],
+        limits[p:],
+        rows[:p],
+        limits[:p],
+        qp.lb / of_x,
+        qp.ub / of_x,
     )
-    state[:] = 0.0
-    first = settle_program(scaled, state, point, STRICTER * tol / max(1.0, cost), budget)
-    state[n:] *= cost
-    state *= np.concatenate([own, of_rows, 1.0 / own, 1.0 / own])
-    second = settle_program(qp, state, point, tol, budget - first[0])
-    return before[0] + first[0] + second[0], before[1] + first[1] + second[1], *second[2:]
+    of_box = of_cost / of_x
+    of_state = np.concatenate([of_x, of_cost * of_rows, of_box, of_box])
+    return Scaling(scaled, of_state, STRICTER * min(1.0, 1.0 / of_cost))
 
 
-def balanced(matrix: Matrix) -> Vector:
+def _power(sizes: Vector) -> Vector:
+    """Return the nearest power of two of each entry, 1 of a zero, (k,)."""
+    powers = np.round(np.log2(np.where(sizes == 0.0, 1.0, np.abs(sizes))))
+    return np.asarray(np.exp2(powers), dtype=np.float64)
+
+
+def factors(matrix: Matrix) -> Vector:
     """Return factors of rows and columns of a symmetric matrix that bring each to a size near 1.
+
+    They are powers of two.
 
     Source: D. Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices",
     Rutherford Appleton Laboratory, RAL-TR-2001-034.
@@ -62,21 +133,4 @@ def balanced(matrix: Matrix) -> Vector:
     for _ in range(ROUNDS):
         sizes = units * np.abs(matrix * units).max(axis=1)
         units /= np.sqrt(np.where(sizes > 0.0, sizes, 1.0))
-    return units
-
-
-def settle_steep(qp: QP, state: Vector, point: Vector, tol: float, budget: int) -> Settled:
-    """Settle a program from a state (3 n + m + p,), its cost scaled to `STEEP`.
-
-    The tolerance and what is returned are in the program's own units, the point (2 n + m + p,) too.
-    """
-    n = qp.sizes[0]
-    cost = slice(n * n + n)
-    scale = STEEP / max(float(np.abs(qp.data[cost]).max()), 1e-300)
-    steep = QP.from_data(qp.data.copy(), qp.sizes)
-    steep.data[cost] *= scale
-    state[n:] *= scale
-    settled = settle_program(steep, state, point, scale * tol, budget)
-    state[n:] /= scale
-    point[n:] /= scale
-    return *settled[:2], *qp.residuals(point)
+    return _power(units)
