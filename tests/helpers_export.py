@@ -12,7 +12,7 @@ from iiwa_dnn.export import load
 QUICK = ("-std=c99", "-O0")
 """Flags with which compiling takes a third of the time."""
 
-WARNINGS = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+WARNINGS = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
 
 
 def needs(*programs: str) -> Any:

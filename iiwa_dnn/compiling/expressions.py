@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Sequence
+from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from .kinds import ARRAYS, BOOL, FLOAT, INT, Kind
@@ -12,7 +14,11 @@ from .sources import Module, decoration, fail
 if TYPE_CHECKING:
     from .translator import Translator
 
-SIGNS: dict[type, str] = {ast.Mult: "*", ast.Add: "+", ast.Sub: "-"}
+Rank = IntEnum("Rank", "CHOICE OR AND EQUALITY COMPARISON SUM PRODUCT UNARY PRIMARY")
+"""Binding strength of C's operators, the weakest first."""
+
+SIGNS: dict[type, str] = {ast.Mult: "*", ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
+_RANKS = {"*": Rank.PRODUCT, "/": Rank.PRODUCT, "==": Rank.EQUALITY, "!=": Rank.EQUALITY}
 _ROUNDED: dict[type, str] = {ast.FloorDiv: "quotient", ast.Mod: "remainder"}
 _COMPARISONS: dict[type, str] = {
     ast.Lt: "<",
@@ -30,55 +36,131 @@ _FUNCTIONS = {
     "np.sqrt": (FLOAT, "sqrt"),
     "np.copysign": (FLOAT, "copysign"),
     "np.ceil": (FLOAT, "ceil"),
-    "math.ceil": (INT, "(int64_t)ceil"),
-    "math.floor": (INT, "(int64_t)floor"),
+    "math.ceil": (INT, "int_ceil"),
+    "math.floor": (INT, "int_floor"),
     "math.isfinite": (BOOL, "isfinite"),
-    "int": (INT, "(int64_t)"),
-    "float": (FLOAT, "(double)"),
+    "int": (INT, "int_of"),
     "abs": (FLOAT, "fabs"),
 }
 """Type of the result and name in C of Python's functions. Numpy's others may differ in the last
 digit."""
 
+_NUMBERS: dict[Kind, type] = {BOOL: bool, INT: int, FLOAT: float}
+_WORDS = re.compile(
+    "alignas|alignof|and_eq|arena|asm|auto|bitand|bitor|case|catch|char|compl|const|"
+    "const_cast|constexpr|decltype|default|delete|do|double|dynamic_cast|enum|explicit|"
+    "export|extern|float|friend|goto|inline|int|int64_t|long|mark|mutable|namespace|"
+    "new|noexcept|not_eq|nullptr|operator|or_eq|private|protected|public|register|"
+    "reinterpret_cast|restrict|short|signed|sizeof|static|static_assert|static_cast|"
+    "struct|switch|template|this|thread_local|throw|typedef|typeid|typename|union|"
+    "unsigned|using|virtual|void|volatile|wchar_t|xor|xor_eq"
+)
+"""Names that a variable of C has not: words of C, of C++, and of a kernel's own."""
+
 
 class Value(NamedTuple):
-    """An expression of C, in parentheses where it has an operator.
+    """An expression of C.
 
     Attributes:
         kind: Its type.
-        text: The expression.
+        text: The expression, without parentheses around it.
+        rank: Binding strength of its outermost operator.
+        pointer: Pointer through which a struct is reached, if any.
+        parts: Pointer to the first element and sizes of an array that is written as a literal.
+        is_plan: Whether it is the exported plan, or a member of it.
     """
 
     kind: Kind
     text: str
+    rank: int = Rank.PRIMARY
+    pointer: str = ""
+    parts: tuple[Value, ...] = ()
+    is_plan: bool = False
+
+    def within(self, rank: int) -> str:
+        """Return the text as an operand, in parentheses if its operator binds less than a rank."""
+        return self.text if self.rank >= rank else f"({self.text})"
+
+    def member(self, name: str, kind: Kind) -> Value:
+        """Return a member of a struct."""
+        owner = f"{self.pointer}->" if self.pointer else f"{self.within(Rank.PRIMARY)}."
+        return Value(kind, f"{owner}{c_word(name)}", is_plan=self.is_plan)
+
+    def converted(self, kind: Kind) -> Value:
+        """Return the value as a float, if that is asked for and it is an integer."""
+        if kind is not FLOAT or self.kind is not INT:
+            return self
+        if self.text.isdigit():
+            return Value(FLOAT, f"{self.text}.0")
+        return Value(FLOAT, f"(double){self.within(Rank.UNARY)}", Rank.UNARY)
 
     @property
-    def sizes(self) -> list[str]:
+    def data(self) -> Value:
+        """Pointer to the first element of an array."""
+        return self.parts[0] if self.parts else self.member("data", self.kind)
+
+    @property
+    def sizes(self) -> list[Value]:
         """Sizes of an array."""
-        return [f"{self.text}.size{i}" for i in range(self.kind.axes)]
+        if self.parts:
+            return [*self.parts[1:]]
+        return [self.member(f"size{i}", INT) for i in range(self.kind.axes)]
 
     @property
-    def size(self) -> str:
+    def size(self) -> Value:
         """Number of elements of an array."""
-        return " * ".join(self.sizes)
+        return joined("*", self.sizes)
+
+    @property
+    def initializer(self) -> str:
+        """Text with which a variable of its type begins."""
+        return self.text.removeprefix(f"({self.kind.tag})") if self.is_literal else self.text
+
+    @property
+    def is_literal(self) -> bool:
+        """Test whether it is a struct that has no address."""
+        return self.text.startswith(f"({self.kind.tag}){{")
 
 
-def number_text(value: float) -> str:
-    """Write a number as C does."""
-    text = repr(value).replace("inf", "INFINITY").replace("nan", "NAN")
-    return text.lower() if isinstance(value, bool) else text
+def c_word(name: str) -> str:
+    """Return a variable's name in C, which is no word of C, of C++ or of a kernel's own."""
+    return f"{name}_" if _WORDS.fullmatch(name) else name
+
+
+def joined(sign: str, values: Sequence[Value]) -> Value:
+    """Join values by an operator, from the left; a single one stays as it is."""
+    whole = values[0]
+    for value in values[1:]:
+        rank = _RANKS.get(sign, Rank.SUM)
+        whole = Value(INT, f"{whole.within(rank)} {sign} {value.within(rank + 1)}", rank)
+    return whole
+
+
+def number(value: float) -> Value:
+    """Return the literal of a number, of Python's or of numpy's.
+
+    Raises:
+        TypeError: It is none.
+    """
+    for kind, own in _NUMBERS.items():
+        if isinstance(value, own):
+            text = repr(own(value)).replace("inf", "INFINITY").replace("nan", "NAN")
+            text = text.lower() if own is bool else text
+            return Value(kind, text, Rank.UNARY if text.startswith("-") else Rank.PRIMARY)
+    raise TypeError(f"{value!r} is no number")
 
 
 def literal(kind: Kind, members: Sequence[str]) -> str:
     """Return a value of a struct of C."""
     inner = ", ".join(members)
-    return f"(({kind.tag}){{{inner if kind.is_named or kind.axes else f'{{{inner}}}'}}})"
+    return f"({kind.tag}){{{inner if kind.is_named or kind.axes else f'{{{inner}}}'}}}"
 
 
-def _array(kind: Kind | None, data: str, sizes: Sequence[str]) -> Value:
+def array(element: Kind | None, data: Value, sizes: Sequence[Value]) -> Value:
     """Return an array of elements of a type."""
-    own = ARRAYS[kind, len(sizes)]
-    return Value(own, literal(own, [data, *sizes]))
+    kind = ARRAYS[element, len(sizes)]
+    parts = (data, *sizes)
+    return Value(kind, literal(kind, [own.text for own in parts]), parts=parts)
 
 
 class Expressions:
@@ -90,6 +172,11 @@ class Expressions:
         parameters: Types of its parameters.
         kinds: Types of its parameters and variables.
         written: Arrays that are written into, as Python names them.
+        assigned: Variables that have a value wherever the current statement is reached.
+        plans: Variables that are the exported plan, or a part of it.
+        lines: Lines of the body so far.
+        is_certain: Whether the expression is evaluated whenever its statement is reached.
+        uses_arena: Whether it takes memory, or calls a kernel that does.
     """
 
     def __init__(self, translator: Translator, module: Module, parameters: dict[str, Kind]) -> None:
@@ -99,120 +186,163 @@ class Expressions:
         self.parameters = parameters
         self.kinds = dict(parameters)
         self.written: set[str] = set()
+        self.assigned = {*parameters}
+        self.plans = {own for own, kind in parameters.items() if kind.tag in translator.plan}
+        self.lines: list[str] = []
+        self.is_certain = True
+        self.uses_arena = translator.parts is None
+        self._kept = 0
 
     def require(self, holds: bool, node: ast.AST, problem: str) -> None:
         """Refuse a node unless something holds."""
         if not holds:
             fail(self.module, node, problem)
 
-    def condition(self, node: ast.expr) -> str:
-        """Translate a condition, in parentheses."""
-        text = self.value(node).text
-        return text if isinstance(node, ast.Compare | ast.BoolOp | ast.UnaryOp) else f"({text})"
-
     def value(self, node: ast.expr) -> Value:
         """Translate an expression."""
         match node:
             case ast.Name(id=name) if name in self.kinds:
-                kind = self.kinds[name]
-                is_address = kind.is_named and name in self.parameters
-                return Value(kind, f"(*{name})" if is_address else name)
+                return self._variable(node)
             case ast.Constant() | ast.Name() | ast.Attribute(value=ast.Name(id="math" | "np")):
                 return self._constant(node)
             case ast.Attribute():
                 return self._attribute(node)
             case ast.Tuple(elts=items):
                 values = [self.value(item) for item in items]
-                kind = self.translator.kinds.tuple(self._wider(values), len(values))
-                return Value(kind, literal(kind, [own.text for own in values]))
+                element = self._wider(values)
+                kind = self.translator.kinds.tuple(element, len(values))
+                return Value(
+                    kind, literal(kind, [own.converted(element).initializer for own in values])
+                )
             case ast.UnaryOp(op=ast.Not(), operand=operand):
-                return Value(BOOL, f"(!{self.value(operand).text})")
+                return Value(BOOL, f"!{self.value(operand).within(Rank.UNARY)}", Rank.UNARY)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 own = self.value(operand)
-                return Value(own.kind, f"(-{own.text})")
+                text = f"({own.text})" if own.text.startswith("-") else own.within(Rank.UNARY)
+                return Value(own.kind, f"-{text}", Rank.UNARY)
             case ast.BinOp(left=left, op=op, right=right):
                 return self._arithmetic(type(op), self.value(left), self.value(right))
             case ast.Compare(left=left, ops=ops, comparators=others):
-                texts = [self.value(item).text for item in (left, *others)]
-                signs = [_COMPARISONS[type(op)] for op in ops]
-                parts = [
-                    f"{a} {sign} {b}" for a, sign, b in zip(texts, signs, texts[1:], strict=False)
-                ]
-                return Value(BOOL, f"({' && '.join(parts)})")
+                between = [self._once(each) for each in others[:-1]]
+                values = [self.value(left), *between, self.value(others[-1])]
+                return self._comparison(values, [_COMPARISONS[type(op)] for op in ops])
             case ast.BoolOp(op=op, values=items):
-                sign = " && " if isinstance(op, ast.And) else " || "
-                return Value(BOOL, f"({sign.join(map(self.condition, items))})")
+                sign, rank = ("&&", Rank.AND) if isinstance(op, ast.And) else ("||", Rank.OR)
+                values = [self.value(items[0]), *map(self._uncertain, items[1:])]
+                return Value(BOOL, f" {sign} ".join(v.within(Rank.EQUALITY) for v in values), rank)
             case ast.IfExp(test=test, body=body, orelse=orelse):
-                both = [self.value(body), self.value(orelse)]
-                text = f"({self.condition(test)} ? {both[0].text} : {both[1].text})"
-                return Value(self._wider(both), text)
-            case ast.Subscript(value=owner, slice=ast.Tuple(elts=parts)):
-                return self._part(self.value(owner), parts)
+                head = self.value(test).within(Rank.OR)
+                both = [self._uncertain(body), self._uncertain(orelse)]
+                kind = self._wider(both)
+                first, second = [own.converted(kind).within(Rank.OR) for own in both]
+                return Value(kind, f"{head} ? {first} : {second}", Rank.CHOICE)
             case ast.Subscript(value=ast.Attribute(value=owner, attr="shape"), slice=axis):
-                return Value(INT, self.value(owner).sizes[self.module.value(axis)])
+                return self.value(owner).sizes[int(self.module.value(axis))]
             case ast.Subscript(value=owner, slice=part):
-                return self._part(self.value(owner), [part])
+                return self._part(self._once(owner), getattr(part, "elts", [part]))
             case ast.Call():
                 return self._call(node)
         fail(self.module, node, "has no translation")
+
+    def _variable(self, node: ast.Name) -> Value:
+        """Translate a parameter or variable; a parameter that is a named tuple is a pointer."""
+        name = node.id
+        self.require(name in self.assigned, node, "is not assigned on every way here")
+        kind = self.kinds[name]
+        own = Value(kind, c_word(name), is_plan=name in self.plans)
+        if kind.is_named and name in self.parameters:
+            return own._replace(text=f"*{own.text}", rank=Rank.UNARY, pointer=own.text)
+        return own
+
+    def _uncertain(self, node: ast.expr) -> Value:
+        """Translate an expression that is evaluated only on a condition."""
+        before = self.is_certain
+        self.is_certain = False
+        own = self.value(node)
+        self.is_certain = before
+        return own
+
+    def _once(self, node: ast.expr) -> Value:
+        """Translate an expression that C writes several times: the result of a call is kept."""
+        own = self.value(node)
+        is_called = any(isinstance(each, ast.Call) for each in ast.walk(node))
+        return self._keep(own, node) if is_called and not own.parts else own
+
+    def _keep(self, own: Value, node: ast.expr) -> Value:
+        """Keep a value in a variable, before the statement that it is part of."""
+        self.require(self.is_certain, node, "is needed twice, and not in each case")
+        self._kept += 1
+        name = f"own_{self._kept}"
+        self.lines.append(f"const {own.kind.tag} {name} = {own.initializer};")
+        return Value(own.kind, name)
 
     def _wider(self, values: list[Value]) -> Kind:
         """Return the type that takes all of some values; the compiler refuses what it does not."""
         return next((own.kind for own in values if own.kind is FLOAT), values[0].kind)
 
     def _constant(self, node: ast.expr) -> Value:
-        """Translate a constant, or a table of numbers, of a module."""
+        """Translate a number, or a constant of a module, which is a number or a table of them."""
         found = self.module.value(node)
-        for python, kind in ((bool, BOOL), (int, INT), (float, FLOAT)):
-            if isinstance(found, python):
-                return Value(kind, number_text(python(found)))
-        tag = f"{self.module.name.rpartition('.')[2]}_{ast.unparse(node)}"
-        data = self.translator.table(tag, found)
-        return _array(data.kind, data.text, [str(len(found))])
+        if not isinstance(node, ast.Name):
+            return number(found)
+        home, _ = self.translator.package.find(self.module, node.id)
+        return self.translator.constant(home.c_name(node.id), found)
 
     def _attribute(self, node: ast.Attribute) -> Value:
         """Translate a member of a named tuple, or an array's size."""
         owner = self.value(node.value)
         if owner.kind.axes and node.attr == "size":
-            return Value(INT, f"({owner.size})")
-        kind = owner.kind.members[node.attr]
-        known = self.translator.constants.get(owner.kind.tag, {}).get(node.attr)
-        if known is None:
-            return Value(kind, f"{owner.text}.{node.attr}")
-        return Value(kind, f"(({kind.tag}){known})")
+            return owner.size
+        known = self.translator.plan.get(owner.kind.tag, {}) if owner.is_plan else {}
+        own = owner.member(node.attr, owner.kind.members[node.attr])
+        return known.get(node.attr, own)
+
+    def _comparison(self, values: list[Value], signs: list[str]) -> Value:
+        """Translate comparisons, all of which hold."""
+        kind = self._wider(values)
+        texts = [own.converted(kind).within(Rank.SUM) for own in values]
+        parts = [f"{a} {sign} {b}" for a, sign, b in zip(texts, signs, texts[1:], strict=False)]
+        rank = Rank.AND if len(parts) > 1 else _RANKS.get(signs[0], Rank.COMPARISON)
+        return Value(BOOL, " && ".join(parts), rank)
 
     def _arithmetic(self, op: type, left: Value, right: Value) -> Value:
-        kind = FLOAT if FLOAT in (left.kind, right.kind) else INT
-        if op is ast.Div:
-            return Value(FLOAT, f"((double){left.text} / {right.text})")
+        kind = FLOAT if FLOAT in (left.kind, right.kind) or op is ast.Div else INT
+        both = [left.converted(kind), right.converted(kind)]
         if op in _ROUNDED:
-            return Value(kind, f"{kind.word}_{_ROUNDED[op]}({left.text}, {right.text})")
-        return Value(kind, f"({left.text} {SIGNS[op]} {right.text})")
+            return Value(kind, f"{kind.word}_{_ROUNDED[op]}({both[0].text}, {both[1].text})")
+        return joined("/" if op is ast.Div else SIGNS[op], both)._replace(kind=kind)
 
     def _part(self, owner: Value, parts: list[ast.expr]) -> Value:
         """Translate an element of an array, or a part without gaps, or an item of a tuple."""
         element = owner.kind.element
         assert element
         if owner.kind.members:
-            return Value(element, f"{owner.text}.at[{self.value(parts[0]).text}]")
+            item = self.value(parts[0]).text
+            return Value(element, f"{owner.within(Rank.PRIMARY)}.at[{item}]")
+        *_, last = parts
         sizes = owner.sizes
         shape = sizes[len(parts) :]
-        place = [f"{owner.text}.data"]
-        for axis, part in enumerate(parts):
-            start = part
-            if isinstance(part, ast.Slice):
-                ends = axis + 1 == len(parts) and part.step is None
-                self.require(ends, part, "has gaps between its rows")
-                start = part.lower or ast.Constant(0)
-                stop = self.value(part.upper).text if part.upper else sizes[axis]
-                shape.insert(0, f"{stop} - {self.value(start).text}")
-            self.require(not isinstance(start, ast.UnaryOp), part, "counts from the end")
-            at = self.value(start).text
-            if at != "0":
-                place.append(" * ".join([at, *sizes[axis + 1 :]]))
+        if isinstance(last, ast.Slice):
+            self.require(last.step is None, last, "has gaps between its rows")
+            end = self._once(last.upper) if last.upper else sizes[len(parts) - 1]
+            start = [self._once(last.lower)] if last.lower else []
+            shape = [joined("-", [end, *start]), *shape]
+            parts = [*parts[:-1], last.lower or ast.Constant(0)]
+        offsets = [self._offset(part, sizes[k:]) for k, part in enumerate(parts, 1)]
+        offsets = [own for own in offsets if own.text != "0"]
         if shape:
-            return _array(element, " + ".join(place), shape)
-        return Value(element, f"{place[0]}[{' + '.join(place[1:]) or 0}]")
+            return array(element, joined("+", [owner.data, *offsets]), shape)
+        first = re.sub(r"^\(\(\w+ \*\)(\w+)\)$", r"\1", owner.data.within(Rank.PRIMARY))
+        return Value(element, f"{first}[{joined('+', offsets).text if offsets else 0}]")
+
+    def _offset(self, node: ast.expr, steps: list[Value]) -> Value:
+        """Translate an index into the elements before it, where it counts so many at a time."""
+        self.require(not isinstance(node, ast.Slice), node, "has gaps between its rows")
+        self.require(not isinstance(node, ast.UnaryOp), node, "counts from the end")
+        at = self.value(node)
+        if at.text == "0" or not steps:
+            return at
+        return joined("*", steps if at.text == "1" else [at, *steps])
 
     def _call(self, node: ast.Call) -> Value:
         """Translate a call."""
@@ -220,46 +350,65 @@ class Expressions:
         name = ast.unparse(node.func)
         match node.func:
             case ast.Attribute(value=owner, attr="copy"):
-                own = self.value(owner)
-                data = f"arena_copy(arena, {own.text}.data, {own.size})"
-                return _array(own.kind.element, data, own.sizes)
+                own = self._once(owner)
+                return self._taken(own.kind.element, "copy", [own.data, own.size], own.sizes)
             case ast.Attribute(value=owner, attr="reshape"):
-                own = self.value(owner)
-                return _array(own.kind.element, f"{own.text}.data", self._texts(node.args))
+                own = self._once(owner)
+                return array(own.kind.element, own.data, [*map(self._once, node.args)])
             case ast.Attribute(value=ast.Name(id="np"), attr="empty" | "zeros" as word):
-                shape = self._texts(getattr(node.args[0], "elts", node.args))
-                return _array(FLOAT, f"arena_{word}(arena, {' * '.join(shape)})", shape)
+                shape = [*map(self._once, getattr(node.args[0], "elts", node.args))]
+                return self._taken(FLOAT, word, [joined("*", shape)], shape)
         home, found = self.translator.package.find(self.module, name)
         if isinstance(found, ast.FunctionDef) and decoration(found):
             return self._kernel(node, home, found)
+        values = [self.value(each) for each in node.args]
         if isinstance(found, ast.ClassDef):
             kind = self.translator.kinds.of(home, found)
-            return Value(kind, literal(kind, self._texts(node.args)))
-        return self._standard(name, [self.value(each) for each in node.args])
+            given = zip(values, kind.members.values(), strict=True)
+            texts = [own.converted(each).initializer for own, each in given]
+            return Value(kind, literal(kind, texts))
+        return self._standard(name, values)
 
-    def _texts(self, nodes: list[ast.expr]) -> list[str]:
-        return [self.value(each).text for each in nodes]
+    def _taken(
+        self, element: Kind | None, word: str, given: list[Value], sizes: list[Value]
+    ) -> Value:
+        """Return an array in memory that the function takes."""
+        assert element
+        self.uses_arena = True
+        texts = ", ".join(["arena", *(own.text for own in given)])
+        data = Value(element, f"({element.tag} *)arena_{word}({texts})", Rank.UNARY)
+        return array(element, data, sizes)
 
     def _kernel(self, node: ast.Call, home: Module, found: ast.FunctionDef) -> Value:
         """Translate the call of another kernel."""
         own = self.translator.function(home, found)
-        texts = ["arena"]
-        for each, name in zip(node.args, own.parameters, strict=True):
-            value = self.value(each)
-            text = f"&{value.text}" if value.kind.is_named else value.text
-            if value.kind.is_named and isinstance(each, ast.Call):
-                text = f"({value.kind.tag}[1]){{{value.text}}}"
-            texts.append(text)
+        self.uses_arena |= own.uses_arena
+        texts = ["arena"] * own.uses_arena
+        for each, (name, kind) in zip(node.args, own.parameters.items(), strict=True):
+            value = self.value(each).converted(kind)
+            known = not self.translator.plan.get(value.kind.tag) or value.is_plan
+            self.require(known, each, "is another one than the plan's")
+            texts.append(self._address(value, each) if value.kind.is_named else value.text)
             given = ast.unparse(each)
             places = [place for place in own.written if place.partition(".")[0] == name]
             self.written |= {given + place.removeprefix(name) for place in places}
         return Value(own.result, f"{own.name}({', '.join(texts)})")
 
+    def _address(self, value: Value, node: ast.expr) -> str:
+        """Return the address of a struct."""
+        if isinstance(node, ast.Call):
+            value = self._keep(value, node)
+        return value.pointer or f"&{value.text}"
+
     def _standard(self, name: str, values: list[Value]) -> Value:
         """Translate a function of Python, of its module math or of numpy."""
         kind = self._wider(values)
         if name == "len":
-            return Value(INT, values[0].sizes[0])
+            return values[0].sizes[0]
+        if name == "float":
+            return values[0].converted(FLOAT)
         own = (kind, f"{kind.word}_{name}")
-        kind, word = own if name in ("min", "max") else _FUNCTIONS[name]
-        return Value(kind, f"{word}({', '.join(own.text for own in values)})")
+        result, word = own if name in ("min", "max") else _FUNCTIONS[name]
+        given = kind if name in ("min", "max") else FLOAT
+        texts = [own.converted(given).text for own in values]
+        return Value(result, f"{word}({', '.join(texts)})")

@@ -11,7 +11,7 @@ typedef struct { int64_t *data; int64_t size0; } IntVector;
 typedef struct { int64_t *data; int64_t size0, size1; } IntMatrix;
 
 /* min and max return the first of equal numbers, and the first beside a NaN, as Python's do.
- * Quotient and remainder are rounded down. */
+ * Quotient and remainder are rounded down. A float beyond all integers becomes the last of them. */
 
 static inline double double_min(double a, double b) { return b < a ? b : a; }
 
@@ -30,6 +30,16 @@ static inline int64_t int_remainder(int64_t a, int64_t b)
 {
     return a % b + ((a % b != 0 && (a < 0) != (b < 0)) ? b : 0);
 }
+
+static inline int64_t int_of(double a)
+{
+    if (!(a < (double)INT64_MAX)) return INT64_MAX;
+    return a > (double)INT64_MIN ? (int64_t)a : INT64_MIN;
+}
+
+static inline int64_t int_floor(double a) { return int_of(floor(a)); }
+
+static inline int64_t int_ceil(double a) { return int_of(ceil(a)); }
 
 static inline double double_remainder(double a, double b)
 {

@@ -93,7 +93,7 @@ class Kinds:
     def _named(self, module: Module, node: ast.ClassDef) -> Kind:
         rows = [each for each in node.body if isinstance(each, ast.AnnAssign)]
         members = {ast.unparse(row.target): self.of(module, row.annotation) for row in rows}
-        tag = f"{module.name.rpartition('.')[2]}_{node.name.strip('_')}"
+        tag = module.c_name(node.name)
         about = (ast.get_docstring(node) or "").partition("\n")[0]
         fields = "".join(f"\n    {kind.tag} {name};" for name, kind in members.items())
         self.structs[tag] = f"/* {about} */\ntypedef struct {{{fields}\n}} {tag};"

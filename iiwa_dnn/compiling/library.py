@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Generic, ParamSpec, TypeVar, cast, get_type_hi
 import numpy as np
 
 from iiwa_dnn.compiling.build import build
-from iiwa_dnn.compiling.translator import c_name
+from iiwa_dnn.compiling.sources import c_name
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 P = ParamSpec("P")

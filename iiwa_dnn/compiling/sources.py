@@ -33,7 +33,7 @@ def decoration(node: ast.AST | None) -> str:
 def stored_names(node: ast.AST) -> list[str]:
     """List the variables that a node writes."""
     names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
-    return [each.id for each in names if isinstance(each.ctx, ast.Store)]
+    return [each.id for each in names if isinstance(each.ctx, ast.Store) and each.id != "_"]
 
 
 def _bound(node: ast.stmt) -> list[str]:
@@ -46,6 +46,12 @@ def _bound(node: ast.stmt) -> list[str]:
         case ast.Assign() | ast.AnnAssign():
             return stored_names(node)
     return []
+
+
+def c_name(module: str, name: str, package: str = "iiwa_dnn") -> str:
+    """Return the name in C of what a module binds: its full name, within a package without it."""
+    words = [*module.removeprefix(f"{package}.").split("."), name.strip("_")]
+    return "_".join(words).lstrip("_")
 
 
 class Module(dict[str, Any]):
@@ -75,6 +81,10 @@ class Module(dict[str, Any]):
             return home[name]
         exec(compile(ast.Module([self.names[name]], []), self.path, "exec"), {}, self)
         return self[name]
+
+    def c_name(self, name: str) -> str:
+        """Return the name in C of what is bound here."""
+        return c_name(self.name, name, self.package.folder.name)
 
     def value(self, node: ast.expr) -> Any:
         """Compute an expression of constants."""

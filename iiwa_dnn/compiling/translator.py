@@ -9,13 +9,17 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
+from itertools import groupby
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
-from .expressions import SIGNS, Expressions, Value, number_text
-from .kinds import FLOAT, INT, VOID, Kinds
-from .sources import ENTRY, Module, Package, decoration, fail, stored_names
+from .expressions import SIGNS, Expressions, Rank, Value, array, c_word, number
+from .kinds import INT, VOID, Kinds
+from .sources import ENTRY, Module, Package, TranslationError, decoration, fail, stored_names
 
 
 class Translator:
@@ -25,8 +29,8 @@ class Translator:
         package: The package that they are in.
         kinds: Types of their variables.
         functions: The functions, by module and name.
-        tables: Tables of numbers, by their names in C.
-        constants: Values of members of a named tuple that an exported text has one of, by its type.
+        constants: Constants of modules and of the exported plan, by their names in C.
+        plan: Members of the exported plan that are constants, by its types and the members' names.
         parts: Functions that entries call by their numbers, from 1; None: by any address.
     """
 
@@ -36,27 +40,55 @@ class Translator:
         self.kinds = Kinds(self.package)
         self.functions: dict[tuple[str, str], Function] = {}
         self.parts: list[Function] | None = None
-        self.tables: dict[str, str] = {}
-        self.constants: dict[str, dict[str, str]] = {}
+        self.constants: dict[str, str] = {}
+        self.plan: dict[str, dict[str, Value]] = {}
 
     def all(self) -> None:
         """Translate all kernels of the package."""
         for module, node in self.package.kernels():
             self.function(module, node)
 
-    def text(self) -> str:
-        """Return structs, tables and functions as one text."""
-        heads = [f"{own.head};" for own in self.functions.values()]
-        enter = _entry if self.parts is None else partial(_numbered, parts=self.parts)
-        bodies = [own.text or enter(own) for own in self.functions.values()]
-        return "\n".join([*self.kinds.structs.values(), *self.tables.values(), *heads, *bodies])
+    def text(self, titles: Mapping[str, str] = MappingProxyType({})) -> str:
+        """Return structs, constants and functions as one text.
 
-    def table(self, tag: str, values: Sequence[float]) -> Value:
-        """Write a table of numbers; return its place."""
-        kind = INT if isinstance(values[0], int) else FLOAT
-        numbers = ", ".join(map(number_text, values))
-        self.tables[tag] = f"static const {kind.tag} {tag}[] = {{{numbers}}};"
-        return Value(kind, f"({kind.tag} *){tag}")
+        Args:
+            titles: Titles of sections, in their order, by the first word of a module in the
+                package; by none for modules from outside.
+        """
+        enter = _entry if self.parts is None else partial(_numbered, parts=self.parts)
+        ranks = {room: i for i, room in enumerate(titles)}
+        functions = sorted(self.functions.values(), key=lambda own: ranks.get(own.room(titles), 0))
+        defined: set[str] = set()
+        early: set[str] = set()
+        bodies = []
+        for room, group in groupby(functions, key=lambda own: own.room(titles)):
+            bodies += [f"\n/* ---- {titles[room]} ---- */\n"] if titles else []
+            for own in group:
+                body = own.text or enter(own)
+                defined.add(own.name)
+                early |= {*re.findall(r"\w+(?=\()", body)} - defined
+                bodies.append(body)
+        heads = [f"{own.head};" for own in functions if own.name in early]
+        parts = [*self.kinds.structs.values(), *self.constants.values(), *heads, *bodies]
+        return "\n".join(parts)
+
+    def constant(self, name: str, own: Any, shape: Sequence[int] = ()) -> Value:
+        """Write a constant, a number or a sequence of numbers; return its place.
+
+        Raises:
+            TranslationError: Another constant has the name.
+        """
+        is_table = isinstance(own, Sequence)
+        numbers = [number(each) for each in (own if is_table else [own])]
+        kind = numbers[0].kind
+        items = ", ".join(each.text for each in numbers)
+        text = f"{name}[] = {{{items}}}" if is_table else f"{name} = {items}"
+        if self.constants.setdefault(name, text := f"static const {kind.tag} {text};") != text:
+            raise TranslationError(f"{name} is the name of two constants")
+        if not is_table:
+            return Value(kind, name)
+        data = Value(kind, f"({kind.tag} *){name}", Rank.UNARY)
+        return array(kind, data, [number(size) for size in shape or [len(own)]])
 
     def function(self, module: Module, node: ast.FunctionDef) -> Function:
         """Return the translation of a function."""
@@ -65,12 +97,15 @@ class Translator:
             own = self.functions[key] = Function(self, module, node)
             if own.decoration != ENTRY:
                 own.translate()
+            self.functions[key] = self.functions.pop(key)  # after those that it calls
         return self.functions[key]
 
 
-def c_name(module: str, name: str) -> str:
-    """Return the name in C of a function of a module."""
-    return "_".join([*module.split(".")[1:][-2:], name.strip("_")])
+_LEFT = "return"
+"""Mark of a block whose end is never reached, among the names of variables."""
+
+_LASTING = r"\w+(\.size\d)?( [*+-] \w+(\.size\d)?)*"
+"""Ends of a loop that nothing writes but their own names."""
 
 
 class Function(Expressions):
@@ -91,71 +126,104 @@ class Function(Expressions):
         of = translator.kinds.of
         kinds = {own.arg: of(module, own.annotation or own) for own in node.args.args}
         super().__init__(translator, module, kinds)
-        self.name = c_name(module.name, node.name)
+        self.name = module.c_name(node.name)
         self.about = ast.get_docstring(node) or ""
         self.decoration = decoration(node)
         self.result = of(module, node.returns or ast.Constant(None))
         self.types = [f"const {k.tag} *" if k.is_named else f"{k.tag} " for k in kinds.values()]
-        own = ["struct arena *arena", *map("".join, zip(self.types, kinds, strict=True))]
-        self.head = f"static {self.result.tag} {self.name}({', '.join(own)})"
         self.text = ""
+        self.uses_arena |= self.decoration == ENTRY
         self._node = node
-        self._lines: list[str] = []
+        self._stored = Counter(stored_names(node))
+        self._declared = dict.fromkeys(kinds, 0)
+        self._is_const = [False]
+
+    @property
+    def head(self) -> str:
+        """Declaration in C."""
+        names = map(c_word, self.parameters)
+        own = ["struct arena *arena"] * self.uses_arena
+        own += map("".join, zip(self.types, names, strict=True))
+        return f"static {self.result.tag} {self.name}({', '.join(own) or 'void'})"
 
     @property
     def code(self) -> str:
         """Types of parameters and result as a text, one letter each."""
         return f"{''.join(kind.code for kind in self.parameters.values())}:{self.result.code}"
 
+    def room(self, rooms: Iterable[str]) -> str:
+        """Return which of the package's folders the function comes from, or nothing."""
+        words = self.module.name.split(".")
+        is_own = words[0] == self.translator.package.folder.name and words[1] in rooms
+        return words[1] if is_own else ""
+
     def translate(self) -> None:
         """Translate the body."""
         self._takes = re.search(r"\bnp\.(empty|zeros)\(|\.copy\(\)", ast.unparse(self._node))
+        if self._takes:
+            self.lines.append("const struct arena mark = *arena;")
         self._block(self._node.body)
-        if self.result is VOID:
-            self._return(None)
-        variables = {own: kind for own, kind in self.kinds.items() if own not in self.parameters}
-        declared = [f"{kind.tag} {own};" for own, kind in variables.items()]
-        mark = ["const struct arena mark = *arena;"] if self._takes else []
+        left = self._assigns(self._node.body)
+        self.require(self.result is VOID or _LEFT in left, self._node, "may end without a result")
+        if self._takes and _LEFT not in left:
+            self.lines.append("arena_leave(arena, &mark);")
         about = f"{self.about}\n\n{self.module.path}: {self._node.name}"
-        self.text = self.written_out(about, [*declared, *mark, *self._lines])
+        self.text = self.written_out(about, self.lines)
 
     def written_out(self, about: str, lines: list[str]) -> str:
         """Return the function with a body; parameters that it does not read are said to be idle."""
         body = "\n    ".join(lines)
-        names = ["arena", *self.parameters]
+        # A variable that is never written again is constant.
+        body = re.sub(r"\0(\d+) ", lambda own: "const " * self._is_const[int(own[1])], body)
+        names = [*["arena"] * self.uses_arena, *map(c_word, self.parameters)]
         idle = [own for own in names if not re.search(rf"(?<![.>\w]){own}\b", body)]
         body = "\n    ".join([*(f"(void){own};" for own in idle), body])
         comment = about.replace("\n", "\n * ").replace(" \n", "\n")
         return f"/* {comment} */\n{self.head}\n{{\n    {body}\n}}\n"
 
+    def _assigns(self, block: list[ast.stmt]) -> set[str]:
+        """Return the variables that a block writes on every way to its end.
+
+        All are written, and `_LEFT` is, if no way leads there.
+        """
+        found: set[str] = set()
+        for node in block:
+            match node:
+                case ast.Return() | ast.Break() | ast.Continue():
+                    return {*self._stored, _LEFT}
+                case ast.If(body=body, orelse=orelse):
+                    found |= self._assigns(body) & self._assigns(orelse)
+                case ast.Assign() | ast.AnnAssign():
+                    found.update(stored_names(node))
+        return found
+
     def _block(self, statements: list[ast.stmt]) -> None:
         """Translate statements of a block."""
         for node in statements:
             if self.translator.parts is None:  # of a library, which nobody reads
-                self._lines.append(f'#line {node.lineno} "{self.module.path}"')
+                self.lines.append(f'#line {node.lineno} "{self.module.path}"')
             try:
                 self._statement(node)
             except (AttributeError, LookupError, NameError, TypeError, ValueError) as error:
                 fail(self.module, node, f"has no translation: {error}")
+            self.assigned |= self._assigns([node])
 
     def _statement(self, node: ast.stmt) -> None:
         match node:
             case ast.Pass() | ast.Expr(value=ast.Constant()):
                 pass
             case ast.Break() | ast.Continue():
-                self._lines.append(f"{ast.unparse(node)};")
+                self.lines.append(f"{ast.unparse(node)};")
             case ast.Expr(value=called):
-                self._lines.append(f"{self.value(called).text};")
+                self.lines.append(f"{self.value(called).text};")
             case ast.Return(value=value):
                 self._return(value)
-            case ast.If(test=test, body=body, orelse=orelse):
-                self._nested(f"if {self.condition(test)}", body)
-                if orelse:
-                    self._nested("else", orelse)
+            case ast.If():
+                self._if(node)
             case ast.While(test=test, body=body, orelse=[]):
-                self._nested(f"while {self.condition(test)}", body)
+                self._nested(f"while ({self._uncertain(test).text})", body)
             case ast.For(iter=ast.Call(func=ast.Name(id="range"), args=args), orelse=[]):
-                self._for(node, [self.value(each).text for each in args])
+                self._for(node, [self.value(each) for each in args])
             case (
                 ast.Assign(targets=[target], value=value)
                 | ast.AnnAssign(target=target, value=ast.expr() as value)
@@ -167,65 +235,119 @@ class Function(Expressions):
                 fail(self.module, node, "has no translation")
 
     def _nested(self, head: str, body: list[ast.stmt]) -> None:
-        """Translate a block under a head."""
-        before = len(self._lines)
+        """Translate a block under a head; variables that it declares are its own."""
+        before = len(self.lines)
+        declared = dict(self._declared)
+        assigned = {*self.assigned}
         self._block(body)
-        self._lines[before:] = [f"{head} {{", *(f"    {own}" for own in self._lines[before:]), "}"]
+        self._declared = declared
+        self.assigned.intersection_update(assigned)
+        self.lines[before:] = [f"{head} {{", *(f"    {own}" for own in self.lines[before:]), "}"]
+
+    def _if(self, node: ast.If) -> None:
+        """Translate a condition; a variable that each way writes is declared before it."""
+        head = f"if ({self.value(node.test).text})"
+        before = len(self.lines)
+        found = self._assigns([node])
+        shared = set() if _LEFT in found else found - self._declared.keys()
+        self._declared |= dict.fromkeys(shared, 0)
+        self._nested(head, node.body)
+        if node.orelse:
+            closed = len(self.lines)
+            self._nested("else", node.orelse)
+            self._join(closed, node.orelse)
+        declared = [f"{self.kinds[own].tag} {c_word(own)};" for own in sorted(shared)]
+        self.lines[before:before] = declared
+
+    def _join(self, closed: int, orelse: list[ast.stmt]) -> None:
+        """Write what is done otherwise in the line of the brace before it, and so a condition."""
+        first, *inner = self.lines[closed:]
+        is_alone = isinstance(orelse[0], ast.If) and len(orelse) == 1
+        if is_alone and inner[0].startswith("    if ("):
+            first, *inner = [own[4:] for own in inner[:-1]]
+            first = f"else {first}"
+        self.lines[closed - 1 :] = [f"}} {first}", *inner]
 
     def _return(self, node: ast.expr | None) -> None:
         """Return a value, and give back what the function has taken."""
-        text = f" {self.value(node).text}" if node else ""
-        if self._takes and text:
-            self._lines.append(f"const {self.result.tag} own_result ={text};")
-            text = " own_result"
+        own = self.value(node).converted(self.result) if node else Value(VOID, "")
+        if self._takes and not re.fullmatch(r"[\w.-]*", own.text):
+            self.lines.append(f"const {self.result.tag} own_result = {own.initializer};")
+            own = Value(VOID, "own_result")
         if self._takes:
-            self._lines.append("arena_leave(arena, &mark);")
-        self._lines.append(f"return{text};")
+            self.lines.append("arena_leave(arena, &mark);")
+        self.lines.append(f"return {own.text};" if own.text else "return;")
 
-    def _for(self, node: ast.For, ends: list[str]) -> None:
+    def _for(self, node: ast.For, ends: list[Value]) -> None:
         """Translate a loop over a range; its variable is known inside of it alone."""
         name = ast.unparse(node.target)
         self.require(len(ends) < 3, node, "has a step")
-        taken = {*self.kinds, *stored_names(ast.Module(node.body, []))}
+        stored = {*stored_names(ast.Module(node.body, []))}
+        taken = {*self.kinds, *stored}
         self.require(name == "_" or name not in taken, node, "writes another variable, or its own")
         self.kinds[name] = INT
-        start = f"int64_t {name} = {ends[0] if len(ends) > 1 else 0}, end_{name} = {ends[-1]}"
-        self._nested(f"for ({start}; {name} < end_{name}; {name}++)", node.body)
+        start = f"int64_t {name} = {ends[0].text if len(ends) > 1 else 0}"
+        end = ends[-1].text
+        if not re.fullmatch(_LASTING, end) or stored & {*re.findall(r"\w+", end)}:
+            start += f", end_{name} = {end}"
+            end = f"end_{name}"
+        self.assigned.add(name)
+        self._nested(f"for ({start}; {name} < {end}; {name}++)", node.body)
+        self.assigned.discard(name)
         self.kinds.pop(name, None)
 
     def _store(self, target: ast.expr, sign: str, value: Value) -> None:
         """Translate the writing of a value."""
         match target:
             case ast.Tuple(elts=targets):
-                own = f"own_{len(self._lines)}"
-                self._lines.append(f"const {value.kind.tag} {own} = {value.text};")
+                own = self._keep(value, target).text
                 assert value.kind.element
                 for i, each in enumerate(targets):
                     if ast.unparse(each) != "_":
                         self._store(each, "=", Value(value.kind.element, f"{own}.at[{i}]"))
-                return
             case ast.Name(id=name):
-                self.kinds.setdefault(name, value.kind)
-                place = name
+                self._write(name, target, sign, value)
             case ast.Subscript(value=owner):
                 self.written.add(ast.unparse(owner))
                 whole = self.value(target)
-                place = whole.text
+                text = value.converted(whole.kind.element or whole.kind).text
                 if whole.kind.axes:
-                    loop = (
-                        f"for (int64_t own_k = 0, own_end = {whole.size}; own_k < own_end; own_k++)"
-                    )
-                    place = f"{loop} {whole.text}.data[own_k]"
-        self._lines.append(f"{place} {sign} {value.text};")
+                    self.require(sign == "=", target, "is an array")
+                    head = f"for (int64_t own_k = 0; own_k < {whole.size.text}; own_k++)"
+                    first = whole.data.within(Rank.PRIMARY)
+                    self.lines += [f"{head} {{", f"    {first}[own_k] = {text};", "}"]
+                else:
+                    self.lines.append(f"{whole.text} {sign} {text};")
+            case _:
+                fail(self.module, target, "has no translation")
+
+    def _write(self, name: str, target: ast.expr, sign: str, value: Value) -> None:
+        """Translate the writing of a variable, which is declared where it is first written."""
+        kind = self.kinds.setdefault(name, value.kind)
+        own = c_word(name)
+        if sign != "=":
+            self.value(target)
+        if name in self._declared:
+            self._is_const[self._declared[name]] = False
+            self.lines.append(f"{own} {sign} {value.converted(kind).text};")
+            return
+        if value.is_plan and self._stored[name] == 1:
+            self.plans.add(name)
+        self._declared[name] = len(self._is_const)
+        text = value.converted(kind).initializer
+        self.lines.append(f"\0{len(self._is_const)} {kind.tag} {own} = {text};")
+        self._is_const.append(True)
 
 
 def _numbered(own: Function, parts: list[Function]) -> str:
     """Write the function that enters one of an exported text's parts by its number."""
-    address, *names = own.parameters
-    given = ", ".join(["arena", *names])
+    address, *names = map(c_word, own.parameters)
     back = "return " * (own.result is not VOID)
-    fitting = [(n, part) for n, part in enumerate(parts, 1) if part.code == own.code[1:]]
-    lines = [f"if ({address} == {n}) {back}{part.name}({given});" for n, part in fitting]
+    lines = []
+    for n, part in enumerate(parts, 1):
+        if part.code == own.code[1:]:
+            given = ", ".join([*["arena"] * part.uses_arena, *names])
+            lines += [f"if ({address} == {n}) {{", f"    {back}{part.name}({given});", "}"]
     if back:
         lines += [f"const {own.result.tag} none = {{0}};", "return none;"]
     return own.written_out(own.about, lines)
@@ -258,10 +380,10 @@ def _flat(value: Value) -> Iterator[tuple[str, str]]:
     """Return the types and texts of the flat arguments for one argument."""
     kind = value.kind
     if kind.element and kind.axes:
-        yield f"{kind.element.tag} *", f"{value.text}.data"
-        yield from (("int64_t", size) for size in value.sizes)
+        yield f"{kind.element.tag} *", value.data.text
+        yield from (("int64_t", size.text) for size in value.sizes)
     elif kind.members:
         for name, own in kind.members.items():
-            yield from _flat(Value(own, f"{value.text}.{name}"))
+            yield from _flat(value.member(name, own))
     else:
         yield kind.tag, value.text

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn.compiling.binding import prelude
-from iiwa_dnn.compiling.expressions import number_text
+from iiwa_dnn.compiling.expressions import Value
 from iiwa_dnn.compiling.library import Entry, source_of
-from iiwa_dnn.compiling.sources import TranslationError
+from iiwa_dnn.compiling.sources import TranslationError, c_name
 from iiwa_dnn.compiling.translator import Function, Translator
 from iiwa_dnn.control import shield as shields
 from iiwa_dnn.control.controller import Controller
@@ -27,12 +27,51 @@ from iiwa_dnn.schemes.step import TARGET_SIZE
 
 _PACKAGE = Path(__file__).parents[1]
 
+WIDTH = 120
+"""Letters of a line of C at most."""
+
+_SECTIONS = {
+    "robot": "Kinematics of the arm",
+    "references": "Targets of the tracked frames",
+    "qp": "Quadratic programs",
+    "schemes": "Program of a step: costs, tasks, limits",
+    "networks": "Network that solves the program",
+    "control": "Control step: answer, yielding, braking",
+    "": "Parts from outside of the package",
+}
+"""Titles of the sections of the code, by the packages that they are translated from."""
+
+_ARENA = "    bool full = false;\n    struct arena arena = controller_arena(c, &full);\n"
+
 
 def filled(template: str, values: dict[str, Any]) -> str:
     """Return a template with values in the places of their names."""
     text = (_PACKAGE / "export" / "templates" / template).read_text(encoding="utf-8")
     text = re.sub(r"@(\w+)@", lambda found: str(values[found[1]]), text)
-    return re.sub(r"\bint64_t\b", "ptrdiff_t", text)  # half as long on a microcontroller
+    if not template.endswith((".c", ".h")):
+        return text
+    text = re.sub(r"\bint64_t\b", "ptrdiff_t", text).replace("INT64_", "PTRDIFF_")
+    return "\n".join(part for line in text.split("\n") for part in wrapped(line))
+
+
+def wrapped(line: str) -> list[str]:
+    """Break a line of C that is too long, each time where it is nested least."""
+    lines = []
+    indent = " " * (len(line) - len(line.lstrip()) + 4)
+    while len(line) > WIDTH:
+        depth = 0
+        places = []
+        for at, letter in enumerate(line[:WIDTH]):
+            depth += (letter in "({[") - (letter in ")}]")
+            is_operator = re.match(r" (&&|\|\||[-+*/?:]) ", line[at : at + 4])
+            if at > WIDTH // 3 and (line[at - 1 : at + 1] in (", ", "= ") or is_operator):
+                places.append((depth, -at))
+        if not places:
+            break
+        _, end = min(places)
+        lines.append(line[:-end])
+        line = indent + line[-end:].lstrip()
+    return [*lines, line]
 
 
 def code_of(controller: Controller, shield: shields.Shield | None = None) -> dict[str, Any]:
@@ -59,8 +98,8 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
     code = _Code(program.needs_inertia)
     lengths = _lengths(controller, shield is not None)
     texts: dict[str, Any] = {
-        "plan": code.value("plan", code.numbered(step.plan)),
-        "model": code.value("model", model),
+        "plan": code.initializer("plan", code.numbered(step.plan)),
+        "model": code.initializer("model", model),
         "take_step": code.kernel(take_step),
         "kinematics": code.kernel(write_kinematics),
         "target_function": "",
@@ -88,6 +127,7 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
         "joint_names": ", ".join(robot.joint_names),
         "dt": repr(controller.dt),
         "code": code.text(),
+        "map": "\n".join(f" * - {title}" for title in _SECTIONS.values()),
         "fields": "\n".join(f"    double {name}[{k}];" for name, k in lengths.items() if k),
         "size": 8 * sum(lengths.values()),
         "actions": "\n".join(f"#define CONTROLLER_{each.name} {each.value}" for each in Action),
@@ -97,13 +137,17 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
 
 def _shield_texts(code: _Code, shield: shields.Shield) -> dict[str, Any]:
     """Return the texts of a shield's own step."""
-    return {
-        "settings": code.value("of_shield", shield.settings),
-        "limits": code.value("motion", shield.motion),
-        "periods": code.value("periods", constant_periods(shield.dt)),
+    kernels = {
         "take_positions": code.kernel(shields.take_positions),
         "take_wish": code.kernel(shields.take_wish),
         "come_nearer": code.kernel(shields.come_nearer),
+    }
+    return {
+        **kernels,
+        "arena": _ARENA * any("&arena" in call for call in kernels.values()),
+        "settings": code.initializer("shield_settings", shield.settings),
+        "limits": code.initializer("shield_motion", shield.motion),
+        "periods": code.initializer("shield_periods", constant_periods(shield.dt)),
         "rows": ROWS,
         "yields": YIELDS,
         "reason": shields.REASON,
@@ -167,8 +211,9 @@ class _Code:
         return self._numbers[address]
 
     def kernel(self, kernel: Any) -> str:
-        """Translate a kernel; return its name in C."""
-        return self._translated(source_of(kernel)).name
+        """Translate a kernel; return how a call of it in C begins."""
+        own = self._translated(source_of(kernel))
+        return f"{own.name}({'&arena, ' * own.uses_arena}"
 
     def _translated(self, function: Any) -> Function:
         """Translate a function of the package or of a user's, or raise an InvalidInputError."""
@@ -181,28 +226,37 @@ class _Code:
             problem = f"{function!r} cannot be exported: {error}"
             raise InvalidInputError("controller", problem) from error
 
-    def value(self, name: str, own: Any) -> str:
-        """Return the initializer of a named tuple, a number, or an array, which becomes a table.
+    def initializer(self, path: str, own: Any) -> str:
+        """Return the initializer of a named tuple, a number or an array, by its path in C."""
+        own = self._value(path, own)
+        return own.initializer if isinstance(own, Value) else own
 
-        Members of named tuples that do not live in the struct are constants of the kernels.
-        """
+    def _value(self, path: str, own: Any) -> Value | str:
+        """Write what does not live in the struct as a constant; return its place or initializer."""
+        field = self._fields.get(path.rpartition(".")[2])
+        if field:
+            return f"{{{', '.join([field, *map(str, own.shape)])}}}"
         if isinstance(own, np.ndarray):
-            # In C no table is empty.
+            # In C no array is empty.
             numbers = (own if own.size else np.zeros(1, own.dtype)).ravel().tolist()
-            data = self._fields.get(name) or self._translator.table(f"table_{name}", numbers).text
-            return f"{{{', '.join([data, *map(str, own.shape)])}}}"
+            return self._translator.constant(path.replace(".", "_"), numbers, own.shape)
         if not isinstance(own, tuple):
-            return number_text(own)
+            return self._translator.constant(path.replace(".", "_"), own)
         items: dict[str, Any] = own._asdict()  # type: ignore[attr-defined]
-        values = {each: self.value(each, item) for each, item in items.items()}
-        plain = {each: value for each, value in values.items() if "c->" not in value}
-        tag = f"{type(own).__module__.rpartition('.')[2]}_{type(own).__name__}"
-        self._translator.constants[tag] = plain
-        return f"{{{', '.join(values.values())}}}"
+        values = {each: self._value(f"{path}.{each}", item) for each, item in items.items()}
+        constants = {each: item for each, item in values.items() if isinstance(item, Value)}
+        tag = c_name(type(own).__module__, type(own).__name__)
+        plan = self._translator.plan
+        plan[tag] = {} if plan.get(tag, constants) != constants else constants
+        lines = [
+            f"    .{each} = {item.initializer if isinstance(item, Value) else item},"
+            for each, item in values.items()
+        ]
+        return "\n".join(["{", *lines, "}"]).replace("\n", "\n    ")
 
     def text(self) -> str:
         """Return structs, tables and functions, and before them those of C's own that they call."""
-        text = self._translator.text()
+        text = self._translator.text(_SECTIONS)
         shared = prelude("kernels.h").split("\n\n")
         found = [re.match(r"static inline \S+ \*?(\w+)\(", each) for each in shared]
         used = [e for e, own in zip(shared, found, strict=True) if not own or own[1] in text]

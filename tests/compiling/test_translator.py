@@ -135,6 +135,57 @@ def arrays(values: Vector, rows: Matrix, counts: IntVector) -> None:
 
 
 @compiled
+def precedence(a: float, b: float, i: int, j: int) -> tuple[float, float, float, float]:
+    less = a < b
+    both = (not less) == (b < a)
+    c = a - (b - (a + b)) * -(-a) / (b * (a / (b + 3.0) + 0.1))
+    d = (a if less else b if both else -a) * (2 * i - (i - j)) + i // 2 * 2
+    e = -(a + b) * (a - b) - (-1) * (i * (j - i)) if less or both and not i > j else 0
+    return c, d, e, (1 if less else i) + j
+
+
+@compiled
+def scopes(a: float, n: int) -> float:
+    """Write variables in branches, loops: in both, in one that goes on, in loops of their own."""
+    if a > 0.0:
+        new = a
+        this = 2
+    elif a < -1.0:
+        return -1.0
+    else:
+        new = 2.0 * a
+        this = 3
+    total = new * this
+    for i in range(n):
+        part = i * a
+        if part > 1.0:
+            break
+        elif part < -0.5:
+            part = -part
+        total += part
+    for k in range(n):
+        part = k - a
+        other = part
+        for i in range(n):
+            other = other * 0.5 + part
+        if k == 1:
+            continue
+        total += other
+    return total
+
+
+@compiled
+def tick(counts: IntVector) -> int:
+    counts[0] += 1
+    return counts[0]
+
+
+@compiled
+def once(counts: IntVector) -> bool:
+    return 0 < tick(counts) < 10
+
+
+@compiled
 def views_of(data: Vector, n: int) -> Views:
     return Views(data[:n], data[n:].reshape((data.size - n) // n, n), 2.0)
 
@@ -222,6 +273,9 @@ CALLS: list[tuple[Any, ...]] = [
     *(("loops", 2.0 * RNG.standard_normal(n), n) for n in range(1, 9)),
     *(("arrays", RNG.random(n), RNG.random((2, 4)), np.arange(3)) for n in (3, 4, 7)),
     *(("views", RNG.random(3 * n), n) for n in (1, 2, 5)),
+    *(("precedence", a, b, *ij) for a in NUMBERS for b in (0.7, -3.1) for ij in ((7, 2), (-3, 2))),
+    *(("scopes", a, n) for a in NUMBERS for n in (0, 1, 3)),
+    *(("once", np.array([k, 0])) for k in (-5, 3, 9)),
     *(("whole", i, j) for i in (7, -7, 0) for j in (3, -2, 1)),
     ("constants", 0.3),
     *(("scratch", n) for n in (1, 50, 300)),
@@ -296,6 +350,22 @@ REFUSED = [
     ("def f(a: float) -> None:\n    for x in (a, a):\n        pass", "has no translation"),
     ("def f(a: float) -> None:\n    with a:\n        pass", "`with a:` has no translation"),
     ("def f(a: Vector) -> float:\n    return a[-1]", "counts from the end"),
+    ("def f(a: float) -> float:\n    if a > 0.0:\n        return a", "may end without a result"),
+    ("def f(n: int) -> int:\n    for i in range(n):\n        return i", "may end without a result"),
+    (
+        "def f(a: float) -> float:\n    if a > 0.0:\n        b = a\n    return b",
+        "is not assigned on",
+    ),
+    (
+        "def f(n: int) -> int:\n    while n > 0:\n        n -= 1\n        b = n\n    return b",
+        "not as",
+    ),
+    ("def f(n: int) -> int:\n    b += n\n    return n", "is not assigned on"),
+    (
+        "def f(a: IntVector) -> bool:\n    return a[0] > 0 and 0 < g(a) < 2\n"
+        "@compiled\ndef g(a: IntVector) -> int:\n    return a[1]",
+        "is needed twice",
+    ),
 ]
 BY_THE_COMPILER = [
     "def f(a: int) -> None:\n    a = 0.5",
@@ -320,6 +390,32 @@ def test_what_is_no_kernel_is_refused_by_file_and_line(
     with pytest.raises(TranslationError, match=re.escape(message)) as caught:
         Translator(_write(tmp_path, source)).all()
     assert re.fullmatch(r"package/own\.py:\d+: `[^`]+` (?!.*own\.py).*", str(caught.value))
+
+
+def test_tables_go_by_the_full_names_of_their_modules(tmp_path: Path) -> None:
+    package = tmp_path / "package"
+    for name, number in (("one", 1.0), ("two", 2.0)):
+        (package / name).mkdir(parents=True)
+        source = f"TOWARDS = ({number}, 3.0)\n\n@compiled\ndef f(i: int) -> float:\n    "
+        (package / name / "own.py").write_text(f"{HEAD}\n{source}return TOWARDS[i]\n")
+    library = _module(build(package), "_kernels")
+    assert (library.one_own_f(0), library.two_own_f(0)) == (1.0, 2.0)
+
+
+def test_another_instance_than_the_plans_is_refused(tmp_path: Path) -> None:
+    """An export puts the plan's values in place of its members."""
+    source = """def f(plan: Views) -> float:
+    own = Views(plan.data, plan.rows, 2.0)
+    return g(plan) + g(own)
+
+@compiled
+def g(views: Views) -> float:
+    return views.rate
+"""
+    translator = Translator(_write(tmp_path, source))
+    translator.plan["own_Views"] = {"rate": translator.constant("plan_rate", 0.5)}
+    with pytest.raises(TranslationError, match="`own` is another one than the plan's"):
+        translator.all()
 
 
 @pytest.mark.parametrize("source", BY_THE_COMPILER)

@@ -141,6 +141,26 @@ def test_make_and_the_example_run_as_the_readme_says(heart: Path, tmp_path: Path
     np.testing.assert_allclose(shown, rows[-1, 1:8], rtol=0, atol=1e-6)
 
 
+@pytest.mark.parametrize("name", [*REACHING, "a network of one's own"])
+def test_the_code_reads_as_c_by_hand(name: str, tmp_path: Path) -> None:
+    controller, q0 = SETTINGS[name]()
+    c99(controller, tmp_path, q0)
+    text = (tmp_path / "controller.c").read_text(encoding="utf-8")
+    assert max(map(len, text.splitlines())) <= 120
+    kernels = text[text.index("/* ----") :]
+    assert not re.search(r"\(\*\w+\)[.[]|&\(\*|[=(] \(\(", kernels)
+    assert "        const double below = step->q.data[i] - limits.data[i];\n" in kernels
+    sections = [text.index(f"/* ---- {title}") for title in SECTIONS if title in text]
+    assert sections == sorted(sections)
+    run("gcc", *WARNINGS, "-fsyntax-only", tmp_path / "controller.c")
+    run(
+        "g++", "-std=c++17", "-Wall", "-Werror", "-fsyntax-only", "-xc++", tmp_path / "controller.c"
+    )
+
+
+SECTIONS = ("Kinematics", "Targets", "Program", "Network", "Control step", "Interface")
+
+
 @needs("clang")
 def test_clang_has_no_warning_either(heart: Path) -> None:
     names = ("controller.c", "test_controller.c", "example.c")

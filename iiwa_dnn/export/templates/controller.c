@@ -1,16 +1,22 @@
 /* Velocity controller of the robot @robot@, made by iiwa_dnn @version@ from its own kernels.
  *
  * C99 and libm's elementary functions alone. Every function states the file that it is translated
- * from. Programs have @n@ variables, @m@ inequality rows, @p@ equality rows.
+ * from. Programs have @n@ variables, @m@ inequality rows, @p@ equality rows. In this order stand:
+ *
+@map@
+ * - Interface: `controller_step` and what the header declares beside it
  */
 #include "controller.h"
 
 @code@
+
+/* ---- Interface ---- */
+
 /* What a step is laid out with; tables, and the kinematics in the controller. */
-static inline step_StepPlan controller_plan(struct controller *c)
+static inline control_step_StepPlan controller_plan(struct controller *c)
 {
     (void)c;
-    const step_StepPlan plan = @plan@;
+    const control_step_StepPlan plan = @plan@;
     return plan;
 }
 
@@ -33,8 +39,8 @@ int controller_step(struct controller *c, const double *q, const double *target,
 {
     bool full = false;
     struct arena arena = controller_arena(c, &full);
-    const step_StepPlan plan = controller_plan(c);
-    const kinematics_kernel_ModelTables model = @model@;
+    const control_step_StepPlan plan = controller_plan(c);
+    const robot_kinematics_kernel_ModelTables model = @model@;
     const Vector row = {c->row, @width@};
     const Matrix past = {c->past, @rows@, CONTROLLER_DOF};
     const Matrix following = {c->following, @rows@, CONTROLLER_DOF};
@@ -46,8 +52,8 @@ int controller_step(struct controller *c, const double *q, const double *target,
         return CONTROLLER_INVALID;
     }
     memcpy(c->row + @at_targets@, target, sizeof(double) * 18 * CONTROLLER_FRAMES);
-    @kinematics@(&arena, &model, joints, plan.arrays.jacobian, plan.arrays.placements, plan.arrays.inertia);
-    const ptrdiff_t action = @take_step@(&arena, row, &plan, joints, past, following, state, t, false);
+    @kinematics@&model, joints, plan.arrays.jacobian, plan.arrays.placements, plan.arrays.inertia);
+    const ptrdiff_t action = @take_step@row, &plan, joints, past, following, state, t, false);
     if (full || action == CONTROLLER_INVALID) {
         memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
         return CONTROLLER_INVALID;

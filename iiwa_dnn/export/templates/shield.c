@@ -1,25 +1,23 @@
 
 int shield_step(struct controller *c, const double *q, const double *wish, double *dq)
 {
-    bool full = false;
-    struct arena arena = controller_arena(c, &full);
-    const Vector settings = @settings@;
+@arena@    const Vector settings = @settings@;
     const Vector limits = @limits@;
-    const limits_Periods periods = @periods@;
+    const schemes_limits_Periods periods = @periods@;
     const Vector joints = {(double *)q, CONTROLLER_DOF};
     const Vector asked = {wish ? (double *)wish : c->wish, CONTROLLER_DOF};
     const Vector aim = {c->aim, CONTROLLER_DOF};
     const Matrix past = {c->past, @rows@, CONTROLLER_DOF};
-    const shield_ShieldState kept = {
+    const control_shield_ShieldState kept = {
         {c->positions, CONTROLLER_DOF}, {c->wish, CONTROLLER_DOF}, {c->flags, 4}
     };
     if (!controller_is_finite(q, CONTROLLER_DOF)) {
         memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
         return CONTROLLER_INVALID;
     }
-    @take_positions@(&arena, joints, &kept, settings);
-    const bool held = @take_wish@(&arena, asked, wish != NULL, &kept, settings);
-    @come_nearer@(&arena, &kept, past, limits, &periods, false, held, aim);
+    @take_positions@joints, &kept, settings);
+    const bool held = @take_wish@asked, wish != NULL, &kept, settings);
+    @come_nearer@&kept, past, limits, &periods, false, held, aim);
     memset(c->state, 0, sizeof c->state);
     memcpy(c->state, c->aim, sizeof c->wish);
     const int action = controller_step(c, c->positions, c->aim, dq);

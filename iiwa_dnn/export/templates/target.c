@@ -3,7 +3,7 @@ void controller_target(struct controller *c, double t, double *target)
 {
     bool full = false;
     struct arena arena = controller_arena(c, &full);
-    const step_StepPlan plan = controller_plan(c);
+    const control_step_StepPlan plan = controller_plan(c);
     const Matrix targets = {target, CONTROLLER_FRAMES, 18};
-    @sample@(&arena, &plan.arrays, t - c->past[@delay@ * CONTROLLER_DOF], targets);
+    @sample@&plan.arrays, t - c->past[@delay@ * CONTROLLER_DOF], targets);
 }
