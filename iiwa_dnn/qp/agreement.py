@@ -19,6 +19,8 @@ w is 1, or the largest coefficient of the row or the cost where all of them are 
 space of S the cost is linear and no row with a multiplier leaves its limit, so a step along it
 leaves the objective as it is: where it is feasible, it leads to another solution. Where there is
 only one, and each active row has a multiplier, S is definite and (c) the largest entry of x - x_r.
+Along an eigenvector of S whose eigenvalue times the step is no more than the reference's own
+residual, the reference does not know x: a gap that is there alone is none.
 """
 
 from __future__ import annotations
@@ -39,9 +41,6 @@ _ACTIVE = 1e-6
 
 _FLAT = 1e-8
 """Eigenvalue of S, relative to the largest, up to which x is free along its eigenvector."""
-
-_NOISE = 3.0
-"""Multiple of a reference's residual up to which it explains a gradient."""
 
 
 class Agreement(NamedTuple):
@@ -138,15 +137,24 @@ def objective_gaps(block: QPViews, x: Matrix, steps: Matrix) -> Matrix:
     return np.asarray(np.abs((gradient * steps).sum(axis=2)) / terms[:, np.newaxis])
 
 
-def determined(qp: QP, reference: Vector, residual: float, step: Vector) -> Vector:
-    """Return the part of a step (n,) away from a reference that leads to no other solution.
+def solution_gap(
+    qp: QP, reference: Vector, residual: float, step: Vector, tolerance: float
+) -> float:
+    """Compute the largest entry of a step (n,) away from a reference, where x is unique.
+
+    If the step is within the tolerance as it is, that is its largest entry.
 
     Args:
         qp: The program, normalised.
         reference: Its point by the reference, (2 n + m + p,).
-        residual: Largest KKT residual of that point; a step whose gradient it explains is none.
+        residual: Largest KKT residual of that point. A part of the step, along which the gradient
+            changes by no more than this and what is left of it at the reference, is not seen.
         step: The step in x, (n,).
+        tolerance: Largest gap that counts as agreement.
     """
+    gap = float(np.abs(step).max())
+    if not gap > tolerance:
+        return gap
     n, _, p = qp.sizes
     rows = np.vstack([qp.A, qp.G, np.eye(n)])
     length = np.linalg.norm(rows, axis=1)
@@ -156,6 +164,11 @@ def determined(qp: QP, reference: Vector, residual: float, step: Vector) -> Vect
     directions = rows[held] / length[held, np.newaxis]
     eigenvalues, vectors = np.linalg.eigh(qp.P + directions.T @ directions)
     along = vectors.T @ step
-    slope = eigenvalues * np.abs(along)
-    free = (eigenvalues <= _FLAT * eigenvalues[-1]) | (slope <= _NOISE * residual)
-    return np.asarray(step - vectors[:, free] @ along[free])
+    gradient = qp.P @ reference[:n] + qp.q + rows[held].T @ reference[n:][held]
+    unseen = eigenvalues * np.abs(along) <= residual + np.linalg.norm(gradient)
+    flat = eigenvalues <= _FLAT * eigenvalues[-1]
+    for free in (flat | unseen, flat):
+        gap = float(np.abs(step - vectors[:, free] @ along[free]).max())
+        if gap <= tolerance:
+            break
+    return gap

@@ -21,10 +21,10 @@ from iiwa_dnn import checks
 from iiwa_dnn.processes import end_with
 from iiwa_dnn.qp.agreement import (
     Agreement,
-    determined,
     feasibility_gaps,
     normalised,
     objective_gaps,
+    solution_gap,
     stacked,
 )
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size
@@ -159,10 +159,8 @@ class CrossCheck:
             reference, residual = _answer(solver, qp)
             if residual <= self.reference_tolerance:
                 step = point[:n] - reference[:n]
-                gap = np.abs(step).max()
-                if gap > self.tolerance:
-                    gap = np.abs(determined(qp, reference, residual, step)).max()
-                return step, float(gap), residual, judge
+                gap = solution_gap(qp, reference, residual, step, self.tolerance)
+                return step, gap, residual, judge
         return np.full(n, np.nan), np.nan, residual, -1
 
 

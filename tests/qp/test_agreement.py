@@ -151,6 +151,13 @@ def test_a_flat_cost_lets_no_wrong_answer_pass(solver: str) -> None:
         assert agrees(check, qp, np.array(x))
 
 
+def test_an_equality_counts_without_a_multiplier() -> None:
+    qp = QP(np.zeros((2, 2)), [0.0, 0.0], A=[[1.0, 1.0]], b=[1.0])
+    for check in (PROXQP, DAQP):
+        assert agrees(check, qp, np.array([-7.0, 8.0]))
+        assert check.check(qp, np.array([-7.0, 9.0])).solution_gap == pytest.approx(0.5)
+
+
 @pytest.mark.parametrize("cost", [1e-6, 1e6])
 @pytest.mark.parametrize("row", [1e-6, 1e6])
 def test_units_of_cost_and_rows_change_no_verdict(cost: float, row: float) -> None:
@@ -176,6 +183,8 @@ def test_what_is_normalised_is_the_same_program_to_the_last_bit() -> None:
     qp = QP(np.diag([0.0, 1e7]), [1.0, 0.0], G, [1.0, np.inf, 0.0, 1.0], [[1e-9, 0.0]], [1e-9])
     scaled = QP.from_data(normalised(qp.data[np.newaxis], qp.sizes)[0], qp.sizes)
     assert 1.0 <= np.abs(scaled.P).max() < 2.0
+    units = np.append(qp.P[1, 1] / scaled.P[1, 1], qp.G[:3, 0] / scaled.G[:3, 0])
+    np.testing.assert_array_equal(np.frexp(units)[0], 0.5)
     np.testing.assert_array_equal(scaled.q / scaled.P[1, 1], qp.q / qp.P[1, 1])
     assert ((np.abs(scaled.G).max(axis=1) >= 0.5) == [True, True, True, False]).all()
     np.testing.assert_array_equal(scaled.G[0] / scaled.h[0], qp.G[0] / qp.h[0])
@@ -214,7 +223,8 @@ def test_a_difference_that_the_references_residual_explains_is_none(monkeypatch)
     monkeypatch.setattr(crosscheck, "ask", lambda name, qp: np.array([1.0, 1.0001, 0.0, 0.0]))
     assert agrees(PROXQP, qp, np.array([1.0, 1.0]))
     assert not agrees(PROXQP, qp, np.array([1.0, 1.001]))
-    assert not agrees(PROXQP, qp, np.array([1.00001, 1.0]))
+    off = np.array([1.00001, 1.0])
+    assert PROXQP.check(qp, off).solution_gap == pytest.approx(1e-4)  # all of it, once it is one
 
 
 def test_the_objective_of_a_proven_answer_is_within_what_the_bound_allows() -> None:
