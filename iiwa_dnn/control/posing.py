@@ -5,15 +5,17 @@ posture :math:`q`, and asks for the step :math:`\Delta q` of
 
 .. math::
 
-    \min_{\Delta q} \tfrac12 \|J \Delta q - e\|^2 + \tfrac12 \lambda \|\Delta q\|^2
+    \min_{\Delta q} \tfrac12 \|J \Delta q - e\|^2 + \tfrac12 \lambda \|D^{-1} \Delta q\|^2
     \quad \text{s.t.} \quad q_{lower} - q \le \Delta q \le q_{upper} - q,
     \quad -\nabla d_i^T \Delta q \le d_i - d_s
 
 with the pose error :math:`e`, position [m] over rotation vector [rad], and no joint by more than
-0.5 rad. The damping is :math:`\lambda = \mu \|e\|^2`, with :math:`\mu = 0.1` unless a step did not
-make the error smaller: it is taken back, and :math:`\mu` rises until one does. Near a posture that
-has the pose the damping vanishes and the convergence is quadratic; elsewhere the end is a posture
-whose pose is the nearest one around, and the multipliers name what is in the way.
+half its unit: :math:`D_{ii}` is 1 rad for a joint that turns, and the larger of 1 m and a tenth of
+its range for one that slides. The damping is :math:`\lambda = \mu \|e\|^2`, with :math:`\mu = 0.1`
+unless a step did not make the error smaller: it is taken back, and :math:`\mu` rises until one
+does. Near a posture that has the pose the damping vanishes and the convergence is quadratic;
+elsewhere the end is a posture whose pose is the nearest one around, and the multipliers name what
+is in the way.
 
 Sources: T. Sugihara, "Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt
 method", IEEE Trans. Robotics 27(5), 2011, for the damping; D. W. Marquardt, "An algorithm for
@@ -48,7 +50,7 @@ from iiwa_dnn.schemes.collisions import ENDS
 from iiwa_dnn.schemes.program import StepProgram
 
 _STEP = 0.5
-"""Largest change of a joint in an iteration [rad]."""
+"""Largest change of a joint in an iteration, in its unit (`_units`)."""
 
 _MOST = 100
 """Iterations from one start."""
@@ -161,7 +163,7 @@ def solve_pose(
 
 def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -> StepProgram:
     """Lay out a program whose step of 1 s is an iteration: velocities are changes of joints."""
-    slowed = robot.with_limits(velocity=_STEP)
+    slowed = robot.with_limits(velocity=_STEP * _units(robot))
     limits: list[Limit] = [JointLimits(gain=1.0)]
     if not isinstance(obstacles, CollisionAvoidance) and obstacles != ():
         obstacles = CollisionAvoidance(obstacles)
@@ -169,6 +171,14 @@ def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -
         rows = ENDS * len(obstacles.scene(slowed).pairs)
         limits.append(replace(obstacles, gain=1.0, nearest=rows))
     return StepProgram(slowed, Scheme([], [PoseTask(gain=1.0)], limits))
+
+
+def _units(robot: Robot) -> Vector:
+    """Return the unit of each joint's step, (n,): 1 rad, of a slide 1 m or a tenth of its range."""
+    units = np.ones(robot.dof)
+    slides = list(robot.slides)
+    units[slides] = np.maximum(1.0, 0.1 * (robot.q_upper - robot.q_lower)[slides])
+    return units
 
 
 def _descend(
@@ -180,7 +190,7 @@ def _descend(
     for _ in range(_MOST):
         if point.far <= tol:
             break
-        step = _solve(solver, point, damping)
+        step = _solve(program, solver, point, damping)
         if not step.found:
             break
         trial = _at(program, np.clip(point.q + step.x, *program.robot.limits[:2]), goal)
@@ -210,18 +220,19 @@ def _at(program: StepProgram, q: Vector, goal: Matrix) -> _Point:
     return _Point(q, qp, missing, far)
 
 
-def _solve(solver: DNNSolver, point: _Point, damping: float) -> Solution:
+def _solve(program: StepProgram, solver: DNNSolver, point: _Point, damping: float) -> Solution:
     """Solve the program of an iteration, of which the damping is a ratio to the squared error."""
     qp = point.qp
     jacobian = qp.A[:6]
     error = qp.b[:6]
-    P = jacobian.T @ jacobian + damping * float(error @ error) * np.eye(qp.q.size)
+    weights = (_STEP / program.robot.dq_max) ** 2
+    P = jacobian.T @ jacobian + damping * float(error @ error) * np.diag(weights)
     return solver.solve(QP(P, -error @ jacobian, qp.G, qp.h, qp.A[6:], qp.b[6:], qp.lb, qp.ub))
 
 
 def _in_the_way(program: StepProgram, solver: DNNSolver, point: _Point) -> tuple[str, ...]:
     """Name the limits whose multipliers keep a posture from the goal."""
-    step = _solve(solver, point, _DAMPING)
+    step = _solve(program, solver, point, _DAMPING)
     least = _ACTS * math.hypot(*point.qp.b[:6])
     codes = np.sign(step.z_box) * (np.abs(step.z_box) > least)
     return tuple(map(describe, in_the_way(program.settings(), codes, step.z > least)))

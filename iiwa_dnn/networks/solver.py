@@ -31,6 +31,9 @@ STEEP = 1e5
 """Tolerance of `DNNSolver.sharpen`, the linear systems of each of its two rounds, and the largest
 entry of the cost in the first of them."""
 
+DIVERGENCE = 1e8
+"""Ratio of a state or a residual to the largest number of a program beyond which it diverges."""
+
 
 @dataclass(frozen=True)
 class DNNSolver:
@@ -240,7 +243,8 @@ class DNNSolver:
             duration: Time [s] on the network's own clock.
 
         Returns:
-            The point that the state stands for, with status ``ADVANCED`` and its residuals.
+            The point that the state stands for, with status ``ADVANCED`` and its residuals; or
+            ``DIVERGED``, from where the next call goes on, or ``NOT_FINITE``.
 
         Raises:
             InvalidInputError: The duration is no finite number above 0; or as
@@ -259,7 +263,9 @@ class DNNSolver:
         status = Status.NOT_FINITE
         # The point of an infinite state is finite, since it is clipped to the bounds.
         if math.isfinite(sum(residuals)) and np.isfinite(state).all():
-            status = Status.ADVANCED
+            numbers = np.abs(qp.data[np.isfinite(qp.data)]).max(initial=1.0)
+            far = max(*residuals, np.abs(state).max()) > DIVERGENCE * numbers
+            status = Status.DIVERGED if far else Status.ADVANCED
             self._keep(qp.sizes, state)
         return Solution(point, qp.sizes, status, iterations, time, *residuals)
 

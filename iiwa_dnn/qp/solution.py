@@ -49,6 +49,9 @@ class Status(str, Enum):
     leaves a residual. There may be one farther away."""
     NOT_CONVEX = "not convex"
     """P is not symmetric and positive semidefinite: a KKT point may be no minimum."""
+    DIVERGED = "diverged"
+    """The network was advanced by the time asked for, and a residual or an entry of its state is
+    beyond 1e8 times the largest number of the program: no step is as long as it may be."""
 
     __str__ = str.__str__
 

@@ -95,3 +95,31 @@ def test_obstacles_are_kept_clear_of_and_named() -> None:
     assert any("Sphere 1" in limit for limit in barred.in_the_way)
     scene = d.CollisionAvoidance([ball]).scene(robot)
     assert scene.nearest(barred.nearest.q[None], np.zeros(1))[0] >= 0.02 - 1e-6
+
+
+@pytest.mark.parametrize("upper", [2000.0, 100.0, 10.0, 0.5])
+def test_a_long_slide_is_gone_along_in_steps_of_its_range(upper: float) -> None:
+    """One start from the far end, for a slide alone and for one that carries an arm."""
+    alone = d.robot_from_dh([(0, 0, 0, 0)], lower=0, upper=upper, velocity=1, prismatic=[1])
+    carried = d.robot_from_dh(
+        [(0.0, 0.0, 0.0, -np.pi / 2), (0.4, 0.0, 0.0, 0.0), (0.3, 0.0, 0.0, 0.0)],
+        lower=[0.0, -3.0, -3.0],
+        upper=[upper, 3.0, 3.0],
+        velocity=1,
+        prismatic=[1],
+    )
+    for robot in (alone, carried):
+        for q in robot.draw(np.random.default_rng(8), 5):
+            target = pose_of(robot, q)
+            begin = np.clip(q, -0.9 * np.abs(q), 0.9 * np.abs(q))
+            begin[0] = 0.0
+            answer = d.solve_pose(robot, target, begin, starts=1)
+            assert answer.found
+            assert max(error(robot, answer.q, target)) <= 1.001e-9
+            assert robot.outside(answer.q) == ""
+
+
+def test_a_slide_without_limits_is_gone_along() -> None:
+    slide = d.robot_from_dh([(0, 0, 0, 0)], prismatic=[1])
+    answer = d.solve_pose(slide, pose_of(slide, np.array([12345.0])), [0.5], starts=1)
+    assert answer.q == pytest.approx([12345.0], abs=1e-9)

@@ -169,3 +169,21 @@ def test_a_relative_tolerance_takes_what_an_absolute_one_leaves() -> None:
     assert all(s.extras["iterations"] <= 1 + k % 29 for k, s in enumerate(fits))
     with pytest.raises(d.InvalidInputError, match="eps_rel"):
         d.solve_problem(qp, eps_rel=-1.0)
+
+
+def test_a_network_that_diverges_says_so() -> None:
+    """Explicit Euler by a step of 1.11 rho, as the paper's, where stability needs less."""
+    qp, _ = known_qp(np.random.default_rng(27), 7, 3, 0)
+    seen = []
+    for network in (d.ProjectionNetwork(), d.PrimalDualNetwork()):
+        unstable = d.DNNSolver(network, follower=d.ExplicitEuler(substeps=1))
+        ends = [unstable.advance(qp, 2.5 * network.rho) for _ in range(400)]
+        seen += [end.status for end in ends]
+        for end in ends:
+            if end.status is d.Status.ADVANCED:
+                assert end.residuals.largest < 1e8 * np.abs(qp.data).max()
+        stable = d.DNNSolver(network)
+        assert {stable.advance(qp, 1e-4).status for _ in range(50)} == {d.Status.ADVANCED}
+    assert d.Status.DIVERGED in seen
+    assert not d.DNNSolver().advance(qp, 1e-5).found
+    assert seen.index(d.Status.DIVERGED) < seen.index(d.Status.NOT_FINITE)

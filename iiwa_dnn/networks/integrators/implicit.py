@@ -174,10 +174,10 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         taken = backward_euler(
             qp, s, step, new, 0.1 * rate, min(MAX_NEWTON, budget - systems), matrix
         )
+        systems += max(taken, -taken)
         if taken < 0:
             step *= 0.1
             continue
-        systems += taken
         time += step
         copied(s, new)
         rate = field(qp, s, now)

@@ -133,7 +133,8 @@ def backward_euler(
     and after `max_newton` rounds.
 
     Returns:
-        Newton iterations, or -1 if a matrix was not positive definite to working precision.
+        Newton iterations; minus their number if the last matrix was not positive definite to
+        working precision.
     """
     n = qp.q.size
     descent = np.empty(n)
@@ -153,9 +154,9 @@ def backward_euler(
         if taken > 0 and not size > max(tol, floor):
             break
         build_condensed(qp, step, matrix)
-        if not cholesky_factor(matrix.K):
-            return -1
         taken += 1
+        if not cholesky_factor(matrix.K):
+            return -taken
         factor_solve(matrix.K, descent, direction)
         rows_times(qp, direction, matrix.values)
         length = _line_search(qp, s, step, slacks, matrix.values, direction, descent)
