@@ -1,11 +1,15 @@
 """Smoothing of recorded rows by splines that stay within their noise."""
 
+import warnings
 from typing import Any
 
 import numpy as np
 
 from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import InvalidInputError
+
+_MISSED = 1.2
+"""Ratio of what FITPACK has left to the noise from which on a column stays as it is."""
 
 
 def smoothed(times: Array, rows: Array, noise: float, closed: bool, sign: float = 1.0) -> Array:
@@ -29,6 +33,8 @@ def smoothed(times: Array, rows: Array, noise: float, closed: bool, sign: float 
     """
     from scipy.interpolate import splev, splrep
 
+    if len(times) < 3:
+        return rows
     if closed:
         if np.abs(sign * rows[-1] - rows[0]).max() > 6.0 * noise:
             problem = "the last row of a closed path must be the first one, up to the noise"
@@ -44,12 +50,17 @@ def smoothed(times: Array, rows: Array, noise: float, closed: bool, sign: float 
     steps = np.diff(knots)
     spans = 0.5 * (steps + np.roll(steps, 1))
     weights = np.sqrt(np.append(spans, spans[0]) / spans.mean())
-    options = {"k": min(3, steps.size), "s": steps.size * noise**2, "per": True}
-    fits = [splrep(knots, column, weights, **options) for column in period.T]
+    bound = steps.size * noise**2
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of too few iterations: the outcome is judged below
+        fits = [splrep(knots, column, weights, s=bound, per=True) for column in period.T]
     # The mean of both rounds is as symmetric as the rows.
     smooth = np.stack(
         [0.5 * (splev(times, fit) + sign * splev(again, fit)) for fit in fits], axis=1
     )
+    given = np.vstack([period[: len(times) - 1], sign * first if closed else rows[-1:]])
+    left = np.average((smooth - given) ** 2, axis=0, weights=weights[: len(times)] ** 2)
+    smooth = np.where(left <= (_MISSED * noise) ** 2, smooth, given)
     if closed:
         smooth[-1] = sign * smooth[0]
     return smooth

@@ -107,7 +107,7 @@ def _limit(
     excursion = 0.0
     while True:
         pieces = fit(exchanged)
-        excursions = _excursions(pieces, lengths)
+        excursions = np.nan_to_num(_excursions(pieces, lengths), nan=np.inf)
         if axes == 1:
             excursions = np.linalg.norm(excursions, axis=1, keepdims=True)
         offending = limited & ((excursions > allowed) | pauses)
@@ -117,19 +117,21 @@ def _limit(
         if np.array_equal(rows, exchanged):
             break
         exchanged = rows
+    if not np.isfinite(pieces).all():
+        raise ValueError("scipy finds no spline through rows of times as uneven as these")
     jumps = exchanged[:-1].any(axis=1) & ~(pauses & np.roll(pauses, 1))[:, 0]  # none in a pause
     jumps[0] &= closed
     return Spline(pieces.swapaxes(0, 1), jumps, excursion)
 
 
+@np.errstate(all="ignore")
 def _excursions(pieces: Array, lengths: Array) -> Array:
     """Compute how far cubics (3 or 4, p, 3) leave the span of their ends, (p, 3)."""
     a, b, slope = pieces[:3]
     last = np.broadcast_to(lengths[:, np.newaxis], a.shape)
     # The zeros of the derivative, without cancellation; a monotone cubic has none.
     root = -b - np.copysign(np.sqrt(np.maximum(b * b - 3.0 * a * slope, 0.0)), b)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        extrema = np.nan_to_num([root / (3.0 * a), slope / root])
+    extrema = np.nan_to_num([root / (3.0 * a), slope / root])
     x = np.stack([*np.clip(extrema, 0.0, last), last])
     y = x * (slope + x * (b + x * a))
     above = y.max(axis=0) - np.maximum(y[2], 0.0)
@@ -188,6 +190,10 @@ def _turning(times: Array, turns: Any, closed: bool, exchanged: Mask) -> Array:
     at_rest = np.flatnonzero(np.tile(resting, len(rounds)))  # rows that are given twice
     knots = np.insert(knots, at_rest, knots[at_rest] - _BESIDE)
     own = np.insert(np.ones(len(rows), bool), at_rest, False)[:-1]
-    spline = RotationSpline(knots, turns[np.insert(rows, at_rest, rows[at_rest])])
+    try:
+        with np.errstate(all="ignore"):
+            spline = RotationSpline(knots, turns[np.insert(rows, at_rest, rows[at_rest])])
+    except ValueError:  # its iterations diverge
+        return np.full((3, pieces, 3), np.nan)
     first = _ROUNDS * pieces if closed else 0
     return np.asarray(spline.interpolator.c[:3, own][:, first : first + pieces])

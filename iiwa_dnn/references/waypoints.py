@@ -272,7 +272,8 @@ class Waypoints(Reference):
     def _abrupt_ends(self) -> list[str]:
         """Describe the ends at which an open path of dense rows would be at speed."""
         steps = np.diff(self.times)
-        speeds = np.linalg.norm(np.diff(self.points, axis=0), axis=1) / steps
+        rows = self.sample(self.times - self.times[0]).position  # smoothed, if there is noise
+        speeds = np.linalg.norm(np.diff(rows, axis=0), axis=1) / steps
         usual = np.average(speeds, weights=steps)
         # Rows that speed up evenly from rest begin at less than half the mean speed.
         return [

@@ -105,3 +105,17 @@ def test_a_closed_recording_has_to_close(tmp_path) -> None:
     with pytest.warns(UserWarning, match=r"path.csv: smoothing has moved the rows by .* mm"):
         read = Waypoints.from_csv(file, "closed", noise=2.0 * NOISE)
     assert read.moved.max() > 0.0
+
+
+def test_rows_that_no_spline_of_so_little_noise_fits_stay() -> None:
+    """FITPACK gives up where times are uneven and the noise is far too small."""
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        times = np.cumsum(np.exp(1.5 * rng.standard_normal(12)))
+        points = np.cumsum(rng.standard_normal((12, 3)), axis=0)
+        path = Waypoints(times, points, interpolation="cubic", noise=1e-4)
+        weights = np.gradient(times)
+        left = np.average(path.moved**2, weights=weights)
+        assert left <= 3.0 * (1.3e-4) ** 2
+    two = Waypoints(times[:2], points[:2], noise=1.0)
+    assert not two.moved.any()

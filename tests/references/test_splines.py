@@ -227,6 +227,18 @@ def test_turns_keep_the_rule_by_the_length_of_their_rotation_vectors() -> None:
     assert resting > 10
 
 
+def test_turns_for_which_scipy_finds_no_spline_rest_at_their_rows() -> None:
+    rng = np.random.default_rng(2)
+    times = np.cumsum(np.exp(2.5 * rng.standard_normal(16)))
+    turns = Rotation.from_rotvec(np.cumsum(0.5 * rng.standard_normal((16, 3)), axis=0))
+    quaternions = turns.as_quat()[:, [3, 0, 1, 2]]
+    path = quiet(times, np.zeros((16, 3)), quaternions=quaternions)
+    targets = path.sample(times - times[0])
+    np.testing.assert_allclose(targets.rotation, turns.as_matrix(), rtol=0, atol=1e-9)
+    with pytest.raises(ValueError, match="scipy finds no spline"):
+        Waypoints(times, np.zeros((16, 3)), "clamped", quaternions, "cubic")
+
+
 def test_the_file_that_is_warned_of_is_named(tmp_path) -> None:
     file = tmp_path / "dwell.csv"
     file.write_text("t,x,y,z\n0,0,0,0\n1,0,0,-0.1\n6,0,0,-0.1\n7,0,0,0\n")
