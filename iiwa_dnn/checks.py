@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Vector3 = tuple[float, float, float]
 T = TypeVar("T")
+_FLOAT = np.dtype(np.float64)
 
 
 def finite(argument: str, value: object) -> float:
@@ -116,6 +117,10 @@ def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Arr
 
 def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     """Return a read-only copy of numbers of this shape, as `finite_array`; they may be NaN."""
+    if type(value) is np.ndarray and value.dtype is _FLOAT and value.shape == shape:
+        numbers = value.copy()
+        numbers.setflags(write=False)
+        return numbers
     try:
         # A list as objects: as numbers, its booleans would be 0 and 1.
         given = value if isinstance(value, np.ndarray) else np.array(value, dtype=object)

@@ -42,7 +42,7 @@ from iiwa_dnn.qp.layout import data_size
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
-from iiwa_dnn.schemes.limits import constant_periods, varying_periods
+from iiwa_dnn.schemes.limits import stated_periods
 from iiwa_dnn.schemes.program import StepProgram, targets_of
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -265,14 +265,11 @@ class Controller:
         if step is None or not state.begun:
             step = self._prepare(q, t, target is None)
         reasons: tuple[str, ...] = ()
-        if self.longest_period is not None or elapsed is not None:
+        period = self.dt if dt is None else dt
+        varies = self.longest_period is not None or elapsed is not None
+        if varies or not period == step.dt == state.dt:
             reasons = self._take_periods(step, dt, elapsed)
-            dt = step.dt
-        else:
-            dt = self.dt if dt is None else dt
-            if not dt == step.dt == state.dt:
-                step.set_periods(checks.positive("dt", dt), constant_periods(dt))
-                state.set_period(dt)
+        dt = step.dt
         layout = step.layout
         program = step.program
         if not _is_plain(q, layout.shape):
@@ -301,24 +298,19 @@ class Controller:
     def _take_periods(
         self, step: ControlStep, dt: float | None, elapsed: float | None
     ) -> tuple[str, ...]:
-        """Take the periods of a step of a loop whose periods vary; return what is said of them."""
+        """Take the periods that a step states; return the reason that one is too long."""
         longest = self.longest_period
-        if longest is None:
-            raise InvalidInputError("elapsed", "needs a longest_period", elapsed)
-        stated = {"dt": dt, "elapsed": elapsed}
-        found = [checks.positive(name, x) for name, x in stated.items() if x is not None]
-        if len(found) > 1:
-            raise InvalidInputError("dt and elapsed", "are two periods: pass one of them", found)
-        periods = varying_periods(self.dt, longest, dt, elapsed)
+        periods = stated_periods(self.dt, longest, dt, elapsed)
         self._state.set_period(periods.dt)
         if elapsed is not None:
             self._state.book(elapsed)
-        step.set_periods(self.dt if dt is None else found[0], periods)
-        if max(found, default=0.0) <= longest * (1.0 + SLACK):
+        step.set_periods(self.dt if dt is None else periods.hold, periods)
+        found = dt or elapsed or 0.0
+        if longest is None or found <= longest * (1.0 + SLACK):
             return ()
         if not self._state.exceeded:
             self._state.exceeded = True
-            problem = f"a period of {found[0]:g} s is above the longest, {longest:g} s"
+            problem = f"a period of {found:g} s is above the longest, {longest:g} s"
             warnings.warn(f"{problem}: limits may be passed", stacklevel=4)
         return (EXCEEDED,)
 

@@ -1,24 +1,28 @@
-r"""A shield: any wish for a motion in, the nearest safe command out.
+r"""A shield: any request for a motion in, the command closest to it that keeps every limit out.
 
-The wish is a joint velocity w, a twist v of a frame, or joint positions to reach. The command
+The request is a joint velocity w, a twist v of a frame, or joint positions to reach. The command
 answers the program of a `Controller` whose task is soft,
 
 .. math::
 
     \min_x \; \tfrac12 \|x - w\|^2 \qquad \text{or} \qquad
-    \min_x \; \tfrac12 \|J x - v\|^2 + \tfrac12 \lambda^2 \|x\|^2 ,
+    \min_x \; \tfrac12 \|W (J x - v)\|^2 + \tfrac12 \lambda^2 \|x\|^2 ,
 
-within the bounds and rows of its limits, and everything else is the controller's: the motion to
-rest that is always in hand, and what is done where the limits leave no answer. A wish that the
-limits admit, and from which the arm can stop, is the answer to the last bit. A wish for positions
-is one for the quickest velocity from which each joint can still rest there. An arm without a wish
-has one to rest.
+within the bounds and rows of its limits; W weighs what is beside v `SIDEWAYS` times as much.
+Everything else is the controller's: the verified stopping motion that is always available, and what
+is done where the limits leave no answer. A request that the limits admit, and from which the arm
+can stop, is the command to the last bit. If acceleration or jerk limits, or the stopping motion,
+keep the command from the program's answer, it is the closest one on the way there, and other
+commands within the limits may be closer to the request. A request for positions is one for the
+quickest velocity from which each joint can still rest there. An arm without a request has one to
+rest.
 """
 
 from __future__ import annotations
 
 import copy
 import math
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -37,7 +41,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite
 from iiwa_dnn.qp.layout import copied
 from iiwa_dnn.references import Target
-from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import (
     CollisionAvoidance,
     JointLimits,
@@ -57,61 +61,113 @@ from iiwa_dnn.schemes.limits import (
     constant_periods,
     joint_bounds,
     positive_rates,
+    stated_periods,
 )
 from iiwa_dnn.schemes.step import TARGET_SIZE, StepViews
+from iiwa_dnn.schemes.tasks import pose_rows
 
 DAMPING = 0.02
 """Lambda of a twist's program [m/rad]: near a singular pose the joints do not race."""
 
-FASTEST = 1e3
-"""Velocity [rad/s, m/s] to which a larger wish is cut before it is answered: no arm is so quick."""
+SIDEWAYS = 10.0
+"""Weight of the motion beside a twist: where a twist cannot be had, the frame stays rather than
+slides."""
+
+SHORT = 0.02
+"""Part of a twist that may be missing where the damping alone keeps it from being fulfilled."""
+
+CUT = 100.0
+"""Velocity to which a larger request is cut, in units of the largest one that joints can do."""
+
+FASTEST = 1e4
+"""Largest velocity of a joint that has no velocity limit [rad/s], for the cut."""
 
 TWIST = 6
 """Numbers of a twist."""
 
 JOINTS = ""
-"""Frame of wishes for all joints."""
+"""Frame of requests for all joints."""
 
 REASONS = ("", "no wish", "wish too old", "wish not finite", "halted")
-"""Reasons why a wish to rest counts; the first is none."""
+"""Reasons why a request to rest counts; the first is none."""
 NO_WISH, TOO_OLD, NOT_FINITE, HALTED = range(1, 5)
 
 TAKEN_OVER = "measured positions taken over"
 
-AGE, REASON, BEGUN, TAKEN = range(4)
-"""Numbers of `ShieldState.flags`."""
+IS_CUT = "request cut"
+
+SINGULAR = "singular posture"
+
+AGE, REASON, BEGUN, TAKEN, CUTS, FLAGS = range(6)
+"""Numbers of `ShieldState.flags`, and how many they are."""
 
 
 @compiled
 def wished_velocity(
     step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
 ) -> None:
-    """Write A = I and b = w; the first numbers of the target (18,) are the velocity w (n,)."""
+    """Write A = I and b = w for some joints; the target (18,) begins with their velocities w."""
+    first = int(constants[0])
     for i in range(b.size):
-        A[i, i] = 1.0
+        A[i, first + i] = 1.0
         b[i] = target[i]
 
 
 @dataclass(frozen=True)
 class JointVelocityTask(Task):
-    """Joint velocities, a row each, which a step's target holds in place of a pose."""
+    """Velocities of some joints, a row each, which a step's target holds in place of a pose.
+
+    Attributes:
+        frame: The frame whose target it is.
+        first: The first of the joints, of which a target has room for 18.
+    """
 
     kernel = staticmethod(wished_velocity)
     weight = 1.0
+    frame: str
+    first: int = 0
 
     def row_count(self, robot: Robot) -> int:
-        """Return the number of joints, at most as many as a target has numbers, 18."""
-        return robot.dof
+        """Return the number of the joints."""
+        return min(TARGET_SIZE, robot.dof - self.first)
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return the first joint, (1,)."""
+        return np.array([float(self.first)])
+
+
+@compiled
+def twist_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write A = W J and b = W v = v; W leaves v as it is and weighs what is beside it."""
+    pose_rows(step, constants, target, A, b)
+    square = 0.0
+    for k in range(b.size):
+        square += b[k] * b[k]
+    for i in range(A.shape[1]):
+        along = 0.0
+        for k in range(b.size):
+            along += A[k, i] * b[k]
+        share = (1.0 - SIDEWAYS) * along / square if square > 0.0 else 0.0
+        for k in range(b.size):
+            A[k, i] = SIDEWAYS * A[k, i] + share * b[k]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TwistTask(PoseTask):
+    """Linear and angular velocity of a frame, which a step's target holds."""
+
+    kernel = staticmethod(twist_rows)
 
 
 class ShieldState(NamedTuple):
-    """Commanded positions and the wish that counts, which a step overwrites.
+    """Commanded positions and the request that counts, which a step overwrites.
 
     Attributes:
         positions: Joint positions [rad], (n,).
-        wish: The wish, (k,): zero without one.
-        flags: Time since the wish came [s], its reason if it is not the given one, by its number in
-            `REASONS`, 1 after the first step, and 1 if measured positions were taken over, (4,).
+        wish: The request, (k,): zero without one.
+        flags: Time since the request came [s], its reason if it is not the given one, by its number
+            in `REASONS`, 1 after the first step, 1 if measured positions were taken over, and 1 if
+            the request is cut, (5,).
     """
 
     positions: Vector
@@ -123,7 +179,7 @@ class ShieldState(NamedTuple):
 def take_positions(q: Vector, state: ShieldState, settings: Vector) -> None:
     """Take measured positions q (n,) [rad] over at the first step, or if they are far.
 
-    The settings (3,) are control period [s], timeout [s] and tracking error [rad].
+    The settings (3,) are the last period [s], timeout [s] and tracking error [rad].
     """
     far = 0
     for i in range(q.size):
@@ -137,12 +193,12 @@ def take_positions(q: Vector, state: ShieldState, settings: Vector) -> None:
 
 @compiled
 def take_wish(wish: Vector, given: bool, state: ShieldState, settings: Vector) -> bool:
-    """Take a wish (k,) over if one is given, else the last one, or one to rest for a reason.
+    """Take a request (k,) over if one is given, else the last one, or one to rest for a reason.
 
     The settings are those of `take_positions`.
 
     Returns:
-        Whether the wish that counts is that of the last step.
+        Whether the request that counts is that of the last step.
     """
     flags = state.flags
     flags[AGE] += settings[0]
@@ -169,39 +225,68 @@ def come_nearer(
     held: bool,
     dq: Vector,
 ) -> None:
-    """Write the next velocities dq (n,) [rad/s] on the quickest way to the wish that counts.
+    """Write the next velocities dq (n,) [rad/s] on the quickest way to the request that counts.
 
     Those on the way to positions are the quickest ones from which all joints can still rest there.
     A joint that jerk limits keep from its velocity in this step, or that is asked for the same one
     as in the last step, does not pass it.
 
     Args:
-        state: The wish, and where the joints are.
+        state: The request, and where the joints are.
         past: `ControllerState.past`, (8, n).
         limits: `MotionLimits.numbers`, (6 n,).
         periods: Periods of the step.
-        reaches: Whether the wish is one for positions.
+        reaches: Whether the request is one for positions.
         held: Whether it is that of the last step.
         dq: The velocities, overwritten.
     """
     n = dq.size
+    state.flags[CUTS] = 0.0
     for i in range(n):
         wish = state.wish[i]
         above = limits[n + i] - state.positions[i]
         below = state.positions[i] - limits[i]
+        rates = (limits[2 * n + i], limits[3 * n + i], limits[4 * n + i], limits[5 * n + i])
+        most = CUT * min(rates[0], FASTEST)
         if reaches:
             left = wish - state.positions[i]
             above = left if left >= 0.0 else np.inf
             below = -left if left < 0.0 else np.inf
-            wish = left / periods.hold
-        wish = min(max(wish, -FASTEST), FASTEST)
-        rates = (limits[2 * n + i], limits[3 * n + i], limits[4 * n + i], limits[5 * n + i])
+            wish = min(max(left / periods.hold, -most), most)
+        elif abs(wish) > most:
+            wish = math.copysign(most, wish)
+            state.flags[CUTS] = 1.0
         lower, upper = joint_bounds(past[LAST, i], past[BEFORE, i], above, below, rates, periods)
         if reaches:
             wish = min(max(wish, lower), upper)
         elif held or wish < lower or wish > upper:
             wish += braking(past[LAST, i] - wish, -np.inf, np.inf, limits[4 * n + i], periods)
         dq[i] = wish
+
+
+def under_way(sent: Matrix, delay: float) -> tuple[Vector, Matrix]:
+    """Compute the way of the commands of the last `delay` seconds.
+
+    Args:
+        sent: Periods [s] and commands [rad/s], the last first, (k, 1 + n).
+        delay: The time [s].
+
+    Returns:
+        The way, (n,) [rad], and the rows that it needs.
+    """
+    periods = sent[:, 0]
+    ages = np.cumsum(periods) - periods
+    way: Vector = np.clip(delay - ages, 0.0, periods) @ sent[:, 1:]
+    return way, sent[ages < delay]
+
+
+def _words_of(flags: Vector) -> tuple[str, ...]:
+    """Return the reasons that the flags (5,) of a state hold, in words."""
+    _, reason, _, taken, cuts = flags.tolist()
+    if not (reason or taken or cuts):
+        return ()
+    words = (REASONS[int(reason)], TAKEN_OVER * int(taken), IS_CUT * int(cuts))
+    return tuple(filter(None, words))
 
 
 class Margin(NamedTuple):
@@ -222,11 +307,12 @@ class ShieldCommand(NamedTuple):
 
     Attributes:
         dq: Joint velocity [rad/s], (n,), within the limits.
-        wish: Joint velocity that was wished for [rad/s], (n,); None: positions, or a twist.
-        reasons: Reasons for another wish than the given one.
+        wish: Joint velocity that was requested [rad/s], (n,); None: positions, or a twist.
+        reasons: Reasons for another command than the given request.
         command: The controller's command, with the program that was answered.
         shield: The shield.
         t: Time of the shield's clock [s].
+        period: Period over which its acceleration is measured [s].
     """
 
     dq: Vector
@@ -235,29 +321,55 @@ class ShieldCommand(NamedTuple):
     command: Command
     shield: Shield
     t: float
+    period: float
+
+    @property
+    def next_q(self) -> Vector:
+        """Joint positions at the end of the period, for drives that take these [rad], (n,)."""
+        return self.command.next_q
 
     @property
     def clipped(self) -> bool:
-        """Test whether it is another one than the given wish.
+        """Test whether the command differs from the request.
 
-        For positions, than the quickest approach to them that the joints' own limits allow.
+        For positions, from the quickest approach to them that the joints' own limits allow; for a
+        twist, whether more than `SHORT` of it is missing, or a limit holds.
         """
         if self.wish is None or self.reasons:
-            return bool(self.reasons or self.command.against)
+            return bool(self._why)
         return bool((self.dq != self.wish).any())
 
     @property
     def limits(self) -> tuple[str, ...]:
-        """Name the reasons, bounds and rows that keep the command from the given wish."""
-        return (*self.reasons, *self.command.against) if self.clipped else ()
+        """Name the reasons, bounds and rows that keep the command from the request."""
+        return self._why if self.clipped else ()
+
+    @property
+    def _why(self) -> tuple[str, ...]:
+        """Reasons, a posture that is too singular for the twist, bounds and rows, in words."""
+        singular = (SINGULAR,) * self._is_singular
+        return tuple(dict.fromkeys((*self.reasons, *singular, *self.command.against)))
+
+    @property
+    def _is_singular(self) -> bool:
+        """Test whether the damping alone keeps a twist from being fulfilled."""
+        v = self.command.targets[0, 12:]
+        if self.wish is not None or not v.any():
+            return False
+        qp = self.command.qp
+        x = np.linalg.solve(qp.P, -qp.q)
+        # |W (J x - v)|^2, as P = (W J)^T W J + DAMPING^2 I
+        missing = x @ qp.P @ x - DAMPING**2 * (x @ x) + 2.0 * (qp.q @ x) + v @ v
+        return bool(missing > SHORT**2 * (v @ v))
 
     @property
     def stopping_time(self) -> float:
         """Time of the motion to rest from the command [s]."""
         shield = self.shield
         cubic = bool(np.isfinite(shield.robot.dddq_max).any())
-        periods = least_periods(self.dq, self.command.past[1], shield.motion, shield.dt, cubic)
-        return shield.dt * max(periods, float(self.dq.any()))
+        last = self.command.past[1]
+        periods = least_periods(self.dq, last, shield.motion, self.period, cubic)
+        return self.period * max(periods, float(self.dq.any()))
 
     @property
     def margin(self) -> Margin:
@@ -271,18 +383,38 @@ class ShieldCommand(NamedTuple):
         return Margin(np.minimum(q - lower, upper - q).min(), distance)
 
 
+class Memory(NamedTuple):
+    """What a step leaves behind, beside the state that kernels overwrite.
+
+    Attributes:
+        kind: Kind of the last request.
+        frame: Its frame.
+        t: Time [s].
+        period: Period that counts for the last command [s].
+        sent: Periods [s] and commands [rad/s] that are under way, the last first, (k, 1 + n).
+    """
+
+    kind: str
+    frame: str
+    t: float
+    period: float
+    sent: Matrix
+
+
 class Shield:
     """The limits of a robot, kept for whoever drives it.
 
     The shield integrates its own commands; measured positions that are no further than
-    `tracking_error` from them do not change them.
+    `tracking_error` from those commanded `delay` ago do not change them. Threads may share a
+    shield: steps wait for each other.
 
     Attributes:
         robot: The robot, n joints, whose limits hold.
         dt: Control period [s].
+        longest_period: Longest control period where periods vary [s]; None: they do not.
         limits: Limits that every command keeps.
         motion: Their numbers for the joints, `MotionLimits.numbers`, (6 n,).
-        settings: Control period [s], timeout [s], tracking error [rad], (3,).
+        settings: Control period [s], timeout [s], tracking error [rad], delay [s], (4,).
     """
 
     def __init__(
@@ -293,6 +425,8 @@ class Shield:
         distance: float = 0.02,
         timeout: float = 0.1,
         tracking_error: float = 0.02,
+        delay: float = 0.0,
+        longest_period: float | None = None,
     ) -> None:
         """Take a robot, and what is to be kept clear of.
 
@@ -302,21 +436,27 @@ class Shield:
             dt: Control period [s].
             obstacles: Obstacles to keep away from, beside the arm's own links; None: neither.
             distance: Least distance from them [m].
-            timeout: Time for which a wish counts [s]; inf: until the next one.
+            timeout: Time for which a request counts [s]; inf: until the next one.
             tracking_error: Difference of measured and commanded positions [rad] above which the
-                measured ones are taken over.
+                measured ones are taken over. It has to exceed the largest velocity times the
+                uncertainty of the delay, and twice the noise.
+            delay: Time by which the arm is behind its commands [s]: from a step to the reading of
+                the encoders at which its command begins to show, less one period.
+            longest_period: Longest control period where periods vary [s]; None: they do not.
 
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
         """
         self.robot = checks.instance("robot", robot, Robot)
         self.dt = checks.positive("dt", dt)
+        self.longest_period = longest_period
         self._periods = constant_periods(self.dt)
         self.settings = np.array(
             [
                 self.dt,
                 positive_rates("timeout", timeout),
                 checks.not_negative("tracking_error", tracking_error),
+                checks.not_negative("delay", delay),
             ]
         )
         rates = own_rate_limits(robot)
@@ -326,25 +466,51 @@ class Shield:
             self.limits.append(CollisionAvoidance(obstacles, distance=distance))
         self._controllers: dict[str, Controller] = {}
         self._kept = ControllerState(robot.dof)
+        self._lock = threading.RLock()
         self.reset()
 
     def __getstate__(self) -> dict[str, Any]:
         # The controllers share one state, and are made anew to share the copy's.
-        own = {name: copy.deepcopy(getattr(self, name)) for name in ("_kept", "_state")}
-        return {**vars(self), **own, "_controllers": {}}
+        with self._lock:
+            own = {name: copy.deepcopy(getattr(self, name)) for name in ("_kept", "_state")}
+            return {**vars(self), **own, "_controllers": {}, "_lock": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state, _lock=threading.RLock())
+
+    @property
+    def delay(self) -> float:
+        """Time by which the arm is behind its commands [s]."""
+        return float(self.settings[3])
 
     def reset(self) -> None:
-        """Forget wishes, a halt and the last commands: the arm stands where it is measured next."""
+        """Forget requests, a halt and the commands: the arm stands where it is measured next."""
         n = self.robot.dof
-        self._kept.rest(n)
-        self._state = ShieldState(np.zeros(n), np.zeros(max(n, TWIST)), np.zeros(4))
-        self._state.flags[REASON] = NO_WISH
-        self._asked = ("dq", JOINTS)
-        self._t = 0.0
+        with self._lock:
+            self._kept.rest(n)
+            self._state = ShieldState(np.zeros(n), np.zeros(max(n, TWIST)), np.zeros(FLAGS))
+            self._state.flags[REASON] = NO_WISH
+            self._memory = Memory("dq", JOINTS, 0.0, self.dt, np.zeros((0, 1 + n)))
 
     def halt(self) -> None:
-        """Brake from now on, whatever is wished for, until `reset`."""
-        self._state.flags[REASON] = HALTED
+        """Brake from now on, whatever is requested, until `reset`."""
+        with self._lock:
+            self._state.flags[REASON] = HALTED
+
+    def warm_up(self, q: ArrayLike, frames: Sequence[str] = ()) -> None:
+        """Lay the programs out ahead, so that the first step is as quick as the others.
+
+        Args:
+            q: Joint positions of the first step [rad], (n,).
+            frames: Frames of the twists that will be requested.
+        """
+        start = Configuration(self.robot, q)
+        with self._lock:
+            for frame in (JOINTS, *checks.names("frames", frames)):
+                controller = self.controller(frame)
+                controller.warm_up(start.q)
+                if not self._kept.begun:
+                    controller.warn_of_start(start, self._memory.t, False, stacklevel=3)
 
     def step(
         self,
@@ -354,90 +520,159 @@ class Shield:
         twist: ArrayLike | None = None,
         position: ArrayLike | None = None,
         frame: str | None = None,
+        dt: float | None = None,
+        elapsed: float | None = None,
     ) -> ShieldCommand:
-        """Compute the command that is nearest to a wish.
+        """Compute the command that is closest to a request.
 
-        Without a wish the last one counts, until it is older than `timeout`.
+        Without a request the last one counts, until it is older than `timeout`. Periods are stated
+        as for `Controller.step`.
 
         Args:
             q: Measured joint positions [rad], (n,).
-            dq: Joint velocity that is wished for [rad/s], (n,).
+            dq: Joint velocity that is requested [rad/s], (n,).
             twist: Or linear [m/s] and angular [rad/s] velocity of a frame along the base's axes,
                 (6,).
             position: Or joint positions to reach [rad], (n,).
             frame: Name of the twist's frame; None stands for the tip.
+            dt: Period for which this command will be held [s].
+            elapsed: Time since the last step [s], for which the last command was held.
 
         Raises:
-            InvalidInputError: `q` or a wish has a wrong shape, `q` is not finite, or there are
-                several wishes.
+            InvalidInputError: `q` or a request has a wrong shape, `q` is not finite, there are
+                several requests, or a period is wrong.
             NotFoundError: The robot has no frame of that name.
         """
-        kept = ShieldState(*[part.copy() for part in self._state])
-        before = (self._kept.past, kept, self._asked, self._t)
         wishes = {"dq": dq, "twist": twist, "position": position}
-        try:
-            return self._step(q, {k: x for k, x in wishes.items() if x is not None}, frame)
-        except BaseException:  # refused, or interrupted before anybody got the command
-            halted = self._state.flags[REASON] == HALTED
-            self._kept.past, self._state, self._asked, self._t = before
-            if halted:
-                self.halt()
-            raise
+        given = {kind: value for kind, value in wishes.items() if value is not None}
+        with self._lock:
+            kept = ShieldState(*[part.copy() for part in self._state])
+            before = (self._kept.past, kept, self._memory)
+            try:
+                return self._step(q, given, frame, dt, elapsed)
+            except BaseException:  # refused, or interrupted before anybody got the command
+                halted = self._state.flags[REASON] == HALTED
+                self._kept.past, self._state, self._memory = before
+                if halted:
+                    self.halt()
+                raise
 
-    def _step(self, q: ArrayLike, given: dict[str, ArrayLike], frame: str | None) -> ShieldCommand:
-        """Take a step with a wish, or none."""
+    def _step(
+        self,
+        q: ArrayLike,
+        given: dict[str, ArrayLike],
+        frame: str | None,
+        dt: float | None,
+        elapsed: float | None,
+    ) -> ShieldCommand:
+        """Take a step with a request, or none."""
         measured = checks.finite_array("q", q, (self.robot.dof,)).copy()
-        held = self._take(measured, given, frame)
+        periods = self._periods
+        settings = self.settings
+        if self.longest_period is not None or dt is not None or elapsed is not None:
+            periods = stated_periods(self.dt, self.longest_period, dt, elapsed)
+            if elapsed is not None:
+                self._book(periods.dt)
+            self._kept.set_period(periods.dt)
+            settings = np.append(self._memory.period, settings[1:])
+        kind, seen, t, _, sent = self._memory
+        if settings[3] > 0.0:
+            way, sent = under_way(sent, settings[3])
+            measured += way
+        for kind in given:
+            seen = frame or self.robot.tip if kind == "twist" else JOINTS
+        asked = (kind, seen)
+        held = self._take(measured, given, settings)
         positions, wish, flags = self._state
-        said = (REASONS[int(flags[REASON])], TAKEN_OVER if flags[TAKEN] else "")
-        kind, seen = ("dq", JOINTS) if said[0] else self._asked
+        if flags[REASON]:
+            kind, seen = "dq", JOINTS
         controller = self.controller(seen)
-        target = {seen or self.robot.tip: self._target(controller, kind, held)}
-        command = controller.step(positions, self._t, target)
-        # A wish that can be had again is had at once.
+        target = self._target(controller, kind, held, periods)
+        command = controller.step(positions, t, target, dt=dt, elapsed=elapsed)
+        # A request that can be had again is had at once.
         self._kept.past[YIELDS] = 0.0
         velocity = wish[: positions.size].copy() if kind == "dq" else None
-        reasons = tuple(filter(None, said))
-        decision = ShieldCommand(command.dq, velocity, reasons, command, self, self._t)
-        positions += self.dt * command.dq
-        self._t += self.dt
+        reasons = (*_words_of(flags), *command.reasons)
+        decision = ShieldCommand(command.dq, velocity, reasons, command, self, t, periods.dt)
+        hold = self.dt if dt is None else periods.hold
+        positions += hold * command.dq
+        if settings[3] > 0.0:
+            sent = np.vstack([np.append(hold, command.dq), sent])
+        self._memory = Memory(*asked, t + hold, hold, sent)
         return decision
 
-    def _take(self, q: Vector, given: dict[str, ArrayLike], frame: str | None) -> bool:
-        """Take positions and a wish over; return whether it is that of the last step."""
+    def _book(self, elapsed: float) -> None:
+        """Count the last command as one that was held for so long [s]."""
+        kind, frame, t, period, sent = self._memory
+        positions = self._state.positions
+        positions += (elapsed - period) * self._kept.past[LAST]
+        sent = sent.copy()
+        sent[:1, 0] = elapsed
+        self._memory = Memory(kind, frame, t + elapsed - period, elapsed, sent)
+
+    def _take(self, q: Vector, given: dict[str, ArrayLike], settings: Vector) -> bool:
+        """Take positions and a request over; return whether it is that of the last step."""
         if len(given) > 1:
             raise InvalidInputError(" and ".join(given), "are several wishes")
         wish = self._state.wish.copy()
         for kind, value in given.items():
             size = TWIST if kind == "twist" else q.size
             wish[:size] = checks.array(kind, value, (size,))
-            self._asked = (kind, frame or self.robot.tip if kind == "twist" else JOINTS)
-        take_positions(q, self._state, self.settings)
-        held: bool = take_wish(wish, bool(given), self._state, self.settings)
+        take_positions(q, self._state, settings)
+        held: bool = take_wish(wish, bool(given), self._state, settings)
         return held
 
     def controller(self, frame: str = JOINTS) -> Controller:
-        """Return the controller for wishes of a frame, or of all joints; they share one state."""
+        """Return the controller for requests of a frame, or of all joints; they share one state."""
         if frame not in self._controllers:
-            scheme = Scheme([], [JointVelocityTask()], self.limits)
+            scheme = Scheme([], self._velocity_tasks(), self.limits)
             if frame != JOINTS:
-                task = PoseTask(frame=frame, gain=0.0, weight=1.0)
+                task = TwistTask(frame=frame, gain=0.0, weight=1.0)
                 scheme = Scheme([KineticEnergy(weight=DAMPING * DAMPING)], [task], self.limits)
-            self._controllers[frame] = Controller(self.robot, scheme, dt=self.dt, policy="relax")
-            self._controllers[frame]._state = self._kept
+            made = Controller(self.robot, scheme, dt=self.dt, policy="relax")
+            made.longest_period = self.longest_period
+            made._state = self._kept
+            self._controllers[frame] = made
         return self._controllers[frame]
 
-    def _target(self, controller: Controller, kind: str, held: bool) -> Target:
-        """Return what a step is to answer, in the form of its target."""
+    def _velocity_tasks(self) -> list[JointVelocityTask]:
+        """Return tasks for all joints, each with the target of a frame."""
+        firsts = range(0, self.robot.dof, TARGET_SIZE)
+        others = [name for name in self.robot.frame_names if name != self.robot.tip]
+        frames = [self.robot.tip, *others]
+        return [
+            JointVelocityTask(frame, first) for frame, first in zip(frames, firsts, strict=False)
+        ]
+
+    def _target(
+        self, controller: Controller, kind: str, held: bool, periods: Periods
+    ) -> dict[str, Target]:
+        """Return what a step is to answer, in the form of its targets."""
+        program = controller.program
+        frames = program.target_frames
         if kind == "twist":
-            v = np.clip(self._state.wish[:TWIST], -FASTEST, FASTEST)
-            return Target(np.zeros(3), linear_velocity=v[:3], angular_velocity=v[3:])
+            v = self._cut_twist(frames[0])
+            return {frames[0]: Target(np.zeros(3), linear_velocity=v[:3], angular_velocity=v[3:])}
         # From here a network that has nothing to do hands the aim out as it is.
-        state = controller.solver.state_for(controller.program.sizes)
+        state = controller.solver.state_for(program.sizes)
         state[:] = 0.0
-        past = self._kept.past
         aim = state[: self.robot.dof]
-        come_nearer(self._state, past, self.motion, self._periods, kind == "position", held, aim)
-        target = np.zeros(TARGET_SIZE)
-        target[: aim.size] = aim
-        return Target.from_data(target)
+        past = self._kept.past
+        come_nearer(self._state, past, self.motion, periods, kind == "position", held, aim)
+        targets = np.zeros((len(frames), TARGET_SIZE))
+        targets.reshape(-1)[: aim.size] = aim
+        return dict(zip(frames, map(Target.from_data, targets), strict=True))
+
+    def _cut_twist(self, frame: str) -> Vector:
+        """Return the twist that is requested of a frame, (6,), cut where no joints can do it."""
+        v = self._state.wish[:TWIST].copy()
+        size = np.abs(v).max()
+        self._state.flags[CUTS] = 0.0
+        if size > CUT:
+            jacobian = Configuration(self.robot, self._state.positions).frame(frame).jacobian
+            fastest = np.minimum(self.robot.dq_max, FASTEST)
+            most = CUT * max((np.abs(jacobian) @ fastest).max(), 1.0)
+            if size > most:
+                v *= most / size
+                self._state.flags[CUTS] = 1.0
+        return v

@@ -49,7 +49,7 @@ class ControllerState:
 
     def set_period(self, dt: float) -> None:
         """Go on in periods of another length [s]: accelerations and the time to rest stay."""
-        if self.dt > 0.0:
+        if self.dt > 0.0 and dt != self.dt:
             ratio = dt / self.dt
             past = self.past.copy()
             past[BEFORE] = past[LAST] - ratio * (past[LAST] - past[BEFORE])

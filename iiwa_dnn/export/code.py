@@ -152,6 +152,7 @@ def _shield_texts(code: _Code, shield: shields.Shield) -> dict[str, Any]:
         "yields": YIELDS,
         "reason": shields.REASON,
         "halted": f"{shields.HALTED}.0",
+        "flags": shields.FLAGS,
     }
 
 
@@ -173,8 +174,8 @@ def _lengths(controller: Controller, shielded: bool) -> dict[str, int]:
         "scratch": 8 * n * (n + m + p + 10),  # twice what the package's kernels take
         "positions": dof * shielded,
         "wish": dof * shielded,
-        "flags": 4 * shielded,
-        "aim": TARGET_SIZE * shielded,
+        "flags": shields.FLAGS * shielded,
+        "aim": TARGET_SIZE * len(step.program.target_frames) * shielded,
     }
 
 

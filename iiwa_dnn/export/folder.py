@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import by_frame
 from iiwa_dnn.control.shield import Shield
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.code import code_of, filled
 from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
@@ -75,6 +76,8 @@ def c99(
         FileError: The folder cannot be written.
     """
     shield = controller if isinstance(controller, Shield) else None
+    if controller.longest_period is not None or (shield and shield.delay > 0.0):
+        raise InvalidInputError("controller", "with longest_period or delay has no C", controller)
     own = controller.controller() if isinstance(controller, Shield) else controller
     twin = copy.copy(own)
     start = Configuration(twin.robot, own.positions if q0 is None else q0)

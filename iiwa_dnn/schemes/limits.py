@@ -111,21 +111,33 @@ def constant_periods(dt: float) -> Periods:
     return Periods(dt, dt, dt, 1.0, False)
 
 
-def varying_periods(
-    nominal: float, longest: float, dt: float | None, elapsed: float | None
+def stated_periods(
+    nominal: float, longest: float | None, dt: float | None, elapsed: float | None
 ) -> Periods:
-    """Return the periods of a step in a loop whose periods last up to `longest`.
+    """Return the periods of a step, as a loop states them.
 
     Args:
         nominal: Control period where none is stated [s].
-        longest: Longest period [s].
+        longest: Longest period of a loop whose periods vary [s]; None: `elapsed` is refused.
         dt: Period for which the command will be held [s], if that is stated.
         elapsed: Time since the last step [s], if that is stated.
+
+    Raises:
+        InvalidInputError: A period is not above 0; or both are stated.
     """
+    if dt is not None and elapsed is not None:
+        raise InvalidInputError(
+            "dt and elapsed", "are two periods: pass one of them", (dt, elapsed)
+        )
+    if elapsed is not None and longest is None:
+        raise InvalidInputError("elapsed", "needs a longest_period", elapsed)
+    hold = nominal if dt is None else checks.positive("dt", dt)
+    if longest is None:
+        return constant_periods(hold)
     if dt is not None:
-        return Periods(dt, dt, longest, 1.0, True)
+        return Periods(hold, hold, longest, 1.0, True)
     if elapsed is not None:
-        return Periods(elapsed, longest, longest, 1.0, True)
+        return Periods(checks.positive("elapsed", elapsed), longest, longest, 1.0, True)
     return Periods(nominal, nominal, nominal, nominal / longest, True)
 
 

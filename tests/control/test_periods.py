@@ -1,6 +1,7 @@
 """Periods that vary: no limit is passed, whatever period comes, however it is stated."""
 
 import copy
+import pickle
 from typing import Any
 
 import numpy as np
@@ -127,3 +128,106 @@ def test_the_clock_of_a_path_falls_behind_by_what_has_passed() -> None:
     assert np.diff(behind).min() > 0.0
     assert behind[-1] - behind[-2] == pytest.approx(5e-3 * command.fraction)
     assert command.fraction < 0.2
+
+
+@pytest.mark.parametrize("jerk", [np.inf, 500.0])
+@pytest.mark.parametrize("said", ["dt", "elapsed"])
+def test_a_shield_passes_no_limit_whatever_period_comes(said: str, jerk: float) -> None:
+    """The arm goes at the commanded velocity for as long as the period lasts."""
+    robot = PLAIN.with_limits(acceleration=10.0, jerk=jerk)
+    for seed in range(3):
+        random = np.random.default_rng(seed)
+        shield = d.Shield(robot, DT, longest_period=LONGEST)
+        q = np.array(robot.start_posture())
+        elapsed, last, slope, most = DT, np.zeros(7), np.zeros(7), 0.0
+        for k in range(800):
+            if k % 80 == 0:
+                request = {"dq": random.choice([-1.0, 1.0], 7) * 2.0 * robot.dq_max}
+                if k % 160:
+                    request = {"position": random.uniform(robot.q_lower - 0.3, robot.q_upper + 0.3)}
+            period = LONGEST * random.choice([random.uniform(0.01, 1.0), 1.0])
+            command = shield.step(q, **request, **({said: period if said == "dt" else elapsed}))
+            np.testing.assert_allclose(command.command.past[0], q, atol=1e-12)
+            measured = period if said == "dt" else elapsed
+            turned = (command.dq - last) / measured - slope
+            slope = slope + turned
+            assert np.abs(slope).max() <= 10.0 + 1e-6
+            most = max(most, (np.abs(turned) / measured).max())
+            q, last, elapsed = q + period * command.dq, command.dq, period
+            assert (q <= robot.q_upper).all()
+            assert (q >= robot.q_lower).all()
+        assert most <= jerk * (1.0 + 1e-6)
+
+
+def test_a_shield_takes_the_period_of_a_command_without_a_longest_one() -> None:
+    """Velocity and acceleration limits hold at the stated period; `elapsed` is refused."""
+    panda = d.load_robot("panda").with_limits(jerk=np.inf)
+    shield, q, last = d.Shield(panda, 1e-3), np.array(panda.start_posture()), np.zeros(7)
+    for period in (1e-3, 2e-3, 5e-4, 4e-3):
+        command = shield.step(q, np.full(7, 9.0), dt=period)
+        assert (np.abs(command.dq - last) <= period * panda.ddq_max + 1e-12).all()
+        q, last = q + period * command.dq, command.dq
+    with pytest.raises(d.InvalidInputError, match="elapsed: needs a longest_period"):
+        shield.step(q, elapsed=1e-3)
+    np.testing.assert_array_equal(shield.step(q, dt=1e-3).command.past[0], q)
+
+
+@pytest.mark.parametrize("late", [10, 40])
+@pytest.mark.parametrize("jitter", [False, True])
+def test_drives_that_are_late_pass_no_limit(late: int, jitter: bool) -> None:
+    """With the measured positions compared with those of now, limits were passed by 0.126 rad."""
+    random = np.random.default_rng(late)
+    shield = d.Shield(PLAIN, 1e-3, delay=late * 1e-3, longest_period=2e-3 if jitter else None)
+    path = [np.array(PLAIN.start_posture())]  # where the arm has to be at each millisecond
+    for k in range(3000):
+        if k % 100 == 0:
+            request = random.uniform(-1.0, 1.0, 7) * 2.0 * PLAIN.dq_max
+        measured = path[max(len(path) - 1 - late, 0)]
+        steps = int(random.integers(1, 3)) if jitter else 1
+        command = shield.step(measured, request, **({"dt": steps * 1e-3} if jitter else {}))
+        assert "measured positions taken over" not in command.reasons
+        path += [path[-1] + (i + 1) * 1e-3 * command.dq for i in range(steps)]
+        assert (path[-1] <= PLAIN.q_upper).all()
+        assert (path[-1] >= PLAIN.q_lower).all()
+    assert np.ptp(path, axis=0).min() > 0.3
+
+
+def test_a_blocked_arm_is_found_and_goes_on_from_where_it_is_and_what_is_under_way() -> None:
+    shield = d.Shield(PLAIN.with_limits(acceleration=np.inf), 1e-3, delay=0.02)
+    q = np.array(PLAIN.start_posture())
+    for _ in range(20):
+        shield.step(q, np.full(7, 0.5))
+    blocked = []
+    while not blocked or "measured positions taken over" not in blocked[-1].reasons:
+        blocked.append(shield.step(q, np.full(7, 0.5)))
+    # 20 ms until it should have begun to move, 40 ms until it should be 0.02 rad on.
+    assert 38 <= len(blocked) <= 42
+    np.testing.assert_allclose(blocked[-1].command.past[0], q + 0.02 * 0.5, atol=1e-12)
+    twin = pickle.loads(pickle.dumps(shield))
+    np.testing.assert_array_equal(
+        twin.step(q, twist=[0.1] * 6).dq, shield.step(q, twist=[0.1] * 6).dq
+    )
+
+
+@pytest.mark.parametrize("period", [{"dt": 0.0}, {"elapsed": np.nan}, {"elapsed": "now"}])
+def test_a_shield_refuses_a_wrong_period_and_loses_nothing(period: Any) -> None:
+    shield = d.Shield(PLAIN, DT, longest_period=LONGEST, delay=5e-3)
+    q = np.array(PLAIN.start_posture())
+    for _ in range(5):
+        shield.step(q, np.full(7, 0.1), elapsed=3e-3)
+    twin = copy.copy(shield)
+    with pytest.raises(d.InvalidInputError, match="must be a finite number above 0"):
+        shield.step(q, np.full(7, 0.3), **period)
+    found = shield.step(q, elapsed=1e-3)
+    expected = twin.step(q, elapsed=1e-3)
+    np.testing.assert_allclose(found.dq, expected.dq, atol=1e-12)
+    np.testing.assert_allclose(found.next_q, expected.next_q, atol=1e-15)
+
+
+def test_a_shield_names_a_period_above_the_longest() -> None:
+    shield = d.Shield(PLAIN, DT, longest_period=LONGEST)
+    q = np.array(PLAIN.start_posture())
+    with pytest.warns(UserWarning, match="above the longest"):
+        command = shield.step(q, np.zeros(7), elapsed=1.0)
+    assert command.limits == ("period exceeded",)
+    assert shield.step(q, np.zeros(7), elapsed=DT).limits == ()

@@ -1,7 +1,10 @@
 """A shield gives the wish itself where the limits admit it, and the nearest safe command else."""
 
 import copy
+import itertools
 import pickle
+import threading
+import time
 from typing import Any
 
 import numpy as np
@@ -269,3 +272,77 @@ def test_wrong_wishes_are_refused_and_change_nothing(arguments: dict[str, Any], 
         shield.step(**{"q": START} | arguments)
     shield.step(START)  # the last wish counts
     np.testing.assert_array_equal(shield.step(START, np.full(7, 0.02)).dq, np.full(7, 0.02))
+
+
+@pytest.mark.parametrize("joints", [20, 40])
+def test_an_arm_of_many_joints_has_a_shield(joints: int) -> None:
+    """A target has 18 numbers: the velocities of more joints go into several."""
+    robot = d.robot_from_dh([(0.1, 0.0, 0.0, 0.0)] * joints, lower=-2.0, upper=2.0, velocity=1.0)
+    shield = d.Shield(robot)
+    wish = np.linspace(-0.5, 0.5, joints)
+    np.testing.assert_array_equal(shield.step(np.zeros(joints), wish).dq, wish)
+    path, _ = drive(shield, 400, np.zeros(joints), position=0.1 * wish)
+    np.testing.assert_allclose(shield.step(path[-1]).next_q, 0.1 * wish, atol=1e-9)
+
+
+def test_a_request_is_cut_by_the_joints_own_limit_and_the_cut_is_a_reason() -> None:
+    """A slide in millimetres was cut at 1,000 without a word; positions swung 1814, 228, 1722."""
+    slide = d.robot_from_dh([(0, 0, 0, 0)], lower=0.0, upper=1e5, velocity=2000.0, prismatic=[1])
+    slide = slide.with_limits(acceleration=18000.0, jerk=190000.0)
+    shield = d.Shield(slide)
+    path, commands = drive(shield, 1000, np.array([100.0]), dq=np.array([2000.0]))
+    assert commands[-1].dq == 2000.0
+    assert commands[-1].limits == ()
+    path, commands = drive(d.Shield(slide), 1000, np.array([100.0]), position=np.array([1000.0]))
+    speeds = np.diff(path[:, 0]) / DT
+    top = int(speeds.argmax())
+    assert np.flatnonzero(np.abs(path[:, 0] - 1000.0) < 1e-3)[0] <= 660
+    assert (np.diff(speeds[: top + 1]) >= -0.2).all()
+    assert (np.diff(speeds[top:]) <= 0.2).all()
+    far = d.Shield(PLAIN).step(START, np.full(7, 1e3))
+    assert far.limits[0] == "request cut"
+    assert d.Shield(PLAIN).step(START, twist=np.full(6, 1e4)).limits[0] == "request cut"
+    assert "request cut" not in d.Shield(PLAIN).step(START, np.full(7, 50.0)).limits
+
+
+def test_next_q_is_where_the_command_leads() -> None:
+    command = d.Shield(ROBOT, DT).step(START, np.full(7, 0.3))
+    np.testing.assert_array_equal(command.next_q, START + DT * command.dq)
+
+
+def test_a_warm_shield_takes_its_first_steps_as_any_other() -> None:
+    shield = d.Shield(SMOOTH, DT, [BALL])
+    shield.warm_up(START, [SMOOTH.tip])
+    times = []
+    for k in range(40):
+        begun = time.perf_counter()
+        shield.step(START, **({"dq": np.zeros(7)} if k % 2 else {"twist": np.zeros(6)}))
+        times.append(time.perf_counter() - begun)
+    assert max(times[:2]) < 20.0 * np.median(times)
+    cold = d.Shield(SMOOTH, DT, [BALL])
+    np.testing.assert_array_equal(
+        cold.step(START, np.full(7, 9.0)).dq, shield.step(START, np.full(7, 9.0)).dq
+    )
+
+
+def test_threads_may_share_a_shield() -> None:
+    """Each command keeps the acceleration from the one before it, whoever asked for it."""
+    shield = d.Shield(ROBOT, DT)
+    shield.step(START, np.zeros(7))
+    found: list[d.control.shield.ShieldCommand] = []
+
+    def ask(sign: float) -> None:
+        for k in range(300):
+            request = {"dq": np.full(7, sign)} if k % 2 else {"twist": np.full(6, sign)}
+            found.append(shield.step(shield._state.positions, **request))
+
+    threads = [threading.Thread(target=ask, args=(sign,)) for sign in (-1.0, 1.0, 0.3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    found.sort(key=lambda command: command.t)
+    assert len({command.t for command in found}) == 900
+    for before, after in itertools.pairwise(found):
+        np.testing.assert_array_equal(after.command.past[1], before.dq)
+        assert np.abs(after.dq - before.dq).max() <= 10.0 * DT + 1e-12

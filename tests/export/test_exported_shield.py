@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from helpers_export import run
-from iiwa_dnn import Robot, Shield, Sphere, export, load_robot
+from iiwa_dnn import (
+    InvalidInputError,
+    Robot,
+    Shield,
+    Sphere,
+    export,
+    load_robot,
+    robot_from_dh,
+)
 
 DT = 1e-3
 START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
@@ -53,3 +61,25 @@ def test_the_example_asks_the_shield(tmp_path: Path) -> None:
     turned = float(run(tmp_path / "example").split()[2]) - START[0]
     assert turned == pytest.approx(0.1, abs=2e-3)  # 0.1 rad/s for 1 s, less the time to start
     assert "wish" in (tmp_path / "README.md").read_text(encoding="utf-8")
+
+
+def test_a_shield_of_many_joints_stays_within_its_memory(tmp_path: Path) -> None:
+    """The velocities of 20 joints were written beyond an array for 18."""
+    robot = robot_from_dh([(0.1, 0.0, 0.0, 0.0)] * 20, lower=-2.0, upper=2.0, velocity=1.0)
+    shield = Shield(robot.with_limits(acceleration=10.0), DT)
+    export.c99(shield, tmp_path)
+    exported = export.load(tmp_path)
+    q = np.zeros(20)
+    for k in range(200):
+        wish = np.sin(np.arange(20.0) + 0.1 * k)
+        command = shield.step(q, wish)
+        np.testing.assert_array_equal(exported.shield_step(q, wish).dq, command.dq)
+        q = command.next_q
+
+
+@pytest.mark.parametrize("settings", [{"longest_period": 2e-3}, {"delay": 0.01}])
+def test_what_c_does_not_have_yet_is_refused(settings: dict[str, float], tmp_path: Path) -> None:
+    with pytest.raises(
+        InvalidInputError, match="controller: with longest_period or delay has no C"
+    ):
+        export.c99(Shield(SMOOTH, DT, **settings), tmp_path)

@@ -18,7 +18,7 @@ from iiwa_dnn.schemes.limits import (
     joint_bounds,
     largest_gain,
     own_rate_limits,
-    varying_periods,
+    stated_periods,
 )
 from judge_limits import Breach, breaches
 
@@ -156,7 +156,7 @@ def hostile_periods(meaning: str, random: Any, steps: int) -> tuple[float, float
             own = {"dt": period, "elapsed": passed, "neither": nominal}[meaning]
             first = last - own / stated * (last - before)
             said = (period if meaning == "dt" else None, passed if meaning == "elapsed" else None)
-            periods = varying_periods(nominal, longest, *said)
+            periods = stated_periods(nominal, longest, *said)
             v = joint_bounds(last, first, upper - q, q + upper, rates, periods)[int(push > 0)]
             room = upper - push * (q + period * v) - v * v / (2.0 * braking_at)
             found.append((room, period, own, v))

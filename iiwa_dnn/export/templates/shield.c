@@ -9,7 +9,7 @@ int shield_step(struct controller *c, const double *q, const double *wish, doubl
     const Vector aim = {c->aim, CONTROLLER_DOF};
     const Matrix past = {c->past, @rows@, CONTROLLER_DOF};
     const control_shield_ShieldState kept = {
-        {c->positions, CONTROLLER_DOF}, {c->wish, CONTROLLER_DOF}, {c->flags, 4}
+        {c->positions, CONTROLLER_DOF}, {c->wish, CONTROLLER_DOF}, {c->flags, @flags@}
     };
     if (!controller_is_finite(q, CONTROLLER_DOF)) {
         memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
