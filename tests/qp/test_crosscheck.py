@@ -142,6 +142,20 @@ def test_a_reference_is_judged_by_its_own_residual(spoilt, residual, monkeypatch
     np.testing.assert_array_equal(agreement.judge, [[-1, -1]])
 
 
+def test_a_reference_is_not_blamed_for_rounding(monkeypatch) -> None:
+    x = 1e9 * np.random.default_rng(62).standard_normal(5)
+    A = np.array([[0.1, 0.2, 0.3, 0.4, 0.5]])
+    qp = QP(np.eye(5), -x, A=A, b=A @ x + 5e-7)  # a digit or two of 1e9
+    point = np.concatenate([x, np.zeros(6)])
+    monkeypatch.setattr(crosscheck, "ask", lambda name, qp: point)
+    assert qp.residuals(point).largest > 1e-7
+    agreement = CrossCheck().check(qp, x)
+    assert (agreement.judge[0, 0], agreement.largest[0, 0] < 1e-6) == (0, True)
+    assert agreement.reference_residual == CrossCheck().reference_tolerance
+    monkeypatch.setattr(crosscheck, "ask", lambda name, qp: point + np.arange(11) / 10.0)
+    assert CrossCheck().check(qp, x).judge == -1
+
+
 class Liar(d.DNNSolver):
     """Claims to have solved everything, and has not at one call."""
 
