@@ -326,11 +326,10 @@ def export(options: Words) -> int:
     folder = claim_folder(options.out or Path("controller"), tables, options.overwrite)
     write_settings(folder, tables)
     exports.c99(controller, folder, arguments["q0"])
-    limits = tables["limits"]
-    if controller.robot.name == "iiwa7" and "position" not in limits:
+    if controller.robot.name == "iiwa7" and "position" not in tables["limits"]:
         line = "position limits of 2.5 rad are the paper's, wider than those of joints 2, 4 and 6"
         print(f"{line}; for a real arm take --joint-limit datasheet", file=sys.stderr)
-    if limits.get("acceleration") == "none":
+    if tables["limits"].get("acceleration") == "none":
         line = "accelerations are not limited; for a real arm take --acceleration-limit robot"
         print(line, file=sys.stderr)
     if not options.quiet:

@@ -30,8 +30,13 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
         return failures(compute_metrics(run))
     check = run["crosscheck"]
     judged = [*_policies(run), *_unsolved(run)] if run["settings"]["mode"] == "converged" else []
-    limits = [*unlimited(run, named=False), *_incomplete(run)]
-    reasons = [*limits, *judged, *_crosscheck(check, run["steps"]), *_broken_limits(run)]
+    reasons = [
+        *unlimited(run, named=False),
+        *_incomplete(run),
+        *judged,
+        *_crosscheck(check, run["steps"]),
+        *_broken_limits(run),
+    ]
     if not reasons and any(steps for kind, steps in check["kinds"].items() if kind != "own"):
         return [programs_checked(check)]
     return reasons

@@ -104,8 +104,7 @@ def joint_rates(record: Record, quantity: str) -> tuple[Array, float]:
 def _rate_excess(record: Record, quantity: str, limit: Array) -> Array:
     """Compute the excess of the joints' accelerations or jerks over a limit (n,), (N, n)."""
     rates, rounding = joint_rates(record, quantity)
-    excess: Array = np.abs(rates) - (limit + rounding)
-    return excess
+    return np.abs(rates) - (limit + rounding)
 
 
 def _excesses(record: Record) -> dict[str, Array]:

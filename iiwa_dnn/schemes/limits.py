@@ -275,8 +275,11 @@ def own_rate_limits(robot: Robot) -> tuple[RateLimits, ...]:
 
     They are those of `Shield` and of ``iiwa-dnn track``.
     """
-    known = (AccelerationLimits(), JerkLimits())
-    return tuple(limit for limit in known if np.isfinite(robot.limits[limit.row]).any())
+    return tuple(
+        limit
+        for limit in (AccelerationLimits(), JerkLimits())
+        if np.isfinite(robot.limits[limit.row]).any()
+    )
 
 
 @compiled
@@ -415,8 +418,11 @@ def merged(limits: Sequence[Limit], tasks: Sequence[Task]) -> list[Limit]:
 
     Of the tasks those count that hold joints together.
     """
-    named = [limit for limit in limits if isinstance(limit, RateLimits)]
-    rates = tuple(each for each in named if each.limit is None or np.isfinite(each.limit).any())
+    rates = tuple(
+        limit
+        for limit in limits
+        if isinstance(limit, RateLimits) and (limit.limit is None or np.isfinite(limit.limit).any())
+    )
     others = [limit for limit in limits if not isinstance(limit, RateLimits)]
     held = tuple(t for t in tasks if isinstance(t, JointCouplingTask) and t.weight is None)
     return [*others, MotionLimits(rates, held)] if rates else others

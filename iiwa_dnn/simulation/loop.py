@@ -111,8 +111,7 @@ class Loop:
             dq = velocity
         place = controller.placement(self.q) if self._misled else commands[0].placement
         sent = None if self.plant.exact else dq
-        planned = Outcome(commands, velocity, dq, self.q, place, action, clipped, sent)
-        return self._move(dq, planned)
+        return self._move(dq, Outcome(commands, velocity, dq, self.q, place, action, clipped, sent))
 
     def _ask(self, q: Vector, t: float) -> tuple[list[Command], Vector, Action]:
         """Ask for a step's commands, one a stage; return them, their mean, and the action.

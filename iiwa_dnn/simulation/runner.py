@@ -192,8 +192,11 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     ends = [path.duration for path in by_frame(controller.reference, "").values()]
     of_rates = (program.rate_limits or MotionLimits()).numbers(robot).reshape(6, -1)[3:5]
     kept = dict(zip(RATES, of_rates, strict=True))
-    named = [each.quantity for each in controller.scheme.limits if isinstance(each, RateLimits)]
-    limits: dict[str, Any] = {RATES[quantity]: kept[quantity] for quantity in named}
+    limits: dict[str, Any] = {
+        RATES[named.quantity]: kept[named.quantity]
+        for named in controller.scheme.limits
+        if isinstance(named, RateLimits)
+    }
     if (avoidance := avoidance_of(controller.scheme)) is not None:
         limits["collisions"] = avoidance.overview(robot)
     return {

@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from iiwa_dnn import (
+    AccelerationLimits,
     Configuration,
     CrossCheck,
     DNNSolver,
@@ -17,6 +18,7 @@ from iiwa_dnn import (
     ExplicitEuler,
     Heart,
     ImplicitEuler,
+    JerkLimits,
     ProjectionNetwork,
     PseudoInverse,
     Record,
@@ -142,7 +144,11 @@ class HeartRun:
         if self.baseline:
             return PseudoInverse(orientation=self.orientation)
         return DoubleIndicator(
-            self.weight, orientation=self.orientation, kinetic=self.kinetic, home=paper.START
+            self.weight,
+            orientation=self.orientation,
+            kinetic=self.kinetic,
+            home=paper.START,
+            extra_limits=(AccelerationLimits(np.inf), JerkLimits(np.inf)),  # the paper has none
         )
 
     def reference(self) -> Reference:

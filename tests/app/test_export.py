@@ -25,5 +25,8 @@ def test_the_settings_of_a_run_become_c(tmp_path, capsys, monkeypatch) -> None:
     # A folder that holds another controller is not overwritten unasked.
     assert call(*words, "--weight", "0.5") == 2
     assert "--overwrite" in capsys.readouterr().err
-    assert call(*words, "--weight", "0.5", "--overwrite", "--joint-limit", "datasheet", "-q") == 0
+    words += ("--weight", "0.5", "--overwrite", "--joint-limit", "datasheet", "-q")
+    assert call(*words) == 0
     assert capsys.readouterr() == ("", "")
+    assert call(*words, "--acceleration-limit", "none") == 0
+    assert "--acceleration-limit robot" in capsys.readouterr().err

@@ -26,6 +26,25 @@ def test_a_decision_is_noted_at_its_step_with_the_bound_in_the_way() -> None:
     assert (np.abs(stopped.blocking[-1]) == 2).sum() == 1
 
 
+def test_a_record_states_the_robots_rates_and_those_that_the_scheme_names() -> None:
+    own = paper_robot().ddq_max.tolist()
+    none = [None] * 7
+    for limits, expected in (
+        ((), {}),
+        ((d.AccelerationLimits(),), {"ddq_max": own}),
+        (
+            (d.AccelerationLimits(np.inf), d.JerkLimits(9e3)),
+            {"ddq_max": none, "dddq_max": [9e3] * 7},
+        ),
+        ((d.AccelerationLimits(np.inf),), {"ddq_max": none}),
+    ):
+        settings = run(d.DoubleIndicator(extra_limits=limits), duration=2e-3).settings
+        assert {
+            key: settings[key] for key in ("ddq_max", "dddq_max") if key in settings
+        } == expected
+        assert (settings["robot_ddq_max"], settings["robot_dddq_max"]) == (own, none)
+
+
 def test_poses_are_those_of_the_first_stage_and_work_is_of_all() -> None:
     record = run(reference=heart(period=2.0), motion="rk4")
     assert_array_equal(record.position_desired[7], heart(period=2.0).at(record.t[7]).position)

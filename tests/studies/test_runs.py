@@ -25,6 +25,8 @@ def test_the_defaults_are_the_papers() -> None:
     assert (asked["dt"], asked["motion"], asked["rho"]) == (1e-4, "euler", 9e-5)
     assert asked["reference"]["name"] == "heart"
     assert asked["check"]["solvers"] == []
+    assert asked["ddq_max"] == asked["dddq_max"] == [None] * 7  # said, and not the robot's
+    assert asked["robot_ddq_max"][0] == 8.65
 
 
 def test_every_setting_reaches_the_run() -> None:
