@@ -225,7 +225,7 @@ class Waypoints(Reference):
                 yield (
                     f"the acceleration jumps at {count} of {len(self.times)} rows (at {first}"
                     f"{', ...' * (count > 5)} s): the cubic spline would leave the rows by up to "
-                    f"{spline.excursion:.2g} {unit}"
+                    f"{spline.excursion:.2g} {unit}{'; noise= smooths a recording' * (count > 5)}"
                 )
 
     @classmethod
