@@ -103,9 +103,7 @@ def show_robot(server: Any, robot: Robot) -> Any:
     """Put a robot on a page, frames where it has no shapes; return Pinocchio's visualizer."""
     from pinocchio.visualize import ViserVisualizer
 
-    shapes = pin.GeometryModel()
-    for shape in visual_shapes(robot):
-        shapes.addGeometryObject(shape)
+    shapes = visual_shapes(robot)
     visualizer = ViserVisualizer(robot.model, pin.GeometryModel(), shapes)
     visualizer.initViewer(viewer=server, loadModel=True)
     visualizer.displayFrames(shapes.ngeoms == 0)

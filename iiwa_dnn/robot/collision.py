@@ -213,7 +213,7 @@ def _capsules(robot: Robot) -> list[LinkCapsule]:
     Spheres that another capsule of the link holds, such as the ends of a cylinder, are left out.
     """
     try:
-        shapes = read_shapes(robot, pin.GeometryType.COLLISION)
+        shapes = read_shapes(robot, pin.GeometryType.COLLISION).geometryObjects
     except (ValueError, RuntimeError) as error:
         raise FileError(
             source_of(robot)[0],

@@ -102,8 +102,8 @@ def load_robot(
 def _doubts(robot: Robot, still: list[str], left_out: list[str]) -> Iterator[str]:
     """State parts of the file that are left out, a limit in another unit, and joints held still."""
     if left_out:
-        more = f"; and {len(left_out) - 2} more" if len(left_out) > 2 else ""
-        yield f"{robot.path}: left out by Pinocchio: {'; '.join(left_out[:2])}{more}"
+        more = [f"{len(left_out) - 2} more"] if len(left_out) > 2 else []
+        yield f"{robot.path}: left out by Pinocchio: {'; '.join(left_out[:2] + more)}"
     limits = robot.limits[:3]
     large = np.where(np.isfinite(limits), np.abs(limits), 0.0).max(axis=0)
     if large.max() > _LARGE:

@@ -30,7 +30,7 @@ def source_of(robot: Robot) -> tuple[Path, str]:
     return robot.path, str(robot.urdf)
 
 
-def read_shapes(robot: Robot, kind: pin.GeometryType) -> list[pin.GeometryObject]:
+def read_shapes(robot: Robot, kind: pin.GeometryType) -> pin.GeometryModel:
     """Read the visual or collision shapes of a robot's URDF; meshes in its folder or above it.
 
     Raises:
@@ -40,26 +40,25 @@ def read_shapes(robot: Robot, kind: pin.GeometryType) -> list[pin.GeometryObject
     path, text = source_of(robot)
     folders = [str(folder) for folder in (*path.absolute().parents, *path.resolve().parents)]
     with parser_messages():  # which were told when the robot was loaded
-        found = pin.buildGeomFromUrdfString(robot.model, text, kind, package_dirs=folders)
-    return list(found.geometryObjects)
+        return pin.buildGeomFromUrdfString(robot.model, text, kind, package_dirs=folders)
 
 
-def visual_shapes(robot: Robot) -> list[pin.GeometryObject]:
-    """List the <visual>s of a robot; if a mesh is missing, none, which a warning says."""
+def visual_shapes(robot: Robot) -> pin.GeometryModel:
+    """Read the <visual>s of a robot; if a mesh is missing, none, which a warning says."""
     try:
         return read_shapes(robot, pin.GeometryType.VISUAL)
     except (ValueError, RuntimeError) as error:
         if robot.path is not None:
             problem = f"{robot.name} is drawn without its shapes: {one_line(error)}"
             warnings.warn(problem, stacklevel=2)
-        return []
+        return pin.GeometryModel()
 
 
 @lru_cache(maxsize=4)  # a robot of 100,000 triangles takes seconds
 def visual_meshes(robot: Robot) -> tuple[Mesh, ...]:
     """List the meshes of `visual_shapes`."""
     meshes = []
-    for shape in visual_shapes(robot):
+    for shape in visual_shapes(robot).geometryObjects:
         body = shape.geometry
         if hasattr(body, "num_tris"):
             turn = shape.placement.rotation

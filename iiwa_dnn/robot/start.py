@@ -63,8 +63,7 @@ def _count_collisions(robot: Robot, postures: Array) -> Array:
     """Count the pairs of collision shapes that meet in some of the postures (k, n), (k,)."""
     geometry = pin.GeometryModel()
     with suppress(ValueError, RuntimeError):  # no file, or a mesh is missing
-        for shape in read_shapes(robot, pin.GeometryType.COLLISION):
-            geometry.addGeometryObject(shape)
+        geometry = read_shapes(robot, pin.GeometryType.COLLISION)
     geometry.addAllCollisionPairs()
     data = robot.model.createData()
     scratch = pin.GeometryData(geometry)
