@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from .kinds import FLOAT, VOID, Kind
+from .sizes import Reading, known_of
 from .sources import ENTRY
 from .translator import Function, Translator
 
@@ -62,6 +63,8 @@ def _wrapper(own: Function) -> str:
     read = [f'!counted("{own.name}", count, {len(kinds)})']
     for i, (name, kind) in enumerate(kinds.items()):
         read += _read(kind, name, f"given[{i}]", own.written)
+    known = {name: known_of(kind, f"a_{name}") for name, kind in kinds.items()}
+    needs = Reading(own, known).needs
     if own.result is not VOID:
         call = f"result = {call}"
     if own.decoration == "released":
@@ -71,6 +74,7 @@ def _wrapper(own: Function) -> str:
         f"static PyObject *py_{own.name}({parameters})\n{{",
         *(f"    {kind.tag} a_{name};" for name, kind in kinds.items()),
         f"    if ({' || '.join(read)}) return NULL;",
+        *(f'    if (!({need})) return too_small("{own.name}");' for need in needs),
         f"    {own.result.tag} result;" * (own.result is not VOID),
         f"    {call}",
         "    if (failed && raise_failure()) return NULL;",

@@ -119,6 +119,7 @@ class Function(Expressions):
         result: Type of its result.
         head: Its declaration in C.
         text: The function in C.
+        node: Its syntax tree.
     """
 
     def __init__(self, translator: Translator, module: Module, node: ast.FunctionDef) -> None:
@@ -133,7 +134,7 @@ class Function(Expressions):
         self.types = [f"const {k.tag} *" if k.is_named else f"{k.tag} " for k in kinds.values()]
         self.text = ""
         self.uses_arena |= self.decoration == ENTRY
-        self._node = node
+        self.node = node
         self._stored = Counter(stored_names(node))
         self._declared = dict.fromkeys(kinds, 0)
         self._is_const = [False]
@@ -159,15 +160,15 @@ class Function(Expressions):
 
     def translate(self) -> None:
         """Translate the body."""
-        self._takes = re.search(r"\bnp\.(empty|zeros)\(|\.copy\(\)", ast.unparse(self._node))
+        self._takes = re.search(r"\bnp\.(empty|zeros)\(|\.copy\(\)", ast.unparse(self.node))
         if self._takes:
             self.lines.append("const struct arena mark = *arena;")
-        self._block(self._node.body)
-        left = self._assigns(self._node.body)
-        self.require(self.result is VOID or _LEFT in left, self._node, "may end without a result")
+        self._block(self.node.body)
+        left = self._assigns(self.node.body)
+        self.require(self.result is VOID or _LEFT in left, self.node, "may end without a result")
         if self._takes and _LEFT not in left:
             self.lines.append("arena_leave(arena, &mark);")
-        about = f"{self.about}\n\n{self.module.path}: {self._node.name}"
+        about = f"{self.about}\n\n{self.module.path}: {self.node.name}"
         self.text = self.written_out(about, self.lines)
 
     def written_out(self, about: str, lines: list[str]) -> str:

@@ -17,6 +17,7 @@ from iiwa_dnn.networks.integrators.scaling import (
     Scaling,
     balanced,
     is_ordinary,
+    steep,
 )
 from iiwa_dnn.networks.projection import ProjectionNetwork, is_projection
 from iiwa_dnn.qp.certificates import find_certificate
@@ -27,9 +28,7 @@ from iiwa_dnn.qp.solution import Solution, Status
 
 SHARPENED = 1e-14
 SHARPENING = 20
-STEEP = 1e5
-"""Tolerance of `DNNSolver.sharpen`, the linear systems of each of its two rounds, and the largest
-entry of the cost in the first of them."""
+"""Tolerance of `DNNSolver.sharpen`, and the linear systems of each of its two rounds."""
 
 DIVERGENCE = 1e8
 """Ratio of a state or a residual to the largest number of a program beyond which it diverges."""
@@ -220,7 +219,7 @@ class DNNSolver:
         state = self._warm.get(qp.sizes)
         if state is None or not solution.found or not is_projection(self.network):
             return solution
-        for scaling in (balanced(qp, STEEP), None):
+        for scaling in (steep(qp), None):
             new = state.copy()
             left = min(SHARPENING, self.settler.max_steps - solution.iterations)
             if left < 1:

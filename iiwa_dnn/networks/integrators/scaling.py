@@ -9,7 +9,7 @@ An implicit step of length h [rho] leaves the fraction 1 / (1 + h c) of an error
 cost has the curvature c, so that a steeper cost settles sooner where it is nearly flat.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,6 +25,8 @@ LARGE = 1e3
 of a scaled cost."""
 STRICTER = 1e-4
 """Tolerance in scaled units over that in the program's own, where the residuals grow."""
+STEEP = 1e5
+"""Largest entry of a cost that was made steep."""
 ROUNDS = 10
 """Rounds of balancing; each takes the square root of what is left."""
 
@@ -80,13 +82,8 @@ class Scaling(NamedTuple):
 
 
 @np.errstate(over="ignore", invalid="ignore", divide="ignore")
-def balanced(qp: QP, largest: float = LARGE) -> Scaling:
-    """Scale a program so that the rows of its KKT matrix have a size near 1.
-
-    Args:
-        qp: The program.
-        largest: Largest entry of the cost in the new units.
-    """
+def balanced(qp: QP) -> Scaling:
+    """Scale a program so that the rows of its KKT matrix have a size near 1, its cost `LARGE`."""
     n, m, p = qp.sizes
     rows = np.vstack([qp.A, qp.G])
     limits = np.concatenate([qp.b, qp.h])
@@ -95,18 +92,16 @@ def balanced(qp: QP, largest: float = LARGE) -> Scaling:
     of_x, of_rows = np.split(factors(matrix), [n])
     # A row of zeros gets a limit near 1: if it cannot hold, its multiplier is seen to grow.
     of_rows = np.where(rows.any(axis=1) | ~np.isfinite(limits), of_rows, _power(1.0 / limits))
-    P = qp.P * np.outer(of_x, of_x)
-    q = of_x * qp.q
-    of_cost = float(_power(np.abs(np.append(P, q)).max() / largest))
-    rows = rows * np.outer(of_rows, of_x)
-    limits = of_rows * limits
+    largest = np.abs(np.vstack([qp.P * np.outer(of_x, of_x), qp.q * of_x])).max()
+    of_cost = _power(largest / LARGE)
+    of_A, of_G = np.split(of_rows, [p])
     scaled = QP(
-        P / of_cost,
-        q / of_cost,
-        rows[p:],
-        limits[p:],
-        rows[:p],
-        limits[:p],
+        qp.P * np.outer(of_x, of_x) / of_cost,
+        qp.q * of_x / of_cost,
+        qp.G * np.outer(of_G, of_x),
+        qp.h * of_G,
+        qp.A * np.outer(of_A, of_x),
+        qp.b * of_A,
         qp.lb / of_x,
         qp.ub / of_x,
     )
@@ -115,10 +110,20 @@ def balanced(qp: QP, largest: float = LARGE) -> Scaling:
     return Scaling(scaled, of_state, STRICTER * min(1.0, 1.0 / of_cost))
 
 
-def _power(sizes: Vector) -> Vector:
-    """Return the nearest power of two of each entry, 1 of a zero, (k,)."""
-    powers = np.round(np.log2(np.where(sizes == 0.0, 1.0, np.abs(sizes))))
-    return np.asarray(np.exp2(powers), dtype=np.float64)
+def steep(qp: QP) -> Scaling:
+    """Scale the cost of a program so that its largest entry is near `STEEP`."""
+    n, m, p = qp.sizes
+    of_cost = _power((cost_size(qp.views) or 1.0) / STEEP)
+    scaled = QP.from_data(qp.data.copy(), qp.sizes)
+    scaled.data[: n * n + n] /= of_cost
+    of_state = np.ones(3 * n + m + p)
+    of_state[n:] = of_cost
+    return Scaling(scaled, of_state, 1.0 / of_cost)
+
+
+def _power(size: Any) -> Any:
+    """Return the nearest power of two of a number or of each entry, 1 of a zero."""
+    return np.exp2(np.round(np.log2(np.where(size == 0.0, 1.0, np.abs(size)))))
 
 
 def factors(matrix: Matrix) -> Vector:
@@ -133,4 +138,4 @@ def factors(matrix: Matrix) -> Vector:
     for _ in range(ROUNDS):
         sizes = units * np.abs(matrix * units).max(axis=1)
         units /= np.sqrt(np.where(sizes > 0.0, sizes, 1.0))
-    return _power(units)
+    return np.asarray(_power(units))
