@@ -53,6 +53,13 @@ def among_balls() -> Made:
     return drawing(with_limits(avoidance, d.AccelerationLimits(1.0)))
 
 
+def begun_nearer() -> Made:
+    """Pairs that begin nearer than they have to be, one of which comes beyond."""
+    ball = d.Sphere([0.36, 0.16, 0.64], 0.05)
+    limits = d.CollisionAvoidance([ball], distance=0.045), d.AccelerationLimits(1.0)
+    return drawing(with_limits(*limits), d.Heart(scale=0.01))
+
+
 def among_boxes() -> Made:
     box = d.Box((0.75, 0.0, 0.2), (0.1, 0.1, 0.1))
     floor = d.HalfSpace((0.0, 0.0, 1.0), -0.3)
@@ -121,6 +128,7 @@ def own_network() -> Made:
 SETTINGS: dict[str, Callable[[], Made]] = {
     "inertia, velocity limits active": at_limits,
     "collisions with balls": among_balls,
+    "collisions that begin nearer": begun_nearer,
     "collisions with itself, a box, a floor": among_boxes,
     "two arms": two_arms,
     "other tasks": other_tasks,

@@ -44,15 +44,19 @@ class Judge:
         self._data = robot.model.createData()
         self._found = pin.GeometryData(geometry)
 
-    def distance(self, q: Vector, t: float) -> float:
-        """Return the least distance [m] at joint positions q (n,) [rad] and a time [s]."""
+    def distances(self, q: Vector, t: float = 0.0) -> Vector:
+        """Return the distances of all pairs [m] at joint positions q (n,) [rad] and a time [s]."""
         for number, (obstacle, place) in enumerate(zip(self._obstacles, self._rest, strict=True)):
             if obstacle.speed:
                 moved = pin.SE3(place.rotation, place.translation + obstacle.shift(t))
                 self._geometry.geometryObjects[self._first + number].placement = moved
         scene = self._geometry, self._found
-        nearest = pin.computeDistances(self._robot.model, self._data, *scene, q)
-        return float(self._found.distanceResults[nearest].min_distance)
+        pin.computeDistances(self._robot.model, self._data, *scene, q)
+        return np.array([found.min_distance for found in self._found.distanceResults])
+
+    def distance(self, q: Vector, t: float) -> float:
+        """Return the least distance [m] at joint positions q (n,) [rad] and a time [s]."""
+        return float(self.distances(q, t).min())
 
     def verdict(self, path: Matrix, dt: float, ok: Any = ()) -> Verdict:
         """Judge a path (k + 1, n) [rad], at its samples, dt [s] apart, and half-way between.

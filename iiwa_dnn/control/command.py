@@ -56,6 +56,7 @@ class RowViews(NamedTuple):
             are others where limits of acceleration or jerk hold the command back.
         blocking: Where there is an action: for each variable 1 if its upper bound stood in the way,
             -1 if its lower one did, else 0, and for each inequality row 1 or 0, (n + m,).
+        least: Distance that each watched pair has to keep [m], (pairs,), as in `ControllerState`.
         targets: Targets of the tracked frames, (k, 18).
     """
 
@@ -69,6 +70,7 @@ class RowViews(NamedTuple):
     decision: Vector
     bounds: Matrix
     blocking: Vector
+    least: Vector
     targets: Matrix
 
 
@@ -86,7 +88,8 @@ def row_views(row: Vector, ends: IntVector, dof: int) -> RowViews:
         row[ends[6] : ends[7]],
         row[ends[7] : ends[8]].reshape(BOUNDS, dof),
         row[ends[8] : ends[9]],
-        row[ends[9] :].reshape((ends[10] - ends[9]) // TARGET_SIZE, TARGET_SIZE),
+        row[ends[9] : ends[10]],
+        row[ends[10] :].reshape((ends[11] - ends[10]) // TARGET_SIZE, TARGET_SIZE),
     )
 
 
@@ -96,7 +99,7 @@ def note_command(views: RowViews, following: Matrix, dq: Vector, dt: float) -> N
 
     Args:
         views: The step's row.
-        following: `ControllerState.past` for the next step, (8, dof).
+        following: `ControllerState.past` for the next step, (8 + k, dof).
         dq: The command [rad/s], (dof,) or longer.
         dt: Control period [s].
     """
@@ -111,7 +114,7 @@ class RowLayout:
 
     Attributes:
         sizes: ``(n, m, p)`` of the programs.
-        ends: Columns at which the parts of `RowViews` end, (11,).
+        ends: Columns at which the parts of `RowViews` end, (12,).
         width: Length of a row.
         columns: Columns by the names of `RowViews`.
         shape: Shape of joint positions, (dof,).
@@ -120,9 +123,9 @@ class RowLayout:
     """
 
     def __init__(
-        self, sizes: Sizes, dof: int, frames: int, names: LimitNames | None = None
+        self, sizes: Sizes, dof: int, frames: int, names: LimitNames | None = None, pairs: int = 0
     ) -> None:
-        """Lay out rows for programs of these sizes, and a number of tracked frames."""
+        """Lay out rows for programs of these sizes, and numbers of tracked frames and pairs."""
         self.names: Any = names
         self.sizes = sizes
         self.shape = (dof,)
@@ -138,6 +141,7 @@ class RowLayout:
             DECISION,
             BOUNDS * dof,
             n + m,
+            pairs,
             TARGET_SIZE * frames,
         ]
         ends = [*accumulate(lengths)]
@@ -258,7 +262,7 @@ class Command:
     def against(self) -> tuple[str, ...]:
         """Reasons, bounds and rows that keep the command from what tasks and cost ask, in words.
 
-        Relations of joints that the positions do not fulfil are among them.
+        The `conditions` are among them.
         """
         sides, rows = np.split(self.blocking, [self._layout.sizes[0]])
         if self.action is Action.NONE:
@@ -266,7 +270,14 @@ class Command:
         names = self._layout.names
         codes = names.codes(self.bounds, sides, self.past)
         words = map(describe, in_the_way(names.settings, codes, rows))
-        return (*self.reasons, *words, *names.off(self.past[Q]))
+        return (*self.reasons, *words, *self.conditions)
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """Pairs that began nearer than they have to be, and relations that joints do not fulfil."""
+        names = self._layout.names
+        near = names.near(self._layout.view(self.row, "least"))
+        return (*near, *names.off(self.past[Q]))
 
     @property
     def qp(self) -> QP:

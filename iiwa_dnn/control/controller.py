@@ -32,6 +32,7 @@ from iiwa_dnn.control.state import (
     REST,
     ControllerState,
     Q,
+    kept_distances,
 )
 from iiwa_dnn.control.step import INVALID, ControlStep, take_step
 from iiwa_dnn.control.yielding import BRAKE, guard_step
@@ -146,6 +147,7 @@ class Controller:
         # A braking motion in hand keeps the limits of before.
         if name in ("robot", "scheme") and value is not before:
             self._state.past[REST] = 0.0
+            kept_distances(self._state.past)[:] = 0.0
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
@@ -328,9 +330,9 @@ class Controller:
             if step.plan.yielding.limits.size:
                 return True
             step.program.kinematics.update(q)
-            past = np.zeros_like(self._state.past)
-            following = past.copy()
+            following = self._state.next.copy()
             following[LAST] = dq
+            past = np.zeros_like(following)
             return bool(guard_step(step.plan.arrays, past, following, step.plan.yielding))
 
     def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlStep:
@@ -357,6 +359,7 @@ class Controller:
             paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
             longest = self.longest_period
             step = ControlStep(program, paths, self.solver, self.dt, policy, longest)
+            self._state.watch(program.least.size)
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
             return step
@@ -408,7 +411,7 @@ class Controller:
         """Forget the network's state, the last commands and the delay; the home stays."""
         with self._turn():
             self.solver.reset()
-            self._state.rest(self.robot.dof)
+            self._state.rest()
             self._derived = None
 
     def warm_up(self, q: ArrayLike) -> None:
@@ -469,7 +472,8 @@ class Controller:
             past[Q] = q
             data = np.empty(data_size(*program.sizes))
             program.kinematics.update(q)
-            program.write(data, targets, past, self.dt, t)
+            least = kept_distances(self._state.next).copy()
+            program.write(data, targets, past, self.dt, t, least)
             return QP.from_data(data, program.sizes)
 
 

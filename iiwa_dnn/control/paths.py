@@ -110,19 +110,16 @@ def _doubts_of_tasks(program: StepProgram, dt: float) -> Iterator[str]:
 
 
 def near_pairs(program: StepProgram, start: Configuration, t: float) -> Iterator[str]:
-    """State which pair is nearer than its distance where a loop begins, at time t [s]."""
+    """State which pairs are nearer than their distance where a loop begins, at time t [s]."""
     parts = [part for part in program.scheme.limits if isinstance(part, CollisionAvoidance)]
     for part in parts:
         scene = part.scene(program.robot)
-        if not scene.pairs:
-            continue
-        (distance,), (pair,) = scene.nearest(start.q[np.newaxis], np.array([t]))
-        if distance < 0.99 * part.distance:
-            yield (
-                f"{' and '.join(scene.pairs[pair])} are {distance:.3g} m apart at the start, not "
-                f"{part.distance:g} m: they may not come nearer, and where they come no further "
-                "apart the arm stands still"
-            )
+        for names, distance in zip(scene.pairs, scene.distances(start.q, t), strict=True):
+            if distance < 0.99 * part.distance:
+                yield (
+                    f"{' and '.join(names)} are {distance:.3g} m apart at the start, not "
+                    f"{part.distance:g} m: until they are, they come no nearer than they begin"
+                )
 
 
 def beyond_reach(reference: References | None, robot: Robot) -> float:

@@ -233,7 +233,7 @@ def come_nearer(
 
     Args:
         state: The request, and where the joints are.
-        past: `ControllerState.past`, (8, n).
+        past: `ControllerState.past`, (8 + k, n).
         limits: `MotionLimits.numbers`, (6 n,).
         periods: Periods of the step.
         reaches: Whether the request is one for positions.
@@ -336,7 +336,7 @@ class ShieldCommand(NamedTuple):
         twist, whether more than `SHORT` of it is missing, or a limit holds.
         """
         if self.wish is None or self.reasons:
-            return bool(self._why)
+            return bool({*self._why} - {*self.command.conditions})
         return bool((self.dq != self.wish).any())
 
     @property
@@ -427,6 +427,7 @@ class Shield:
         tracking_error: float = 0.02,
         delay: float = 0.0,
         longest_period: float | None = None,
+        left_out: Sequence[tuple[str, str]] = (),
     ) -> None:
         """Take a robot, and what is to be kept clear of.
 
@@ -443,9 +444,11 @@ class Shield:
             delay: Time by which the arm is behind its commands [s]: from a step to the reading of
                 the encoders at which its command begins to show, less one period.
             longest_period: Longest control period where periods vary [s]; None: they do not.
+            left_out: Pairs that are not watched, as in `CollisionAvoidance`.
 
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
+            NotFoundError: There is no link or obstacle of a name in `left_out`.
         """
         self.robot = checks.instance("robot", robot, Robot)
         self.dt = checks.positive("dt", dt)
@@ -463,7 +466,9 @@ class Shield:
         self.motion = MotionLimits(rates).numbers(robot)
         self.limits: list[Limit] = [JointLimits(), *rates]
         if obstacles is not None:
-            self.limits.append(CollisionAvoidance(obstacles, distance=distance))
+            watched = CollisionAvoidance(obstacles, distance=distance, left_out=left_out)
+            watched.scene(robot)
+            self.limits.append(watched)
         self._controllers: dict[str, Controller] = {}
         self._kept = ControllerState(robot.dof)
         self._lock = threading.RLock()
@@ -487,7 +492,7 @@ class Shield:
         """Forget requests, a halt and the commands: the arm stands where it is measured next."""
         n = self.robot.dof
         with self._lock:
-            self._kept.rest(n)
+            self._kept.rest()
             self._state = ShieldState(np.zeros(n), np.zeros(max(n, TWIST)), np.zeros(FLAGS))
             self._state.flags[REASON] = NO_WISH
             self._memory = Memory("dq", JOINTS, 0.0, self.dt, np.zeros((0, 1 + n)))

@@ -1,11 +1,25 @@
 """The state of a controller: all that one step leaves behind for the next."""
 
+import math
+
 import numpy as np
 
-from iiwa_dnn.qp import Matrix
+from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.qp import Matrix, Vector
 
-Q, LAST, BEFORE, WANTED, REST, DELAY, YIELDS, HALTED, ROWS = range(9)
-"""Rows of `ControllerState.past`, and their number."""
+Q, LAST, BEFORE, WANTED, REST, DELAY, YIELDS, HALTED, LEAST = range(9)
+"""Rows of `ControllerState.past`; from the last one on the distances that pairs keep."""
+
+
+def rows_of(pairs: int, dof: int) -> int:
+    """Count the rows of a state of so many pairs and joints."""
+    return LEAST + math.ceil(pairs / max(dof, 1))
+
+
+@compiled
+def kept_distances(past: Matrix) -> Vector:
+    """Return the view of the least distance of each pair [m], and of what is left of its rows."""
+    return past.reshape(past.size)[LEAST * past.shape[1] :]
 
 
 class ControllerState:
@@ -16,8 +30,9 @@ class ControllerState:
             yielding task wanted at the last step [rad/s], and in the first entries of further rows
             the periods until the braking motion in hand rests, 0 if there is none, the time by
             which the reference's clock is behind [s], and 1 if the task yielded at the last step
-            and if the arm brakes whatever has a solution, (8, n). A step makes a new one, which
-            counts from when the controller returns its command.
+            and if the arm brakes whatever has a solution; then the distance that each watched pair
+            has to keep [m], 0 before the first step, one after another, (8 + k, n). A step makes a
+            new one, which counts from when the controller returns its command.
         next: The one after the last command that was computed.
         dt: Control period of the last step [s]; 0 before the first.
         slowed: Share of the last period by which the reference's clock fell behind in it, and
@@ -36,11 +51,21 @@ class ControllerState:
         """Begin with an arm of n joints that has had no command."""
         self.begun = False
         self.exceeded = False
-        self.rest(dof)
+        self.past = np.zeros((LEAST, dof))
+        self.rest()
 
-    def rest(self, dof: int) -> None:
-        """Forget all commands to an arm of n joints."""
-        self.past = np.zeros((ROWS, dof))
+    def watch(self, pairs: int) -> None:
+        """Make room for the distances of so many pairs, which begin at the next step."""
+        dof = self.past.shape[1]
+        if len(self.past) != rows_of(pairs, dof):
+            past = np.zeros((rows_of(pairs, dof), dof))
+            past[:LEAST] = self.past[:LEAST]
+            self.past = past
+            self.next = past
+
+    def rest(self) -> None:
+        """Forget all commands."""
+        self.past = np.zeros_like(self.past)
         self.next = self.past
         self.dt = 0.0
         self.slowed = 0.0

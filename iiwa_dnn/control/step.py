@@ -23,7 +23,7 @@ from iiwa_dnn.control.command import (
     note_command,
     row_views,
 )
-from iiwa_dnn.control.relaxed import Yielding, relaxed_size
+from iiwa_dnn.control.relaxed import Yielding, largest_entry, relaxed_size
 from iiwa_dnn.control.state import (
     BEFORE,
     DELAY,
@@ -32,6 +32,7 @@ from iiwa_dnn.control.state import (
     REST,
     YIELDS,
     Q,
+    kept_distances,
 )
 from iiwa_dnn.control.yielding import (
     BRAKE,
@@ -57,6 +58,7 @@ from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.base import Ahead, enter_path
 from iiwa_dnn.references.rotations import set_mean_twist
+from iiwa_dnn.schemes.collisions import MEET
 from iiwa_dnn.schemes.limits import (
     STATED,
     JointLimits,
@@ -79,7 +81,7 @@ class StepPlan(NamedTuple):
 
     Attributes:
         arrays: Arrays with which the program is written.
-        ends: `RowLayout.ends`, (11,).
+        ends: `RowLayout.ends`, (12,).
         yielding: What relaxed programs need beside them.
         relaxed: States of the networks of relaxed programs, (`relaxed_size`,), warm starts.
         policy: Action that the policy asks for at a step without a solution; `BRAKE`: none.
@@ -133,7 +135,8 @@ class ControlStep:
         self.program = program
         frames = len(program.target_frames)
         names = LimitNames(program, dt)
-        self.layout = RowLayout(program.sizes, program.robot.dof, frames, names)
+        pairs = program.least.size
+        self.layout = RowLayout(program.sizes, program.robot.dof, frames, names, pairs)
         self.has_network = self._add_network(solver, dt, policy == BRAKE)
         self.samples = self._add_paths(references, dt) and not program.reads_targets
         arrays = program.arrays(dt)
@@ -244,7 +247,7 @@ def take_step(
         row: The row, (width,), with the targets unless they are sampled.
         plan: What the step is laid out with.
         q: Joint positions [rad], (dof,), that the kinematics are at.
-        past: `ControllerState.past`, (8, dof); its joint positions are overwritten.
+        past: `ControllerState.past`, (8 + k, dof); its joint positions are overwritten.
         following: The same for the next step, overwritten.
         state: The network's state, (size,), advanced.
         t: Time [s].
@@ -267,9 +270,9 @@ def take_step(
     copied(following[BEFORE], past[LAST])
     following[REST, 0] = 0.0
     following[YIELDS, 0] = 0.0
-    assemble(views.program, arrays, past, views.targets, t)
-    _note_instant(views, arrays, past)
-    halted = past[HALTED, 0] != 0.0
+    assemble(views.program, arrays, past, kept_distances(following), views.targets, t)
+    _note_instant(views, arrays, past, following)
+    halted = past[HALTED, 0] != 0.0 or largest_entry(views.least) == MEET
     if past[YIELDS, 0] == 0.0 and not halted and _answer(views, arrays, state):
         note_command(views, following, views.point, plan.yielding.dt)
         if guard_step(arrays, past, following, plan.yielding):
@@ -279,7 +282,7 @@ def take_step(
 
 
 @compiled
-def _note_instant(views: RowViews, arrays: ProgramArrays, past: Matrix) -> None:
+def _note_instant(views: RowViews, arrays: ProgramArrays, past: Matrix, following: Matrix) -> None:
     """Note what the program in a row was built at, and that it is not answered yet."""
     table = arrays.table
     dof = table[0, 3]
@@ -288,6 +291,7 @@ def _note_instant(views: RowViews, arrays: ProgramArrays, past: Matrix) -> None:
     copied(views.bounds[0], qp.lb[:dof])
     copied(views.bounds[1], qp.ub[:dof])
     copied(views.placement, arrays.placements[table[0, 5]])
+    copied(views.least, kept_distances(following)[: views.least.size])
     views.figures[:] = 0.0
     views.decision[:] = 0.0
     views.blocking[:] = 0.0

@@ -43,6 +43,7 @@ from iiwa_dnn.schemes.program import ProgramArrays
 from iiwa_dnn.schemes.scene import (
     SECOND,
     SPEED,
+    STILL,
     contact_of,
     ends_of,
     height_of,
@@ -222,16 +223,19 @@ def keeps_ramp(motion: Motion, q: Vector, limits: Vector, dt: float, i: int) -> 
 
 
 @compiled
-def keeps_distances(motion: Motion, arrays: ProgramArrays, constants: Vector, dt: float) -> bool:
+def keeps_distances(
+    motion: Motion, arrays: ProgramArrays, constants: Vector, least: Vector, dt: float
+) -> bool:
     """Test whether all pairs of a scene keep their distance on a motion to rest.
 
-    A pair that is too near, or that a moving obstacle comes too near while the arm brakes, must not
-    come nearer by the arm's own motion.
+    A pair that is nearer than it has to be, or that a moving obstacle comes too near while the arm
+    brakes, must not come nearer by the arm's own motion.
 
     Args:
         motion: The motion.
         arrays: Arrays of the loop, with the kinematics at its beginning.
         constants: `Scene.constants`, (k,).
+        least: `kept_distances` of the state, (pairs or more,).
         dt: Control period [s].
     """
     n = motion.first.size
@@ -248,19 +252,24 @@ def keeps_distances(motion: Motion, arrays: ProgramArrays, constants: Vector, dt
         most = 0.0
         for i in range(n):
             most += abs(scene.radii[k, i]) * travel[i]
-        if left - most >= scene.least:
+        kept = scene.least
+        if least[scene.first + k] != 0.0:
+            kept = least[scene.first + k]
+        if left - most >= kept:
             continue
         change = np.inf
         lacking = 0.5 * second_order(scene.moves, scene.radii, k, travel)
         ends = ends_of(scene, placed, int(scene.pairs[k, SECOND]))
         for at in range(2):
             end = ends[at]
+            if int(scene.pairs[k, STILL]) == at + 1:
+                continue
             x, bend = _along(motion, arrays.jacobian, scene.moves, k, end, contact.normal)
             way = way_along(motion, x, bend, M, dt)
             if x < max(bend / (3.0 * M), 0.0):
                 way = least_way(motion, x, bend, dt)
             change = min(change, height_of(end, contact) + min(way - lacking, 0.0))
-        if left + change < min(scene.least, left):
+        if left + change < min(kept, left):
             return False
     return True
 
@@ -281,12 +290,15 @@ def _along(
 
 
 @compiled
-def stopping_time(arrays: ProgramArrays, past: Matrix, yielding: Yielding, dq: Vector) -> float:
+def stopping_time(
+    arrays: ProgramArrays, past: Matrix, least: Vector, yielding: Yielding, dq: Vector
+) -> float:
     """Compute the periods of the motion to rest from a command.
 
     Args:
         arrays: Arrays of the loop; the kinematics are at the joint positions of `past`.
-        past: `ControllerState.past`, (8, dof).
+        past: `ControllerState.past`, (8 + k, dof).
+        least: `kept_distances` of the state, (pairs or more,).
         yielding: Limits and scenes.
         dq: The command [rad/s], (dof,).
 
@@ -318,6 +330,6 @@ def stopping_time(arrays: ProgramArrays, past: Matrix, yielding: Yielding, dq: V
         return -1.0
     for k in range(len(yielding.scenes)):
         scene = arrays.constants[yielding.scenes[k, 0] : yielding.scenes[k, 1]]
-        if not keeps_distances(motion, arrays, scene, dt):
+        if not keeps_distances(motion, arrays, scene, least, dt):
             return -1.0
     return periods * ratio

@@ -33,7 +33,7 @@ from iiwa_dnn.control.relaxed import (
     settled,
     soften_task,
 )
-from iiwa_dnn.control.state import BEFORE, DELAY, LAST, REST, WANTED, YIELDS, Q
+from iiwa_dnn.control.state import BEFORE, DELAY, LAST, REST, WANTED, YIELDS, Q, kept_distances
 from iiwa_dnn.control.stopping import (
     least_periods,
     next_velocity,
@@ -111,7 +111,7 @@ def yield_step(
     Args:
         views: The row, with the step's own program and what it was built at.
         arrays: Arrays of the loop; the kinematics are at the joint positions of `past`.
-        past: `ControllerState.past`, (8, dof).
+        past: `ControllerState.past`, (8 + k, dof).
         following: The same for the next step, with the last commands; the rest is overwritten.
         yielding: Weights, limits and settings of the relaxed programs.
         relaxed: States of the networks of relaxed programs, (`relaxed_size`,), advanced.
@@ -137,7 +137,7 @@ def yield_step(
     limits = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, own.lb, own.ub)
     if kind != STOPPED:
         _step(limits, past, following, yielding, views.figures, x)
-        rest = _make_stoppable(limits, arrays, past, yielding, views, x)
+        rest = _make_stoppable(limits, arrays, past, following, yielding, views, x)
         missing = _note_missing(views, x[:dof])
         primal, dual, gap = point_residuals(limits, views.point)
         if missing > 0:
@@ -148,7 +148,8 @@ def yield_step(
             copied(qp.ub, own.ub)
     if kind == STOPPED:
         copied(views.program, data)
-        rest = _brake(own, arrays, past, yielding, views.figures, x)
+        rest = _brake(own, arrays, past, yielding, views, x)
+        _go_along(past, following)
         views.point[:] = 0.0
         copied(views.point, x)
     views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
@@ -289,8 +290,8 @@ def _step(
 
     Args:
         limits: The program that was answered, with the bounds of the step.
-        past: `ControllerState.past`, (8, dof).
-        following: `ControllerState.following`, (8, dof): the wanted velocity is noted.
+        past: `ControllerState.past`, (8 + k, dof).
+        following: `ControllerState.following`, (8 + k, dof): the wanted velocity is noted.
         yielding: Weights, limits and settings.
         figures: Figures of the answer, (5,), as of `settled`.
         x: The velocity, overwritten.
@@ -342,6 +343,7 @@ def _make_stoppable(
     limits: QPViews,
     arrays: ProgramArrays,
     past: Matrix,
+    following: Matrix,
     yielding: Yielding,
     views: RowViews,
     x: Vector,
@@ -352,7 +354,7 @@ def _make_stoppable(
         Periods until it rests; 0 where none is asked for.
     """
     dof = past.shape[1]
-    rest = stopping_time(arrays, past, yielding, x[:dof])
+    rest = stopping_time(arrays, past, views.least, yielding, x[:dof])
     if rest >= 0.0:
         return rest
     wanted = views.point[: x.size].copy()
@@ -360,15 +362,23 @@ def _make_stoppable(
         _step_straight(past, yielding, wanted)
         nearest_within(limits, wanted, yielding, views.figures)
     brake = np.zeros(x.size)
-    left = _brake(limits, arrays, past, yielding, views.figures, brake)
+    left = _brake(limits, arrays, past, yielding, views, brake)
     for k in range(len(TOWARDS)):
         for i in range(dof):
             x[i] = brake[i] + TOWARDS[k] * (wanted[i] - brake[i])
-        rest = stopping_time(arrays, past, yielding, x[:dof])
+        rest = stopping_time(arrays, past, views.least, yielding, x[:dof])
         if rest >= 0.0:
             return rest
     copied(x, brake)
+    _go_along(past, following)
     return left
+
+
+@compiled
+def _go_along(past: Matrix, following: Matrix) -> None:
+    """Let pairs keep the distances for which a braking motion in hand was verified."""
+    if past[REST, 0] > 0.0:
+        copied(kept_distances(following), kept_distances(past))
 
 
 @compiled
@@ -377,13 +387,13 @@ def _brake(
     arrays: ProgramArrays,
     past: Matrix,
     yielding: Yielding,
-    figures: Vector,
+    views: RowViews,
     dq: Vector,
 ) -> float:
     """Write the next command (n,) of the braking motion in hand, or of the quickest one.
 
     It is zero without acceleration limits. The quickest one keeps the bounds as far as they do not
-    lead away from rest; no row asks it for motion. The figures (5,) are those of `settled`.
+    lead away from rest; no row asks it for motion.
 
     Returns:
         Periods that are left afterwards; 0 if no motion is in hand.
@@ -411,12 +421,11 @@ def _brake(
     idle = np.empty(limits.h.size)
     idle[:] = np.inf
     times(limits.A, dq, rates)
-    nearest_within(
-        QPViews(limits.P, limits.q, limits.G, idle, limits.A, rates, lb, ub), dq, yielding, figures
-    )
+    braking = QPViews(limits.P, limits.q, limits.G, idle, limits.A, rates, lb, ub)
+    nearest_within(braking, dq, yielding, views.figures)
     if rest > 0.0:
         return max(rest - 1.0, 0.0)
-    return max(stopping_time(arrays, past, yielding, dq[:dof]), 0.0)
+    return max(stopping_time(arrays, past, views.least, yielding, dq[:dof]), 0.0)
 
 
 @compiled
@@ -439,10 +448,10 @@ def guard_step(arrays: ProgramArrays, past: Matrix, following: Matrix, yielding:
 
     Args:
         arrays: Arrays of the loop.
-        past: `ControllerState.past`, (8, dof).
-        following: `ControllerState.following`, (8, dof).
+        past: `ControllerState.past`, (8 + k, dof).
+        following: `ControllerState.following`, (8 + k, dof).
         yielding: Limits and scenes.
     """
-    rest = stopping_time(arrays, past, yielding, following[LAST])
+    rest = stopping_time(arrays, past, kept_distances(following), yielding, following[LAST])
     following[REST, 0] = max(rest, 0.0)
     return rest >= 0.0

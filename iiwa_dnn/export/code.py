@@ -18,7 +18,7 @@ from iiwa_dnn.compiling.translator import Function, Translator
 from iiwa_dnn.control import shield as shields
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.state import DELAY, ROWS, YIELDS
+from iiwa_dnn.control.state import DELAY, YIELDS, rows_of
 from iiwa_dnn.control.step import StepPlan, sample_targets, take_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
@@ -97,6 +97,7 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
     model = model_tables(robot, program.kinematics.frame_ids, program.needs_inertia)
     code = _Code(program.needs_inertia)
     lengths = _lengths(controller, shield is not None)
+    rows = lengths["past"] // robot.dof
     texts: dict[str, Any] = {
         "plan": code.initializer("plan", code.numbered(step.plan)),
         "model": code.initializer("model", model),
@@ -110,7 +111,7 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
         sample = {"sample": code.kernel(sample_targets), "delay": DELAY}
         texts["target_function"] = filled("target.c", sample)
     if shield is not None:
-        texts["shield_function"] = filled("shield.c", _shield_texts(code, shield))
+        texts["shield_function"] = filled("shield.c", _shield_texts(code, shield, rows))
         texts["shield_declaration"] = filled("shield.h", {"timeout": shield.settings[1]})
     return {
         **texts,
@@ -119,7 +120,7 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
         "robot": robot.name,
         "version": version("iiwa-dnn"),
         "dof": robot.dof,
-        "rows": ROWS,
+        "rows": rows,
         "width": lengths["row"],
         "state": lengths["state"],
         "frames": len(program.target_frames),
@@ -135,8 +136,8 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
     }
 
 
-def _shield_texts(code: _Code, shield: shields.Shield) -> dict[str, Any]:
-    """Return the texts of a shield's own step."""
+def _shield_texts(code: _Code, shield: shields.Shield, rows: int) -> dict[str, Any]:
+    """Return the texts of a shield's own step, whose state has so many rows."""
     kernels = {
         "take_positions": code.kernel(shields.take_positions),
         "take_wish": code.kernel(shields.take_wish),
@@ -148,7 +149,7 @@ def _shield_texts(code: _Code, shield: shields.Shield) -> dict[str, Any]:
         "settings": code.initializer("shield_settings", shield.settings),
         "limits": code.initializer("shield_motion", shield.motion),
         "periods": code.initializer("shield_periods", constant_periods(shield.dt)),
-        "rows": ROWS,
+        "rows": rows,
         "yields": YIELDS,
         "reason": shields.REASON,
         "halted": f"{shields.HALTED}.0",
@@ -161,10 +162,11 @@ def _lengths(controller: Controller, shielded: bool) -> dict[str, int]:
     step = controller.control_step
     dof = controller.robot.dof
     n, m, p = step.program.sizes
+    rows = rows_of(step.program.least.size, dof)
     return {
         "row": step.layout.width,
-        "past": ROWS * dof,
-        "following": ROWS * dof,
+        "past": rows * dof,
+        "following": rows * dof,
         "state": controller.solver.state_for(step.program.sizes).size,
         "relaxed": step.plan.relaxed.size,
         "jacobian": 6 * dof,

@@ -27,10 +27,11 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.errors import FileError, IiwaDnnError
+from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple
+from iiwa_dnn.references.rotations import dot
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacles
@@ -39,6 +40,8 @@ from iiwa_dnn.schemes.scene import (
     HALF_LENGTH,
     SECOND,
     SPEED,
+    STILL,
+    Contact,
     Scene,
     SceneViews,
     contact_of,
@@ -57,6 +60,9 @@ ENDS = 2
 ROOM = 1e-6
 """Distance beyond the least at which a pair comes to rest [m]. Ways along an obstacle bend: an arm
 that rests at the least distance itself could not stop from any of them, and would stay there."""
+
+MEET = np.inf
+"""Least distance of a pair that meets without a normal: whatever moves it is stopped."""
 
 
 @compiled
@@ -107,9 +113,12 @@ def _write_ends(
     A pair that is too far away for any velocity within the limits is left out.
     """
     contact = contact_of(scene, k, placed)
+    kept = kept_distance(scene, contact, step.least[scene.first + k])
+    step.least[scene.first + k] = kept
+    least = min(kept, scene.least)
     gain = min(scene.gain, step.rate)
     travel = np.empty(step.q.size)
-    most = scene.pairs[k, SPEED] - gain * (contact.distance - scene.least - ROOM)
+    most = scene.pairs[k, SPEED] - gain * (contact.distance - least - ROOM)
     for j in range(step.q.size):
         travel[j] = abs(step.last[j]) / step.rate
         most += abs(scene.radii[k, j]) * scene.dq_max[j]
@@ -120,8 +129,10 @@ def _write_ends(
     is_point = scene.bodies[second, HALF_LENGTH] == 0.0
     eps = second_order(scene.moves, scene.radii, k, travel)
     for at in range(1 if is_point else ENDS):
+        if int(scene.pairs[k, STILL]) == at + 1:
+            continue
         row = ENDS * k + at
-        left = contact.distance + height_of(ends[at], contact) - scene.least - ROOM
+        left = contact.distance + height_of(ends[at], contact) - least - ROOM
         limits[row] = gain * left - scene.pairs[k, SPEED]
         normal = contact.normal
         fastest = _write_gradient(scene, step.jacobian, k, ends[at], normal, gradients[row])
@@ -129,6 +140,32 @@ def _write_ends(
         limits[row] -= gain * eps
         if left < eps and step.rate < np.inf:
             limits[row] -= (step.rate - gain) * min(eps - left, eps)
+        if least < scene.least:
+            limits[row] = max(limits[row], -scene.pairs[k, SPEED])
+
+
+@compiled
+def kept_distance(scene: SceneViews, contact: Contact, kept: float) -> float:
+    """Compute the distance that a pair has to keep from now on [m], `MEET` if it has no normal.
+
+    It is the scene's, but for a pair that begins nearer: until that is beyond, it is `ROOM` less
+    than where it began. (Were it where the pair has been farthest, a pair could not come back from
+    the greatest distance that its link admits, and would hold the arm there.)
+
+    Args:
+        scene: The scene.
+        contact: The pair's contact.
+        kept: The distance that it has to keep so far [m]; 0 at the beginning.
+    """
+    if dot(contact.normal, contact.normal) == 0.0:
+        return MEET
+    if contact.distance >= scene.least + ROOM:
+        return scene.least
+    if kept == 0.0 or kept == MEET:
+        kept = scene.least
+        if contact.distance < scene.least:
+            kept = contact.distance - ROOM
+    return kept
 
 
 @compiled
@@ -163,14 +200,23 @@ def tuple_of_obstacles(argument: str, value: Any) -> tuple[Obstacle, ...]:
     return tuple(checks.instance(argument, obstacle, Obstacle) for obstacle in obstacles)
 
 
+def pairs_of_names(argument: str, value: Any) -> tuple[tuple[str, str], ...]:
+    """Return pairs of names as tuples; refuse any other value."""
+    pairs = value if isinstance(value, list | tuple) else [value]
+    for pair in pairs:
+        if not isinstance(pair, list | tuple) or [*map(type, pair)] != [str, str]:
+            raise InvalidInputError(argument, f"must be pairs of names, not {pair!r}", value)
+    return tuple((first, second) for first, second in pairs)
+
+
 @dataclass(frozen=True, eq=False)
 class CollisionAvoidance(Limit):
     """Rows that keep the links away from obstacles and from each other.
 
-    No pair comes nearer than `distance`, between steps neither, as long as none is nearer at the
-    start, the arm follows the command, `JointLimits` are among the limits, obstacles keep to their
-    speed, and no more than `nearest` rows matter at once. A pair that is too
-    near is asked to retreat.
+    No pair comes nearer than `distance`, between steps neither, as long as the arm begins at rest
+    and follows the command, `JointLimits` are among the limits, obstacles stand still, and no more
+    than `nearest` rows matter at once. A pair that begins nearer comes no nearer than it began,
+    until it is beyond; it is not asked to retreat. One that no joint moves is left out.
 
     Attributes:
         obstacles: The obstacles.
@@ -178,6 +224,8 @@ class CollisionAvoidance(Limit):
         distance: Least distance [m], above 0.
         gain: Largest rate at which a distance shrinks towards `distance` [1/s], above 0.
         nearest: Most rows; of more, those that are nearest to being active count.
+        left_out: Pairs that are not watched: the names of a link and of what it may meet, as in
+            `Scene.pairs`.
     """
 
     kernel = staticmethod(collision_rows)
@@ -187,12 +235,14 @@ class CollisionAvoidance(Limit):
         "distance": checks.positive,
         "gain": checks.positive,
         "nearest": partial(checks.integer, least=1),
+        "left_out": pairs_of_names,
     }
     obstacles: Sequence[Obstacle] = ()
     self_collision: bool = True
     distance: float = 0.02
     gain: float = 20.0
     nearest: int = 48
+    left_out: Sequence[tuple[str, str]] = ()
 
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> CollisionAvoidance:
@@ -211,7 +261,8 @@ class CollisionAvoidance(Limit):
     @lru_cache(maxsize=8)  # noqa: B019  few parts, few robots
     def scene(self, robot: Robot) -> Scene:
         """Return bodies and pairs for a robot; raises what `make_scene` does."""
-        return make_scene(robot, self.obstacles, self.self_collision, self.distance, self.gain)
+        distances = (self.distance, self.gain)
+        return make_scene(robot, self.obstacles, self.self_collision, distances, self.left_out)
 
     def row_count(self, robot: Robot) -> int:
         """Return the number of rows: two for each pair, at most `nearest`."""
@@ -247,14 +298,16 @@ class CollisionAvoidance(Limit):
     def overview(self, robot: Robot) -> dict[str, Any]:
         """Return a record's settings: least distance, obstacles, pairs, unwatched links.
 
-        ``left_out`` has the pairs of links that no row watches, each with the reason, as in
-        `CollisionModel`.
+        ``left_out`` has the pairs that no row watches, each with the reason, as in
+        `CollisionModel`, ``"given"``, or ``"no joint moves it"``.
         """
+        scene = self.scene(robot)
+        of_links = collision_model(robot).left_out if self.self_collision else ()
         return {
             "distance": self.distance,
             "obstacles": self.settings()["obstacles"],
-            "pairs": self.scene(robot).pairs,
-            "left_out": collision_model(robot).left_out if self.self_collision else (),
+            "pairs": scene.pairs,
+            "left_out": (*of_links, *scene.left_out),
             "unwatched": unwatched_links(robot),
         }
 

@@ -24,7 +24,7 @@ from iiwa_dnn.qp.layout import IntMatrix, QPViews, data_size, qp_views
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.collisions import MEET, CollisionAvoidance
 from iiwa_dnn.schemes.costs import KineticEnergy
 from iiwa_dnn.schemes.limits import (
     SHARE,
@@ -45,6 +45,7 @@ from iiwa_dnn.schemes.parts import (
     enter_limit,
     enter_task,
 )
+from iiwa_dnn.schemes.scene import FIRST_PAIR, PAIRS
 from iiwa_dnn.schemes.step import Step, StepViews
 from iiwa_dnn.schemes.tasks import JointCouplingTask
 
@@ -273,6 +274,7 @@ class StepProgram:
         table: What compiled code reads of the layout, (1 + parts, 7): in its first row
             ``n, m, p``, the number of joints, that of parts, and the first target's frame.
         constants: Numbers that compiled code reads, (k,).
+        least: Least distance of each watched pair [m], (pairs,).
     """
 
     def __init__(self, robot: Robot, scheme: Scheme) -> None:
@@ -298,6 +300,11 @@ class StepProgram:
             for kind, parts in enumerate((scheme.costs, self.tasks, soft, limits))
         ]
         self.sizes = (n, rows[LIMITS], rows[TASKS])
+        distances: list[float] = []
+        for start, _ in self.constants_of(CollisionAvoidance):
+            self.constants[start + FIRST_PAIR] = len(distances)
+            distances += [self.constants[start]] * int(self.constants[start + PAIRS])
+        self.least: Vector = np.array(distances)
         tip = robot.frame_id(self.target_frames[0])
         head = (*self.sizes, robot.dof, len(self.blocks), tip, 0)
         self.table: IntMatrix = np.array(
@@ -418,7 +425,15 @@ class StepProgram:
             else:
                 block.part.refresh(step, own)
 
-    def write(self, data: Vector, targets: Matrix, past: Matrix, dt: float, t: float = 0.0) -> None:
+    def write(
+        self,
+        data: Vector,
+        targets: Matrix,
+        past: Matrix,
+        dt: float,
+        t: float = 0.0,
+        least: Vector | None = None,
+    ) -> None:
         """Write the whole program of one step, at the joint positions of `kinematics`.
 
         Args:
@@ -427,12 +442,15 @@ class StepProgram:
             past: Joint positions [rad], last command and the one before [rad/s], (3, n).
             dt: Control period [s]; inf outside of a loop.
             t: Time [s].
+            least: Distance that each watched pair has to keep [m], (pairs,), brought up to date;
+                None: that of the scheme.
 
         Raises:
             InvalidInputError: The answer of a part written in numpy is wrong; the part is named.
         """
         self.refresh(past[0], past[1], targets, t, dt)
-        assemble(data, self.arrays(dt), past, targets, float(t))
+        kept = self.least.copy() if least is None else least
+        assemble(data, self.arrays(dt), past, kept, targets, float(t))
 
     def settings(self) -> dict[str, object]:
         """Return what names in words need (`iiwa_dnn.naming.in_the_way`).
@@ -462,13 +480,16 @@ def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
 
 
 @compiled
-def assemble(data: Vector, arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float) -> None:
+def assemble(
+    data: Vector, arrays: ProgramArrays, past: Matrix, least: Vector, targets: Matrix, t: float
+) -> None:
     """Write the rows of all parts into a program.
 
     Args:
         data: The program, `QP.data`, (size,), overwritten.
         arrays: `StepProgram.arrays`.
         past: Joint positions [rad], last command and the one before [rad/s], (3 or more, dof).
+        least: Distance that each watched pair has to keep [m], (pairs,), brought up to date.
         targets: Targets of the tracked frames, (k, 18).
         t: Time [s].
     """
@@ -485,6 +506,7 @@ def assemble(data: Vector, arrays: ProgramArrays, past: Matrix, targets: Matrix,
         arrays.moves,
         arrays.inertia,
         targets,
+        least,
     )
     qp = qp_views(data, table[0, 0], table[0, 1], table[0, 2])
     data[:] = 0.0
@@ -537,6 +559,9 @@ class LimitNames:
         self.periods = constant_periods(dt)
         self._robot = program.robot
         self._couplings = [task for task in program.tasks if isinstance(task, JointCouplingTask)]
+        scenes = [part for part in program.parts if isinstance(part, CollisionAvoidance)]
+        pairs = [pair for part in scenes for pair in part.scene(program.robot).pairs]
+        self._pairs = [*zip(pairs, program.least.tolist(), strict=True)]
         numbers = (program.rate_limits or MotionLimits()).numbers(program.robot)
         self._limits = numbers.reshape(6, -1)
 
@@ -547,6 +572,20 @@ class LimitNames:
             f"{' and '.join(joints)}: {missing:.3g} rad off their JointCouplingTask"
             for joints, missing in found
             if abs(missing) > OFF
+        ]
+
+    def near(self, least: Vector) -> list[str]:
+        """State which pairs keep another distance than the scheme's, `least` (pairs,) [m]."""
+        found = [
+            (f"{second} and {first}", promised, kept)
+            for ((first, second), promised), kept in zip(self._pairs, least, strict=True)
+        ]
+        return [
+            f"{names} meet, and no direction leads apart"
+            if kept == MEET
+            else f"{names} began nearer than {promised:g} m, and keep {kept:.3g} m"
+            for names, promised, kept in found
+            if kept != promised
         ]
 
     def codes(self, bounds: Matrix, sides: NDArray[Any], past: Matrix) -> NDArray[np.int8]:

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple
@@ -36,22 +36,31 @@ from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox, box_around
-from iiwa_dnn.schemes.step import axis_at, seen_from, vector_at
+from iiwa_dnn.schemes.step import axis_at, rate_along, seen_from, vector_at
 
 ROUNDS = 60
 """Most steps of the search along the segment; it needs about six."""
 
-HEAD = 4
-"""Constants of a scene before those of joints, bodies and pairs."""
+HEAD = 5
+PAIRS = 3
+FIRST_PAIR = 4
+"""Constants of a scene before those of joints, bodies and pairs, and among them the number of its
+pairs and that of the pairs of the scenes before it."""
 
 PER_BODY = 16
 HALF_LENGTH = 3
 """Numbers of a body, and the one among them that is half the length of a segment [m]."""
 
-PER_PAIR = 4
-SPEED, SECOND, FIRST, RADIUS = range(PER_PAIR)
+PER_PAIR = 5
+SPEED, SECOND, FIRST, RADIUS, STILL = range(PER_PAIR)
 """Numbers of a pair: bound on the speed of its first body [m/s], the index of the second body, a
-segment, that of the first, any box, and the sum of both radii [m]."""
+segment, that of the first, any box, the sum of both radii [m], and 1 or 2 for the end of the
+segment that no joint moves towards or away from the first body, else 0."""
+
+POSTURES = 64
+UNMOVED = 1e-9
+"""Random postures in which no joint moves an end of a pair, and the rate below which none does
+[m/rad]."""
 
 _MET = 1e-9
 """Distance of two cores below which they count as one [m]."""
@@ -63,10 +72,11 @@ class SceneViews(NamedTuple):
     Attributes:
         least: Least distance [m].
         gain: Largest rate at which a distance shrinks towards it [1/s].
+        first: Number of pairs of the scenes before this one.
         dq_max: Velocity limits of the joints [rad/s], (n,).
         bodies: Of each body the index of its frame, half-extents [m], and placement in the frame
             as of `Kinematics.placements`, (b, 16).
-        pairs: Numbers of each pair, (k, 4).
+        pairs: Numbers of each pair, (k, 5).
         moves: For each pair and joint 1 if it moves the second body alone, -1 if it moves the
             first alone, else 0, (k, n).
         radii: For each pair and joint the largest distance of the second body from its axis [m], -1
@@ -75,6 +85,7 @@ class SceneViews(NamedTuple):
 
     least: float
     gain: float
+    first: int
     dq_max: Vector
     bodies: Matrix
     pairs: Matrix
@@ -88,7 +99,7 @@ class Contact(NamedTuple):
     Attributes:
         second: Point of the second body [m], (3,).
         first: Point of the first body [m], (3,).
-        normal: Unit normal from the first to the second, (3,).
+        normal: Unit normal from the first to the second, (3,); zero where segments or points meet.
         distance: Distance of the bodies [m], negative where they meet.
     """
 
@@ -107,6 +118,7 @@ class Scene(NamedTuple):
         frames: Links whose placements are needed.
         moving: Obstacles that move, each with the part of `constants` that its centre takes.
         constants: Numbers that compiled code sees through `scene_views`, (k,).
+        left_out: Names of the bodies of each pair that is not watched, and the reason.
     """
 
     robot: Robot
@@ -114,11 +126,22 @@ class Scene(NamedTuple):
     frames: tuple[str, ...]
     moving: list[tuple[Obstacle, slice]]
     constants: Vector
+    left_out: tuple[tuple[str, str, str], ...]
 
     def move(self, constants: Vector, t: float) -> None:
         """Bring the moving obstacles in a copy of `constants`, (k,), to a time [s]."""
         for obstacle, part in self.moving:
             constants[part] = self.constants[part] + obstacle.shift(t)
+
+    def distances(self, q: Vector, t: float) -> Vector:
+        """Compute the distance of each pair [m] at q (n,) [rad] and a time t [s], (pairs,)."""
+        constants = self.constants.copy()
+        self.move(constants, t)
+        kinematics = Kinematics(self.robot, self.frames)
+        kinematics.update(q)
+        found = np.empty(len(self.pairs))
+        write_distances(constants, self.robot.dof, kinematics.placements, found)
+        return found
 
     def nearest(self, q: Matrix, t: Vector) -> tuple[Vector, NDArray[np.int64]]:
         """Compute the least distance [m] of all pairs, (k,), and the index of its pair, (k,).
@@ -149,11 +172,24 @@ class _Body(NamedTuple):
 
 
 def make_scene(
-    robot: Robot, obstacles: Sequence[Obstacle], self_collision: bool, least: float, gain: float
+    robot: Robot,
+    obstacles: Sequence[Obstacle],
+    self_collision: bool,
+    distances: tuple[float, float],
+    left_out: Sequence[tuple[str, str]] = (),
 ) -> Scene:
     """Lay the capsules of a robot, obstacles and their pairs out; among them, or not, of links.
 
+    Args:
+        robot: The robot.
+        obstacles: The obstacles.
+        self_collision: Whether pairs of links are watched.
+        distances: Least distance [m], and the largest rate of the way to it [1/s].
+        left_out: Names of the bodies of pairs that are not watched. Nor are those that no joint
+            moves.
+
     Raises:
+        NotFoundError: There is no body of a name in `left_out`.
         InvalidInputError: There is no URDF file, no velocity limit of a joint, or no pair.
         FileError: The collision geometry of the robot cannot be read.
     """
@@ -161,50 +197,106 @@ def make_scene(
         name = robot.joint_names[int(np.argmax(robot.dq_max))]
         problem = f"must have a velocity limit on {name}, or no distance can be kept"
         raise InvalidInputError("robot", problem, robot)
-    model = collision_model(robot)
-    bodies: list[_Body] = []
-    for capsule in model.capsules:
-        frame = robot.frame_id(capsule.link)
-        joint = int(robot.model.frames[frame].parentJoint)
-        box = box_around(capsule.a, capsule.b)
-        bodies.append(_Body(capsule.link, frame, box, capsule.radius, joint))
-    links = len(bodies)
-    bodies += [
-        _Body(f"{type(each).__name__} {number}", 0, each.box, each.thickness, speed=each.speed)
-        for number, each in enumerate(obstacles, 1)
-    ]
-    pairs = list(model.pairs(robot)) if self_collision else []
+    bodies = _bodies(robot, obstacles)
+    links = len(bodies) - len(obstacles)
+    pairs = list(collision_model(robot).pairs(robot)) if self_collision else []
     carried = [k for k in range(links) if bodies[k].joint]
     pairs += itertools.product(range(links, len(bodies)), carried)
-    if not pairs:
-        bare = unwatched_links(robot)
-        reason = f"; {unwatched(bare)}" if bare else ""
-        problem = f"there is no pair that could meet{reason}"
-        raise InvalidInputError("obstacles", problem, obstacles)
+    names = [(bodies[i].name, bodies[k].name) for i, k in pairs]
+    frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
+    placed, rows, motions = _layout(robot, bodies, pairs)
+    moved = _moved_ends(robot, frames, _constants(robot, distances, placed, rows, motions))
+    watched = moved.any(axis=1) & ~_are_given(names, left_out, [body.name for body in bodies])
+    if not watched.any():
+        raise _no_pair(robot, obstacles)
+    rows[:, STILL] = np.where(moved.all(axis=1), 0.0, 1.0 + moved[:, 0])
+    constants = _constants(robot, distances, placed, rows[watched], motions[watched])
     # The last three numbers of a body are its centre.
     first = HEAD + robot.dof + PER_BODY * (links + 1) - 3
     centers = [slice(at, at + 3) for at in first + PER_BODY * np.arange(len(obstacles))]
     moving = [pair for pair in zip(obstacles, centers, strict=True) if pair[0].speed]
-    frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
-    names = [(bodies[i].name, bodies[k].name) for i, k in pairs]
-    head = np.array([least, gain, len(bodies), len(pairs)])
-    constants = np.concatenate([head, robot.dq_max, _layout(robot, bodies, pairs)])
-    return Scene(robot, names, frames, moving, constants)
+    reasons = np.where(moved.any(axis=1), "given", "no joint moves it").tolist()
+    unseen = zip(*zip(*names, strict=True), reasons, strict=True)
+    left = tuple(itertools.compress(unseen, ~watched))
+    return Scene(robot, [*itertools.compress(names, watched)], frames, moving, constants, left)
 
 
-def _layout(robot: Robot, bodies: list[_Body], pairs: list[tuple[int, int]]) -> Vector:
+def _bodies(robot: Robot, obstacles: Sequence[Obstacle]) -> list[_Body]:
+    """Return the capsules of a robot's links, then the obstacles."""
+    bodies: list[_Body] = []
+    for capsule in collision_model(robot).capsules:
+        frame = robot.frame_id(capsule.link)
+        joint = int(robot.model.frames[frame].parentJoint)
+        box = box_around(capsule.a, capsule.b)
+        bodies.append(_Body(capsule.link, frame, box, capsule.radius, joint))
+    for number, each in enumerate(obstacles, 1):
+        name = f"{type(each).__name__} {number}"
+        bodies.append(_Body(name, 0, each.box, each.thickness, speed=each.speed))
+    return bodies
+
+
+def _no_pair(robot: Robot, obstacles: Sequence[Obstacle]) -> InvalidInputError:
+    """Return the error that there is nothing to keep away from."""
+    bare = unwatched_links(robot)
+    reason = f"; {unwatched(bare)}" if bare else ""
+    problem = f"there is no pair that could meet{reason}"
+    return InvalidInputError("obstacles", problem, obstacles)
+
+
+def _are_given(
+    names: list[tuple[str, str]], left_out: Sequence[tuple[str, str]], bodies: list[str]
+) -> NDArray[np.bool_]:
+    """Test which pairs of names are left out; raises NotFoundError if no body has a name."""
+    for name in itertools.chain(*left_out):
+        if name not in bodies:
+            raise NotFoundError("link or obstacle", name, bodies)
+    given = {frozenset(pair) for pair in left_out}
+    return np.array([frozenset(pair) in given for pair in names], dtype=np.bool_)
+
+
+def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArray[np.bool_]:
+    """Test which ends of each pair joints move towards or away from its first body, (pairs, 2).
+
+    A body that moves by itself counts as moved, if any joint moves the other beside it.
+    """
+    scene = scene_views(constants, robot.dof)
+    kinematics = Kinematics(robot, frames)
+    rates = np.zeros((len(scene.pairs), 2))
+    for q in robot.draw(np.random.default_rng(0), POSTURES):
+        kinematics.update(q)
+        write_end_rates(constants, kinematics.jacobian, kinematics.placements, rates)
+    moved = (rates > UNMOVED) | (scene.pairs[:, [SPEED]] > 0.0)
+    found: NDArray[np.bool_] = moved & scene.moves.any(axis=1, keepdims=True)
+    return found
+
+
+def _constants(
+    robot: Robot, distances: tuple[float, float], placed: Matrix, rows: Matrix, motions: Matrix
+) -> Vector:
+    """Return `Scene.constants`, (k,), of bodies (b, 16), pairs (k, 5), and their motions."""
+    head = np.array([*distances, len(placed), len(rows), 0.0])
+    parts = (head, robot.dq_max, placed, rows, motions[:, 0], motions[:, 1])
+    return np.concatenate([np.ravel(part) for part in parts])
+
+
+def _layout(
+    robot: Robot, bodies: list[_Body], pairs: list[tuple[int, int]]
+) -> tuple[Matrix, Matrix, Matrix]:
     """Return the numbers of bodies and of their pairs, by their indices, as `SceneViews` has them.
 
-    They are the columns `bodies`, `pairs`, `moves` and `radii`, one after another, (k,).
+    They are `bodies`, `pairs`, and `moves` and `radii` as (k, 2, n).
     """
     placed = [
         np.concatenate([[frame], box.half_extents, box.rotation.T.ravel(), box.center])
         for _, frame, box, *_ in bodies
     ]
-    motions = np.array([_motion(robot, bodies[i], bodies[k]) for i, k in pairs])
-    rows = [(bodies[i].speed, k, i, bodies[i].radius + bodies[k].radius) for i, k in pairs]
-    parts = (placed, rows, motions[:, 0], motions[:, 1])
-    return np.concatenate([np.ravel(part) for part in parts])
+    motions = [_motion(robot, bodies[i], bodies[k]) for i, k in pairs]
+    rows = [(bodies[i].speed, k, i, bodies[i].radius + bodies[k].radius, 0.0) for i, k in pairs]
+    return (
+        np.array(placed),
+        np.reshape(rows, (-1, PER_PAIR)),
+        np.reshape(motions, (-1, 2, robot.dof)),
+    )
 
 
 def _motion(robot: Robot, first: _Body, second: _Body) -> Matrix:
@@ -275,7 +367,7 @@ def _length(robot: Robot, joint: int) -> float:
 def scene_views(constants: Vector, dof: int) -> SceneViews:
     """Make the views of a scene's constants (k,) for a robot of `dof` joints."""
     bodies = int(constants[2])
-    pairs = int(constants[3])
+    pairs = int(constants[PAIRS])
     at_bodies = HEAD + dof
     at_pairs = at_bodies + PER_BODY * bodies
     at_moves = at_pairs + PER_PAIR * pairs
@@ -283,6 +375,7 @@ def scene_views(constants: Vector, dof: int) -> SceneViews:
     return SceneViews(
         constants[0],
         constants[1],
+        int(constants[FIRST_PAIR]),
         constants[HEAD:at_bodies],
         constants[at_bodies:at_pairs].reshape(bodies, PER_BODY),
         constants[at_pairs:at_moves].reshape(pairs, PER_PAIR),
@@ -330,7 +423,8 @@ def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
         normal = (side[0] / core, side[1] / core, side[2] / core)
     else:
         core, x, y, z = depth(nearest, half)
-        normal = (x, y, z)
+        flat = 0.0 if half[0] == 0.0 else 1.0
+        normal = (flat * x, flat * y, flat * z)
     outward = axis_at(base, normal)
     point = combined(1.0, a, s, way)
     other = combined(1.0, point, -core, outward)
@@ -361,6 +455,33 @@ def write_distances(constants: Vector, dof: int, placements: Matrix, distances: 
     place_bodies(scene, placements, placed)
     for k in range(distances.size):
         distances[k] = contact_of(scene, k, placed).distance
+
+
+@compiled
+def write_end_rates(constants: Vector, jacobian: Matrix, placements: Matrix, rates: Matrix) -> None:
+    """Raise the rates (pairs, 2) to those at which joints move the ends of each pair [m/rad].
+
+    The largest of a joint counts, along the pair's normal; inf where there is none.
+
+    Args:
+        constants: `Scene.constants`, (k,).
+        jacobian: `Kinematics.jacobian`, (n, 6).
+        placements: `Kinematics.placements`, (frames, 12).
+        rates: The rates so far, overwritten.
+    """
+    dof = len(jacobian)
+    scene = scene_views(constants, dof)
+    placed = np.empty((len(scene.bodies), 12))
+    place_bodies(scene, placements, placed)
+    for k in range(len(scene.pairs)):
+        contact = contact_of(scene, k, placed)
+        ends = ends_of(scene, placed, int(scene.pairs[k, SECOND]))
+        for at in range(2):
+            if dot(contact.normal, contact.normal) == 0.0:
+                rates[k, at] = np.inf
+            for j in range(dof):
+                rate = abs(scene.moves[k, j] * rate_along(jacobian, j, ends[at], contact.normal))
+                rates[k, at] = max(rates[k, at], rate)
 
 
 @compiled

@@ -41,6 +41,8 @@ class StepViews(NamedTuple):
         moves: 1 where a joint moves a frame, else 0, `Robot.moves`, (frames, n).
         inertia: Joint-space inertia matrix [kg m^2], (n, n), current if a cost needs it.
         targets: Targets of the tracked frames, `Target.data` each, (k, 18).
+        least: Distance that each watched pair has to keep [m], (pairs,), a state that the limit
+            brings up to date (`collisions.kept_distance`).
     """
 
     t: float
@@ -53,6 +55,7 @@ class StepViews(NamedTuple):
     moves: Matrix
     inertia: Matrix
     targets: Matrix
+    least: Vector
 
 
 class Step:

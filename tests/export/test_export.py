@@ -71,6 +71,7 @@ def memory_taken(exported: ExportedController, folder: Path) -> tuple[int, int]:
     return int(np.flatnonzero(scratch)[-1]) + 1, scratch.size
 
 
+@pytest.mark.filterwarnings("ignore:Sphere 1 and .* apart at the start")
 @pytest.mark.parametrize("name", SETTINGS)
 def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) -> None:
     """Pinocchio's own kinematics have other last digits: tests/robot/test_kinematics_kernel.py."""

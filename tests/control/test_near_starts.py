@@ -1,0 +1,165 @@
+"""Pairs that begin nearer than they have to be, or that no joint moves, hold no arm."""
+
+import copy
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+
+import iiwa_dnn as d
+from helpers_simulation import driven
+from iiwa_dnn.control.policies import ProgramKind
+from iiwa_dnn.control.state import kept_distances
+from iiwa_dnn.schemes.collisions import ROOM
+from judge_distances import SLACK, Judge
+
+ROBOT = d.load_robot("iiwa7").with_limits(acceleration=10.0)
+START = d.Configuration(ROBOT, ROBOT.start_posture())
+LEAST = 0.02
+DT = 5e-3
+AWAY = np.array([0.4, 0.0, 0.0])
+
+pytestmark = pytest.mark.filterwarnings("ignore")
+
+
+def judged(robot: d.Robot, avoidance: d.CollisionAvoidance, path: np.ndarray) -> np.ndarray:
+    """Distances of all pairs by coal [m], (k, pairs)."""
+    judge = Judge(robot, avoidance)
+    return np.array([judge.distances(q) for q in path])
+
+
+def beside(nearer: float, **options: Any) -> tuple[d.CollisionAvoidance, d.Scheme]:
+    """A ball that the hand begins so much nearer to than `LEAST`, and a scheme beside it."""
+    off = d.CollisionAvoidance([d.Sphere(START.position + AWAY, 0.1)], self_collision=False)
+    radius = 0.1 + off.scene(ROBOT).nearest(START.q[None], np.zeros(1))[0][0] - LEAST + nearer
+    ball = d.Sphere(START.position + AWAY, radius)
+    avoidance = d.CollisionAvoidance([ball], self_collision=False, distance=LEAST, **options)
+    return avoidance, d.DoubleIndicator(
+        orientation="none", extra_limits=(d.AccelerationLimits(), avoidance)
+    )
+
+
+def at(x: float, y: float = 0.0) -> d.Target:
+    return d.Target(START.position + [x, y, 0.0], START.rotation)
+
+
+@pytest.mark.parametrize("name", ["ur3", "ur5", "ur10", "iiwa7", "panda", "xarm7", "z1", "kinova"])
+def test_an_arm_on_a_table_moves(name: str) -> None:
+    # A pair that no joint moves forbade every motion of a UR5: its base stands in the table.
+    robot = d.load_robot(name)
+    table = d.HalfSpace([0.0, 0.0, 1.0], 0.0)
+    avoidance = d.CollisionAvoidance([table], self_collision=False, distance=0.01)
+    for wish in (0.3, -0.3):
+        shield = d.Shield(robot, 0.01, [table], 0.01)
+        path = [robot.start_posture()]
+        for _ in range(100):
+            path.append(path[-1] + 0.01 * shield.step(path[-1], np.full(robot.dof, wish)).dq)
+        assert np.ptp(path, axis=0).max() > 0.1
+        found = judged(robot, avoidance, np.array(path))
+        assert (found >= np.minimum(found[0], 0.01) - SLACK).all()
+
+
+@pytest.mark.parametrize("name", ["ur5", "iiwa7", "panda"])
+def test_pairs_that_no_joint_moves_are_left_out_and_named(name: str) -> None:
+    """By coal, over random postures: their distance is the same in all of them."""
+    robot = d.load_robot(name)
+    table = d.HalfSpace([0.0, 0.0, 1.0], -0.2)
+    avoidance = d.CollisionAvoidance([table], self_collision=False)
+    apart = judged(robot, avoidance, robot.draw(np.random.default_rng(3), 200))
+    still = int((np.ptp(apart, axis=0) < 1e-6).sum())
+    named = list(avoidance.overview(robot)["left_out"])
+    assert len(named) == still > 0
+    assert {(first, why) for first, _, why in named} == {("HalfSpace 1", "no joint moves it")}
+    assert not {pair[:2] for pair in named} & set(avoidance.scene(robot).pairs)
+
+
+def test_pairs_are_left_out_by_name() -> None:
+    avoidance, scheme = beside(0.005, left_out=[("Sphere 1", "iiwa7_link_7")])
+    assert ("Sphere 1", "iiwa7_link_7", "given") in avoidance.overview(ROBOT)["left_out"]
+    path, _ = driven(d.Controller(ROBOT, scheme, dt=DT), START.q, 200, at(0.1))
+    assert judged(ROBOT, avoidance, path[-1:]).min() < 0.0
+    with pytest.raises(
+        d.IiwaDnnError, match="no link or obstacle 'Sphere 2'; did you mean: Sphere 1"
+    ):
+        beside(0.005, left_out=[("iiwa7_link_7", "Sphere 2")])[0].scene(ROBOT)
+    for wrong in ("iiwa7_link_7", [("iiwa7_link_7",)], [1], 2):
+        with pytest.raises(d.InvalidInputError, match="left_out: must be pairs of names"):
+            beside(0.005, left_out=wrong)
+
+
+@pytest.mark.parametrize("nearer", [0.005, 0.025])
+def test_a_pair_that_begins_nearer_comes_no_nearer_and_then_keeps_its_distance(
+    nearer: float,
+) -> None:
+    avoidance, scheme = beside(nearer)
+    controller = d.Controller(ROBOT, scheme, dt=DT)
+    _, first = driven(controller, START.q, 1, at(0.0))
+    own = kept_distances(controller._state.past)
+    pressed, _ = driven(controller, START.q, 100, at(0.2))
+    begun = judged(ROBOT, avoidance, pressed[:1]).min()
+    assert own.min() == pytest.approx(LEAST - nearer - ROOM, abs=2e-6)
+    assert sum(words.endswith(f"keep {own.min():.3g} m") for words in first[0].against) == 1
+    assert judged(ROBOT, avoidance, pressed).min() > begun - SLACK
+    left, _ = driven(controller, pressed[-1], 300, at(-0.2))
+    assert judged(ROBOT, avoidance, left[-1:]).min() > LEAST
+    again, last = driven(controller, left[-1], 400, at(0.2, 0.1))
+    assert (
+        kept_distances(controller._state.past)[: len(avoidance.scene(ROBOT).pairs)] == LEAST
+    ).all()
+    assert judged(ROBOT, avoidance, again).min() > LEAST - SLACK
+    assert not any("nearer" in words for words in last[-1].against)
+
+
+def test_a_pair_that_begins_nearer_is_not_asked_to_retreat() -> None:
+    # It went away at 20 times what was left of the distance, whatever the task asked for.
+    _, scheme = beside(0.005)
+    path, commands = driven(d.Controller(ROBOT, scheme, dt=DT), START.q, 50, at(0.0))
+    assert np.abs(path - START.q).max() < 1e-9
+    assert {command.kind for command in commands} == {ProgramKind.OWN}
+    assert all((command.qp.h >= 0.0).all() for command in commands)
+
+
+@pytest.mark.parametrize("copied", [copy.copy, lambda each: pickle.loads(pickle.dumps(each))])
+def test_what_pairs_keep_is_copied_and_begins_anew_after_a_reset(copied: Any) -> None:
+    _, scheme = beside(0.005)
+    controller = d.Controller(ROBOT, scheme, dt=DT)
+    path, _ = driven(controller, START.q, 60, at(-0.003))
+    own = kept_distances(controller._state.past).min()
+    twin = copied(controller)
+    twin.step(path[-1], 0.3, at(0.0))
+    assert kept_distances(twin._state.past).min() == own
+    twin.reset()
+    twin.step(path[-1], 0.3, at(0.0))
+    assert own + 1e-3 < kept_distances(twin._state.past).min() < LEAST
+
+
+def test_a_command_that_was_computed_counts_as_the_start_of_what_is_sent() -> None:
+    _, scheme = beside(0.005)
+    controller, other = (d.Controller(ROBOT, scheme, dt=DT) for _ in range(2))
+    frames = {ROBOT.tip: at(0.1)}
+    q = START.q
+    for k in range(30):
+        command = controller.compute(q, k * DT, frames)
+        controller.send(command.dq)
+        other.step(q, k * DT, frames)
+        own = [kept_distances(each._state.past).min() for each in (controller, other)]
+        assert own[0] == own[1]
+        q = command.next_q
+
+
+def test_a_link_that_a_ball_sits_in_is_stopped_and_says_why() -> None:
+    """The ball's middle on a link's axis: no direction leads apart."""
+    capsule = next(
+        c for c in d.robot.collision.collision_model(ROBOT).capsules if "link_7" in c.link
+    )
+    frame = START.frame(capsule.link)
+    middle = frame.position + frame.rotation @ np.mean([capsule.a, capsule.b], axis=0)
+    avoidance = d.CollisionAvoidance([d.Sphere(middle, 0.05)], self_collision=False)
+    limits = (d.AccelerationLimits(), avoidance)
+    scheme = d.DoubleIndicator(orientation="none", extra_limits=limits)
+    path, commands = driven(d.Controller(ROBOT, scheme, dt=DT), START.q, 20, at(0.1))
+    np.testing.assert_array_equal(path, np.tile(START.q, (21, 1)))
+    for command in commands:
+        assert command.kind is ProgramKind.STOPPED
+        assert "iiwa7_link_7 and Sphere 1 meet, and no direction leads apart" in command.against
