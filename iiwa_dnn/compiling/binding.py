@@ -29,6 +29,7 @@ def extension(translator: Translator) -> str:
     called = [own for own in functions if not (own.result.axes or own.result.is_named)]
     parts = [
         *map(prelude, ("binding.h", "kernels.h", "arena.h")),
+        prelude("checked.h") * translator.is_checked,
         translator.text(),
         prelude("binding.c"),
         *map(_wrapper, called),
@@ -67,7 +68,9 @@ def _wrapper(own: Function) -> str:
     needs = Reading(own, known).needs
     if own.result is not VOID:
         call = f"result = {call}"
-    if own.decoration == "released":
+    if own.translator.is_checked:
+        call = f"BEGIN_CHECKED {call} END_CHECKED"
+    elif own.decoration == "released":
         call = f"Py_BEGIN_ALLOW_THREADS {call} Py_END_ALLOW_THREADS"
     parameters = "PyObject *self, PyObject *const *given, Py_ssize_t count"
     lines = [
@@ -76,6 +79,7 @@ def _wrapper(own: Function) -> str:
         f"    if ({' || '.join(read)}) return NULL;",
         *(f'    if (!({need})) return too_small("{own.name}");' for need in needs),
         f"    {own.result.tag} result;" * (own.result is not VOID),
+        "    (void)self;",
         f"    {call}",
         "    if (failed && raise_failure()) return NULL;",
         f"    return {_object(own.result, 'result')};\n}}",

@@ -19,13 +19,17 @@ from .translator import Translator
 
 FLAGS = (
     *("-std=gnu11", "-O3", "-ffp-contract=off", "-fno-strict-aliasing", "-shared", "-fPIC"),
-    *("-Werror=float-conversion", "-Werror=implicit-function-declaration"),
+    *("-Wall", "-Wextra", "-Wconversion", "-Werror"),
 )
-"""Without contraction a result is that of Python's own arithmetic, to the last bit."""
+"""Without contraction a result is that of Python's own arithmetic, to the last bit. No warning is
+off: types that do not fit are warned of."""
 
 
 def build(package: Path) -> Path:
     """Translate a package's kernels and compile them, if they have changed; return the library.
+
+    With ``IIWA_DNN_CHECKED=1``, an index outside of its array raises an IndexError, one that counts
+    from the end too.
 
     Raises:
         TranslationError: A kernel leaves the subset of Python that is translated.
@@ -35,11 +39,13 @@ def build(package: Path) -> Path:
     made = package / f"_kernels{sysconfig.get_config_var('EXT_SUFFIX')}"
     stamp = made.with_suffix(".digest")
     sources = [*package.rglob("*.py"), *(package / "compiling").glob("*.[ch]")]
-    of_files = hashlib.sha256(b"".join(path.read_bytes() for path in sorted(sources))).hexdigest()
+    is_checked = os.environ.get("IIWA_DNN_CHECKED") == "1"
+    contents = [*(path.read_bytes() for path in sorted(sources)), b"checked" * is_checked]
+    of_files = hashlib.sha256(b"".join(contents)).hexdigest()
     noted = stamp.read_text() if made.is_file() and stamp.is_file() else ""
     if noted.startswith(of_files):
         return made
-    translator = Translator(package)
+    translator = Translator(package, is_checked)
     translator.all()
     text = extension(translator)
     unmarked = re.sub(r"#line.*", "", text)  # which a comment changes
@@ -78,6 +84,6 @@ def _flags() -> list[str]:
     """Return the compiler's flags for an extension module, and those of the environment."""
     import numpy as np
 
-    folders = [f"-I{path}" for path in (sysconfig.get_paths()["include"], np.get_include())]
+    folders = [f"-isystem{path}" for path in (sysconfig.get_paths()["include"], np.get_include())]
     system = ["-undefined", "dynamic_lookup"] if sys.platform == "darwin" else []
     return [*FLAGS, *folders, *system, *os.environ.get("CFLAGS", "").split()]

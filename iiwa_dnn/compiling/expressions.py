@@ -317,29 +317,40 @@ class Expressions:
         element = owner.kind.element
         assert element
         if owner.kind.members:
-            item = self.value(parts[0]).text
+            item = self._checked(self.value(parts[0]), number(len(owner.kind.members))).text
             return Value(element, f"{owner.within(Rank.PRIMARY)}.at[{item}]")
         *_, last = parts
         sizes = owner.sizes
+        ends = sizes[: len(parts)]
         shape = sizes[len(parts) :]
         if isinstance(last, ast.Slice):
             self.require(last.step is None, last, "has gaps between its rows")
-            end = self._once(last.upper) if last.upper else sizes[len(parts) - 1]
-            start = [self._once(last.lower)] if last.lower else []
-            shape = [joined("-", [end, *start]), *shape]
+            size = ends[-1]
+            ends[-1] = joined("+", [size, number(1)])
+            if last.upper:
+                size = self._checked(self._once(last.upper), ends[-1])
+            if last.lower:
+                size = joined("-", [size, self._once(last.lower)])
+            shape.insert(0, self._checked(size, ends[-1]))
             parts = [*parts[:-1], last.lower or ast.Constant(0)]
-        offsets = [self._offset(part, sizes[k:]) for k, part in enumerate(parts, 1)]
+        offsets = [self._offset(part, ends[k], sizes[k + 1 :]) for k, part in enumerate(parts)]
         offsets = [own for own in offsets if own.text != "0"]
         if shape:
             return array(element, joined("+", [owner.data, *offsets]), shape)
         first = re.sub(r"^\(\(\w+ \*\)(\w+)\)$", r"\1", owner.data.within(Rank.PRIMARY))
         return Value(element, f"{first}[{joined('+', offsets).text if offsets else 0}]")
 
-    def _offset(self, node: ast.expr, steps: list[Value]) -> Value:
-        """Translate an index into the elements before it, where it counts so many at a time."""
+    def _checked(self, index: Value, size: Value) -> Value:
+        """Return an index that a checked build holds against a size."""
+        if not self.translator.is_checked:
+            return index
+        return Value(INT, f"checked({index.text}, {size.text})")
+
+    def _offset(self, node: ast.expr, size: Value, steps: list[Value]) -> Value:
+        """Translate an index of an axis into the number of elements before it."""
         self.require(not isinstance(node, ast.Slice), node, "has gaps between its rows")
         self.require(not isinstance(node, ast.UnaryOp), node, "counts from the end")
-        at = self.value(node)
+        at = self._checked(self.value(node), size)
         if at.text == "0" or not steps:
             return at
         return joined("*", steps if at.text == "1" else [at, *steps])
@@ -354,7 +365,11 @@ class Expressions:
                 return self._taken(own.kind.element, "copy", [own.data, own.size], own.sizes)
             case ast.Attribute(value=owner, attr="reshape"):
                 own = self._once(owner)
-                return array(own.kind.element, own.data, [*map(self._once, node.args)])
+                shape = [*map(self._once, node.args)]
+                if self.translator.is_checked:
+                    texts = [own.size.text, joined("*", shape).text, shape[0].text]
+                    shape[0] = Value(INT, f"shaped({', '.join(texts)})")
+                return array(own.kind.element, own.data, shape)
             case ast.Attribute(value=ast.Name(id="np"), attr="empty" | "zeros" as word):
                 shape = [*map(self._once, getattr(node.args[0], "elts", node.args))]
                 return self._taken(FLOAT, word, [joined("*", shape)], shape)

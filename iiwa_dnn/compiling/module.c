@@ -10,7 +10,11 @@ static int note(PyObject *module, const char *name, const struct kernel *kernel)
 }
 
 static struct PyModuleDef definition = {
-    PyModuleDef_HEAD_INIT, "iiwa_dnn._kernels", "The package's kernels.", -1, methods,
+    .m_base = PyModuleDef_HEAD_INIT,
+    .m_name = "iiwa_dnn._kernels",
+    .m_doc = "The package's kernels.",
+    .m_size = -1,
+    .m_methods = methods,
 };
 
 PyMODINIT_FUNC PyInit__kernels(void)

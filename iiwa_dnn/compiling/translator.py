@@ -32,11 +32,13 @@ class Translator:
         constants: Constants of modules and of the exported plan, by their names in C.
         plan: Members of the exported plan that are constants, by its types and the members' names.
         parts: Functions that entries call by their numbers, from 1; None: by any address.
+        is_checked: Whether indices are checked.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, is_checked: bool = False) -> None:
         """Take the folder of a package."""
         self.package = Package(folder)
+        self.is_checked = is_checked
         self.kinds = Kinds(self.package)
         self.functions: dict[tuple[str, str], Function] = {}
         self.parts: list[Function] | None = None
