@@ -76,9 +76,11 @@ class Entry(Generic[P, R]):
 
     Attributes:
         functions: The function of each address that was asked for.
+        prototypes: The function that states the types of each.
     """
 
     functions: ClassVar[dict[int, Any]] = {}
+    prototypes: ClassVar[dict[int, Any]] = {}
 
     def __init__(self, prototype: Callable[P, R]) -> None:
         """Take the function that states the types."""
@@ -124,6 +126,7 @@ class Entry(Generic[P, R]):
             _KEPT.append(own)
             address = -cast(int, ctypes.cast(own, ctypes.c_void_p).value)
         Entry.functions[address] = source
+        Entry.prototypes[address] = self.prototype
         return address
 
     def _callback(self, function: Callable[..., Any]) -> Any:

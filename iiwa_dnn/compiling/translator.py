@@ -18,7 +18,7 @@ from types import MappingProxyType
 from typing import Any
 
 from .expressions import SIGNS, Expressions, Rank, Value, array, c_word, number
-from .kinds import INT, VOID, Kinds
+from .kinds import INT, VOID, Kind, Kinds
 from .sources import ENTRY, Module, Package, TranslationError, decoration, fail, stored_names
 
 
@@ -92,11 +92,13 @@ class Translator:
         data = Value(kind, f"({kind.tag} *){name}", Rank.UNARY)
         return array(kind, data, [number(size) for size in shape or [len(own)]])
 
-    def function(self, module: Module, node: ast.FunctionDef) -> Function:
-        """Return the translation of a function."""
+    def function(
+        self, module: Module, node: ast.FunctionDef, like: Function | None = None
+    ) -> Function:
+        """Return the translation of a function; one without annotations has another's types."""
         key = (module.name, node.name)
         if key not in self.functions:
-            own = self.functions[key] = Function(self, module, node)
+            own = self.functions[key] = Function(self, module, node, like)
             if own.decoration != ENTRY:
                 own.translate()
             self.functions[key] = self.functions.pop(key)  # after those that it calls
@@ -124,15 +126,23 @@ class Function(Expressions):
         node: Its syntax tree.
     """
 
-    def __init__(self, translator: Translator, module: Module, node: ast.FunctionDef) -> None:
-        """Read name and types of a function."""
+    def __init__(
+        self, translator: Translator, module: Module, node: ast.FunctionDef, like: Function | None
+    ) -> None:
+        """Read name and types of a function; without annotations it enters as another does."""
         of = translator.kinds.of
-        kinds = {own.arg: of(module, own.annotation or own) for own in node.args.args}
+        names = [own.arg for own in node.args.args]
+        result = of(module, node.returns or ast.Constant(None))
+        if like and not any(own.annotation for own in node.args.args):
+            result = like.result
+            kinds = dict(zip(names, [*like.parameters.values()][1:], strict=True))
+        else:
+            kinds = {own.arg: of(module, own.annotation or own) for own in node.args.args}
         super().__init__(translator, module, kinds)
         self.name = module.c_name(node.name)
         self.about = ast.get_docstring(node) or ""
         self.decoration = decoration(node)
-        self.result = of(module, node.returns or ast.Constant(None))
+        self.result: Kind = result
         self.types = [f"const {k.tag} *" if k.is_named else f"{k.tag} " for k in kinds.values()]
         self.text = ""
         self.uses_arena |= self.decoration == ENTRY

@@ -209,7 +209,8 @@ class _Code:
     def _part(self, address: int) -> int:
         """Translate the function at an address, once; return its number."""
         if address not in self._numbers:
-            self._parts.append(self._translated(Entry.functions[address]))
+            like = self._translated(Entry.prototypes[address])
+            self._parts.append(self._translated(Entry.functions[address], like))
             self._numbers[address] = len(self._parts)
         return self._numbers[address]
 
@@ -218,14 +219,21 @@ class _Code:
         own = self._translated(source_of(kernel))
         return f"{own.name}({'&arena, ' * own.uses_arena}"
 
-    def _translated(self, function: Any) -> Function:
+    def _translated(self, function: Any, like: Function | None = None) -> Function:
         """Translate a function of the package or of a user's, or raise an InvalidInputError."""
         try:
             own = function.__module__.startswith("iiwa_dnn.")
             file = None if own else Path(inspect.getfile(function))
             module = self._translator.package.module(function.__module__, file)
-            return self._translator.function(module, module.names[function.__qualname__])
-        except (AttributeError, KeyError, OSError, TypeError, TranslationError) as error:
+            return self._translator.function(module, module.names[function.__qualname__], like)
+        except (
+            AttributeError,
+            KeyError,
+            OSError,
+            TypeError,
+            ValueError,
+            TranslationError,
+        ) as error:
             problem = f"{function!r} cannot be exported: {error}"
             raise InvalidInputError("controller", problem) from error
 

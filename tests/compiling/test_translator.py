@@ -254,13 +254,15 @@ def _module(path: Path, name: str) -> ModuleType:
     return module
 
 
-@pytest.fixture(scope="module")
-def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Any]:
-    """The kernels above as Python and as a library."""
+@pytest.fixture(scope="module", params=["0", "1"])
+def both(request: Any, tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Any]:
+    """The kernels above as Python and as a library, plain and checked."""
     folder = tmp_path_factory.mktemp("kernels") / "package"
     folder.mkdir()
     (folder / "own.py").write_text(KERNELS)
-    return _module(folder / "own.py", "own"), _module(build(folder), "_kernels")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("IIWA_DNN_CHECKED", request.param)
+        return _module(folder / "own.py", "own"), _module(build(folder), "_kernels")
 
 
 RNG = np.random.default_rng(0)
@@ -423,6 +425,71 @@ def test_types_that_do_not_fit_are_refused_by_the_compiler(tmp_path: Path, sourc
     line = HEAD.count("\n") + 5
     with pytest.raises(RuntimeError, match=rf"package/own\.py:{line}:\d+: error: "):
         build(_write(tmp_path, source))
+
+
+CHECKED = """def element(a: Vector, i: int) -> float:
+    return a[i]
+
+@compiled
+def within_row(a: Matrix, i: int, j: int) -> None:
+    a[i, j] = 1.0
+
+@compiled
+def part(a: Vector, i: int, j: int) -> float:
+    total = np.zeros(1)
+    for x in range(a[i:j].size):
+        total[0] += a[i + x]
+    return total[0]
+
+@compiled
+def whole_row(a: Matrix, i: int) -> float:
+    return element(a[i], 0)
+
+@compiled
+def item(i: int) -> float:
+    return (1.0, 2.0, 4.0)[i]
+
+@compiled
+def table(i: int) -> float:
+    return TABLE[i]
+
+@released
+def reshaped(a: Vector, n: int) -> int:
+    return fill(a.reshape(n, 2))
+
+@compiled
+def fill(a: Matrix) -> int:
+    a[:] = 2.0
+    return a.shape[0]
+"""
+INSIDE = [("element", np.arange(3.0), 2), ("within_row", np.ones((2, 3)), 1, 2), ("item", 2)]
+INSIDE += [("part", np.arange(5.0), 1, 5), ("part", np.arange(5.0), 5, 5), ("table", 2)]
+INSIDE += [("whole_row", np.ones((2, 3)), 1), ("reshaped", np.ones(6), 3)]
+OUTSIDE = [("element", np.arange(3.0), 3), ("element", np.arange(3.0), -1), ("item", 3)]
+OUTSIDE += [("within_row", np.ones((2, 3)), 0, 3), ("within_row", np.ones((2, 3)), 1, -1)]
+OUTSIDE += [("part", np.arange(5.0), 1, 6), ("part", np.arange(5.0), 3, 2), ("item", -1)]
+OUTSIDE += [("whole_row", np.ones((2, 3)), 2), ("table", 3), ("part", np.arange(5.0), -1, 2)]
+
+
+def test_a_checked_build_refuses_an_index_outside_of_its_array(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The address sanitizer sees none of them that stays within the memory of its row."""
+    monkeypatch.setenv("IIWA_DNN_CHECKED", "1")
+    folder = _write(tmp_path, CHECKED)
+    library = _module(build(folder), "_kernels")
+    python = _module(folder / "own.py", "own")
+    for name, *arguments in INSIDE:
+        found = getattr(library, f"own_{name}")(*deepcopy(arguments))
+        assert found == getattr(python, name)(*deepcopy(arguments))
+    for name, *arguments in OUTSIDE:
+        before = deepcopy(arguments)
+        with pytest.raises(IndexError, match=r"package/own\.py:\d+: index -?\d is none"):
+            getattr(library, f"own_{name}")(*arguments)
+        assert all(np.array_equal(a, b) for a, b in zip(before, arguments, strict=True))
+        assert library.own_element(np.arange(3.0), 1) == 1.0  # and nothing of it stays
+    with pytest.raises(ValueError, match="6 elements are reshaped to 8"):
+        library.own_reshaped(np.ones(6), 4)
 
 
 def test_the_library_follows_its_sources(tmp_path: Path) -> None:

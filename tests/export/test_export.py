@@ -1,6 +1,7 @@
 """Exported controllers: C's commands are Python's, and the code keeps the promises of its page."""
 
 import ctypes
+import importlib
 import re
 import shutil
 from pathlib import Path
@@ -248,6 +249,35 @@ def test_what_is_not_compiled_is_refused_by_name(
     with pytest.raises(InvalidInputError, match=words):
         c99(drawing(**options)[0], tmp_path / "none")
     assert not (tmp_path / "none").exists()
+
+
+def test_a_kernel_as_the_page_of_schemes_shows_it_is_exported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It has no annotations: its types are those with which it is entered."""
+    page = (Path(__file__).parents[2] / "docs" / "schemes.md").read_text(encoding="utf-8")
+    source = re.search(r"\ndef clearance_row\(.*?\n\n", page, re.DOTALL)
+    assert source
+    (tmp_path / "page_kernel.py").write_text(f"import math\n{source[0]}", encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    limit = Page(importlib.import_module("page_kernel").clearance_row)
+    controller, q0 = drawing(with_limits(limit))
+    exported = loaded(c99(controller, tmp_path / "folder", q0))
+    controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
+    take_kernels_kinematics(controller)
+    for k in range(50):
+        command = controller.step(q0, k * controller.dt)
+        assert exported.step(q0, command.targets).dq.tobytes() == command.dq.tobytes()
+
+
+class Page(iiwa_dnn.Limit):
+    rows = 1
+
+    def __init__(self, kernel: Any) -> None:
+        self.kernel = kernel
+
+    def constants(self, robot: iiwa_dnn.Robot) -> np.ndarray:
+        return np.array([robot.frame_id("iiwa7_link_4"), 20.0, 0.1, 0.5, 0.5, 0.5])
 
 
 class _Plain(iiwa_dnn.Heart):
