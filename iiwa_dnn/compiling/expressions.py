@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -68,6 +68,7 @@ class Value(NamedTuple):
         pointer: Pointer through which a struct is reached, if any.
         parts: Pointer to the first element and sizes of an array that is written as a literal.
         is_plan: Whether it is the exported plan, or a member of it.
+        places: Variables whose memory it is a view of, or members of them.
     """
 
     kind: Kind
@@ -76,6 +77,7 @@ class Value(NamedTuple):
     pointer: str = ""
     parts: tuple[Value, ...] = ()
     is_plan: bool = False
+    places: frozenset[str] = frozenset()
 
     def within(self, rank: int) -> str:
         """Return the text as an operand, in parentheses if its operator binds less than a rank."""
@@ -84,7 +86,8 @@ class Value(NamedTuple):
     def member(self, name: str, kind: Kind) -> Value:
         """Return a member of a struct."""
         owner = f"{self.pointer}->" if self.pointer else f"{self.within(Rank.PRIMARY)}."
-        return Value(kind, f"{owner}{c_word(name)}", is_plan=self.is_plan)
+        places = frozenset(f"{place}.{name}" for place in self.places)
+        return Value(kind, f"{owner}{c_word(name)}", is_plan=self.is_plan, places=places)
 
     def converted(self, kind: Kind) -> Value:
         """Return the value as a float, if that is asked for and it is an integer."""
@@ -163,6 +166,12 @@ def array(element: Kind | None, data: Value, sizes: Sequence[Value]) -> Value:
     return Value(kind, literal(kind, [own.text for own in parts]), parts=parts)
 
 
+def _inserted(places: Iterable[str], given: dict[str, frozenset[str]]) -> set[str]:
+    """Return places in terms of the arguments that are given for parameters."""
+    parts = [place.partition(".") for place in places]
+    return {f"{own}{dot}{rest}" for name, dot, rest in parts for own in given[name]}
+
+
 class Expressions:
     """Translation of the expressions of one function.
 
@@ -172,6 +181,8 @@ class Expressions:
         parameters: Types of its parameters.
         kinds: Types of its parameters and variables.
         written: Arrays that are written into, as Python names them.
+        aliases: For a variable, or a member of one, others whose memory it may be a view of.
+        views: The same for the result, in terms of the parameters.
         assigned: Variables that have a value wherever the current statement is reached.
         plans: Variables that are the exported plan, or a part of it.
         lines: Lines of the body so far.
@@ -186,6 +197,8 @@ class Expressions:
         self.parameters = parameters
         self.kinds = dict(parameters)
         self.written: set[str] = set()
+        self.aliases: dict[str, set[str]] = {}
+        self.views: dict[str, set[str]] = {}
         self.assigned = {*parameters}
         self.plans = {own for own, kind in parameters.items() if kind.tag in translator.plan}
         self.lines: list[str] = []
@@ -235,7 +248,8 @@ class Expressions:
                 both = [self._uncertain(body), self._uncertain(orelse)]
                 kind = self._wider(both)
                 first, second = [own.converted(kind).within(Rank.OR) for own in both]
-                return Value(kind, f"{head} ? {first} : {second}", Rank.CHOICE)
+                places = both[0].places | both[1].places
+                return Value(kind, f"{head} ? {first} : {second}", Rank.CHOICE, places=places)
             case ast.Subscript(value=ast.Attribute(value=owner, attr="shape"), slice=axis):
                 return self.value(owner).sizes[int(self.module.value(axis))]
             case ast.Subscript(value=owner, slice=part):
@@ -249,7 +263,8 @@ class Expressions:
         name = node.id
         self.require(name in self.assigned, node, "is not assigned on every way here")
         kind = self.kinds[name]
-        own = Value(kind, c_word(name), is_plan=name in self.plans)
+        places = frozenset([name])
+        own = Value(kind, c_word(name), is_plan=name in self.plans, places=places)
         if kind.is_named and name in self.parameters:
             return own._replace(text=f"*{own.text}", rank=Rank.UNARY, pointer=own.text)
         return own
@@ -274,7 +289,26 @@ class Expressions:
         self._kept += 1
         name = f"own_{self._kept}"
         self.lines.append(f"const {own.kind.tag} {name} = {own.initializer};")
-        return Value(own.kind, name)
+        return Value(own.kind, name, places=own.places)
+
+    def sources(self, place: str) -> set[str]:
+        """Return the parameters, or members of them, that a place may be a view of."""
+        found = {place}
+        waiting = [place]
+        while waiting:
+            own = waiting.pop()
+            for name, others in self.aliases.items():
+                if own == name or own.startswith(f"{name}."):
+                    new = {other + own.removeprefix(name) for other in others} - found
+                    found |= new
+                    waiting += new
+        return {own for own in found if own.partition(".")[0] in self.parameters}
+
+    def _named(self, kind: Kind, text: str, views: Mapping[str, Iterable[str]]) -> Value:
+        """Return a value that is a view of others, for each of its members."""
+        place = f"own {len(self.aliases)}"
+        self.aliases |= {f"{place}{member}": {*places} for member, places in views.items()}
+        return Value(kind, text, places=frozenset([place]))
 
     def _wider(self, values: list[Value]) -> Kind:
         """Return the type that takes all of some values; the compiler refuses what it does not."""
@@ -336,9 +370,11 @@ class Expressions:
         offsets = [self._offset(part, ends[k], sizes[k + 1 :]) for k, part in enumerate(parts)]
         offsets = [own for own in offsets if own.text != "0"]
         if shape:
-            return array(element, joined("+", [owner.data, *offsets]), shape)
+            whole = array(element, joined("+", [owner.data, *offsets]), shape)
+            return whole._replace(places=owner.places)
         first = re.sub(r"^\(\(\w+ \*\)(\w+)\)$", r"\1", owner.data.within(Rank.PRIMARY))
-        return Value(element, f"{first}[{joined('+', offsets).text if offsets else 0}]")
+        inner = joined("+", offsets).text if offsets else "0"
+        return Value(element, f"{first}[{inner}]", places=owner.places)
 
     def _checked(self, index: Value, size: Value) -> Value:
         """Return an index that a checked build holds against a size."""
@@ -369,7 +405,7 @@ class Expressions:
                 if self.translator.is_checked:
                     texts = [own.size.text, joined("*", shape).text, shape[0].text]
                     shape[0] = Value(INT, f"shaped({', '.join(texts)})")
-                return array(own.kind.element, own.data, shape)
+                return array(own.kind.element, own.data, shape)._replace(places=own.places)
             case ast.Attribute(value=ast.Name(id="np"), attr="empty" | "zeros" as word):
                 shape = [*map(self._once, getattr(node.args[0], "elts", node.args))]
                 return self._taken(FLOAT, word, [joined("*", shape)], shape)
@@ -379,9 +415,10 @@ class Expressions:
         values = [self.value(each) for each in node.args]
         if isinstance(found, ast.ClassDef):
             kind = self.translator.kinds.of(home, found)
-            given = zip(values, kind.members.values(), strict=True)
-            texts = [own.converted(each).initializer for own, each in given]
-            return Value(kind, literal(kind, texts))
+            given = [*zip(values, kind.members.items(), strict=True)]
+            texts = [own.converted(each).initializer for own, (_, each) in given]
+            views = {f".{name}": own.places for own, (name, _) in given}
+            return self._named(kind, literal(kind, texts), views)
         return self._standard(name, values)
 
     def _taken(
@@ -399,15 +436,16 @@ class Expressions:
         own = self.translator.function(home, found)
         self.uses_arena |= own.uses_arena
         texts = ["arena"] * own.uses_arena
+        given = {}
         for each, (name, kind) in zip(node.args, own.parameters.items(), strict=True):
             value = self.value(each).converted(kind)
             known = not self.translator.plan.get(value.kind.tag) or value.is_plan
             self.require(known, each, "is another one than the plan's")
             texts.append(self._address(value, each) if value.kind.is_named else value.text)
-            given = ast.unparse(each)
-            places = [place for place in own.written if place.partition(".")[0] == name]
-            self.written |= {given + place.removeprefix(name) for place in places}
-        return Value(own.result, f"{own.name}({', '.join(texts)})")
+            given[name] = value.places
+        self.written |= _inserted(own.written, given)
+        views = {member: _inserted(places, given) for member, places in own.views.items()}
+        return self._named(own.result, f"{own.name}({', '.join(texts)})", views)
 
     def _address(self, value: Value, node: ast.expr) -> str:
         """Return the address of a struct."""

@@ -180,6 +180,8 @@ class Function(Expressions):
         self.require(self.result is VOID or _LEFT in left, self.node, "may end without a result")
         if self._takes and _LEFT not in left:
             self.lines.append("arena_leave(arena, &mark);")
+        self.written = {own for place in self.written for own in self.sources(place)}
+        self.views = {place: self.sources(f"return{place}") for place in _arrays(self.result)}
         about = f"{self.about}\n\n{self.module.path}: {self.node.name}"
         self.text = self.written_out(about, self.lines)
 
@@ -284,6 +286,7 @@ class Function(Expressions):
     def _return(self, node: ast.expr | None) -> None:
         """Return a value, and give back what the function has taken."""
         own = self.value(node).converted(self.result) if node else Value(VOID, "")
+        self.aliases.setdefault("return", set()).update(own.places)
         if self._takes and not re.fullmatch(r"[\w.-]*", own.text):
             self.lines.append(f"const {self.result.tag} own_result = {own.initializer};")
             own = Value(VOID, "own_result")
@@ -320,9 +323,9 @@ class Function(Expressions):
                         self._store(each, "=", Value(value.kind.element, f"{own}.at[{i}]"))
             case ast.Name(id=name):
                 self._write(name, target, sign, value)
-            case ast.Subscript(value=owner):
-                self.written.add(ast.unparse(owner))
+            case ast.Subscript():
                 whole = self.value(target)
+                self.written |= whole.places
                 text = value.converted(whole.kind.element or whole.kind).text
                 if whole.kind.axes:
                     self.require(sign == "=", target, "is an array")
@@ -337,6 +340,7 @@ class Function(Expressions):
     def _write(self, name: str, target: ast.expr, sign: str, value: Value) -> None:
         """Translate the writing of a variable, which is declared where it is first written."""
         kind = self.kinds.setdefault(name, value.kind)
+        self.aliases.setdefault(name, set()).update(value.places)
         own = c_word(name)
         if sign != "=":
             self.value(target)
@@ -350,6 +354,14 @@ class Function(Expressions):
         text = value.converted(kind).initializer
         self.lines.append(f"\0{len(self._is_const)} {kind.tag} {own} = {text};")
         self._is_const.append(True)
+
+
+def _arrays(kind: Kind, place: str = "") -> Iterator[str]:
+    """List the arrays of a type: itself, or members, after a dot each."""
+    if kind.axes:
+        yield place
+    for name, own in kind.members.items():
+        yield from _arrays(own, f"{place}.{name}")
 
 
 def _numbered(own: Function, parts: list[Function]) -> str:

@@ -208,6 +208,26 @@ def fill(values: Vector) -> None:
     values[0] += 1.0
 
 
+@compiled
+def aliased(data: Vector, other: Vector, views: Views) -> float:
+    """Write the data by another name, a row of views by two others; the other array is read."""
+    flags = data
+    flags[0] = 3.0
+    own = views_of(data, data.size // 2)
+    made = Views(other, views.rows, 0.5)
+    rows = made.rows
+    rows[0][0] = made.data[0] + own.rate
+    return flags[0]
+
+
+@compiled
+def behind(data: Vector, n: int) -> float:
+    """Write through a view that another kernel returns."""
+    part = views_of(data, n).rows
+    fill(part[0])
+    return data[n]
+
+
 @released
 def views(data: Vector, n: int) -> float:
     own = views_of(data, n)
@@ -280,6 +300,7 @@ CALLS: list[tuple[Any, ...]] = [
     *(("once", np.array([k, 0])) for k in (-5, 3, 9)),
     *(("whole", i, j) for i in (7, -7, 0) for j in (3, -2, 1)),
     ("constants", 0.3),
+    ("behind", RNG.random(6), 2),
     *(("scratch", n) for n in (1, 50, 300)),
 ]
 
@@ -330,10 +351,14 @@ def test_a_closed_array_is_read_and_never_written(both: tuple[Any, Any]) -> None
         ("fill", closed),
         ("shift", views),
         ("change", views, 1.0),
+        ("aliased", closed, np.ones(2), views),
+        ("aliased", np.ones(2), np.ones(2), both[0].Views(np.ones(2), closed.reshape(2, 2), 0.5)),
+        ("behind", closed, 2),
     ):
         with pytest.raises(TypeError, match="is read-only"):
             getattr(both[1], f"own_{name}")(*arguments)
     assert closed.tolist() == [1.0] * 4
+    assert both[1].own_aliased(np.ones(2), closed, views) == 3.0  # which it reads alone
 
 
 REFUSED = [
