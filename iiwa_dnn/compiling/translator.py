@@ -127,7 +127,11 @@ class Function(Expressions):
     """
 
     def __init__(
-        self, translator: Translator, module: Module, node: ast.FunctionDef, like: Function | None
+        self,
+        translator: Translator,
+        module: Module,
+        node: ast.FunctionDef,
+        like: Function | None = None,
     ) -> None:
         """Read name and types of a function; without annotations it enters as another does."""
         of = translator.kinds.of

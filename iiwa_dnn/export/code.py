@@ -13,7 +13,7 @@ import numpy as np
 from iiwa_dnn.compiling.binding import prelude
 from iiwa_dnn.compiling.expressions import Value
 from iiwa_dnn.compiling.library import Entry, source_of
-from iiwa_dnn.compiling.sources import TranslationError, c_name
+from iiwa_dnn.compiling.sources import Module, TranslationError, c_name
 from iiwa_dnn.compiling.translator import Function, Translator
 from iiwa_dnn.control import shield as shields
 from iiwa_dnn.control.controller import Controller
@@ -209,7 +209,7 @@ class _Code:
     def _part(self, address: int) -> int:
         """Translate the function at an address, once; return its number."""
         if address not in self._numbers:
-            like = self._translated(Entry.prototypes[address])
+            like = Function(self._translator, *self._found(Entry.prototypes[address]))
             self._parts.append(self._translated(Entry.functions[address], like))
             self._numbers[address] = len(self._parts)
         return self._numbers[address]
@@ -219,13 +219,17 @@ class _Code:
         own = self._translated(source_of(kernel))
         return f"{own.name}({'&arena, ' * own.uses_arena}"
 
+    def _found(self, function: Any) -> tuple[Module, Any]:
+        """Return the module of a function of the package or of a user's, and its definition."""
+        own = function.__module__.startswith("iiwa_dnn.")
+        file = None if own else Path(inspect.getfile(function))
+        module = self._translator.package.module(function.__module__, file)
+        return module, module.names[function.__qualname__]
+
     def _translated(self, function: Any, like: Function | None = None) -> Function:
-        """Translate a function of the package or of a user's, or raise an InvalidInputError."""
+        """Translate a function, or raise an InvalidInputError."""
         try:
-            own = function.__module__.startswith("iiwa_dnn.")
-            file = None if own else Path(inspect.getfile(function))
-            module = self._translator.package.module(function.__module__, file)
-            return self._translator.function(module, module.names[function.__qualname__], like)
+            return self._translator.function(*self._found(function), like)
         except (
             AttributeError,
             KeyError,
