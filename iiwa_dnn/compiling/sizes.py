@@ -157,7 +157,9 @@ class Reading:
     def _need(self, last: Known, beyond: str, size: str) -> None:
         """Note that an axis needs a size, that of its last place and what is beyond."""
         if isinstance(last, Extent) and last.high != size:
-            self.needs[" || ".join([*self._guards, f"{last.high}{beyond} <= {size}"])] = None
+            need = " || ".join([*self._guards, f"{last.high}{beyond} <= {size}"])
+            if "INT64_MAX" not in need:  # of a size that is not known
+                self.needs[need] = None
 
     def _called(self, function: ast.expr, arguments: list[Known]) -> Known:
         """Return what is known of the result of a call; note what a kernel that is called needs."""
