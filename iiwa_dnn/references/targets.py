@@ -38,7 +38,8 @@ class Target:
 
         Args:
             position: Desired position [m], (3,), or a pose that stands for position and rotation.
-            rotation: Desired orientation, (3, 3); by default the identity.
+            rotation: Desired orientation, (3, 3); by default the identity. One that was rounded,
+                to three digits at least, stands for the nearest rotation.
             linear_velocity: Desired linear velocity [m/s], (3,).
             angular_velocity: Desired angular velocity [rad/s], (3,).
 

@@ -42,9 +42,9 @@ def load_robot(
 ) -> Robot:
     """Load a robot by its name, from a URDF file or from a Pinocchio model.
 
-    Limits are the source's; a ``velocity`` of 0 stands for "not given": no velocity limit. Joints
-    that move neither the tip nor one of `frames` are held still; unless the robot is one of a known
-    name, a warning says which.
+    Limits are the source's; a ``velocity`` of 0 stands for "not given": no velocity limit. So do 0
+    and nothing of ``acceleration`` and ``jerk``. Joints that move neither the tip nor one of
+    `frames` are held still; unless the robot is one of a known name, a warning says which.
 
     Args:
         source: A name out of `available_robots`, the path of a file (a `Path`, or a string that
