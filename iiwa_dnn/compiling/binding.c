@@ -83,7 +83,7 @@ static inline bool is_tuple(PyObject *object, Py_ssize_t size)
     return false;
 }
 
-static PyObject *too_small(const char *name)
+static inline PyObject *too_small(const char *name)
 {
     PyErr_Format(PyExc_ValueError, "%s: an array is too small for the other arguments", name);
     return NULL;
