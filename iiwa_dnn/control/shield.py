@@ -57,6 +57,7 @@ from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.limits import (
     MotionLimits,
     Periods,
+    arriving,
     braking,
     constant_periods,
     joint_bounds,
@@ -244,12 +245,12 @@ def come_nearer(
     state.flags[CUTS] = 0.0
     for i in range(n):
         wish = state.wish[i]
+        left = wish - state.positions[i]
         above = limits[n + i] - state.positions[i]
         below = state.positions[i] - limits[i]
         rates = (limits[2 * n + i], limits[3 * n + i], limits[4 * n + i], limits[5 * n + i])
         most = CUT * min(rates[0], FASTEST)
         if reaches:
-            left = wish - state.positions[i]
             above = left if left >= 0.0 else np.inf
             below = -left if left < 0.0 else np.inf
             wish = min(max(left / periods.hold, -most), most)
@@ -259,6 +260,7 @@ def come_nearer(
         lower, upper = joint_bounds(past[LAST, i], past[BEFORE, i], above, below, rates, periods)
         if reaches:
             wish = min(max(wish, lower), upper)
+            wish = arriving(past[LAST, i], past[BEFORE, i], left, wish, rates, periods)
         elif held or wish < lower or wish > upper:
             wish += braking(past[LAST, i] - wish, -np.inf, np.inf, limits[4 * n + i], periods)
         dq[i] = wish

@@ -531,6 +531,25 @@ def _easing(room: float, hold: float) -> float:
 
 
 @compiled
+def arriving(
+    last: float, before: float, left: float, wanted: float, rates: Rates, periods: Periods
+) -> float:
+    """Compute the velocity with which a joint comes to rest at a position itself.
+
+    A joint that is all but at rest halves what is left in each period, if its jerk limit allows
+    this period's change and the next one's; else the velocity is the wanted one.
+    """
+    _, accel, jerk, _ = rates
+    dt = periods.dt
+    eased = _easing(left, periods.hold)
+    turn = max(abs(eased - 2.0 * last + before), abs((EASE + 1.0) * eased - last))
+    most = min(jerk * dt * dt, accel * dt)
+    if jerk < np.inf and max(turn, abs(eased)) <= most and abs(eased - last) <= accel * dt:
+        return eased
+    return wanted
+
+
+@compiled
 def braking(last: float, lb: float, ub: float, jerk: float, periods: Periods) -> float:
     """Compute the command in [lb, ub] that comes to rest quickest, without turning round."""
     wanted = 0.0
