@@ -6,6 +6,9 @@ from typing import Any
 KINDS = ("position", "velocity", "acceleration", "jerk")
 """Kinds of a joint's bound; the code of one in commands and records is its place here, from 1."""
 
+RAMP = "position-dependent velocity"
+"""The limit that is zero before a position limit, and counts in its place."""
+
 ACTIONS = {2: "slow", 3: "relax", 4: "stop", 5: "euler"}
 """Actions at a step in place of the network's answer by their codes in commands and records."""
 
@@ -52,13 +55,19 @@ def in_the_way(
     """Return the names of bounds and rows, as `describe` takes them.
 
     Args:
-        settings: Settings of the run, with its inequality rows.
+        settings: Settings of the run, with its inequality rows, and the numbers of joints whose
+            velocity limit depends on the position.
         codes: Codes of the joints' bounds, 0 for none, (n,).
         rows: Other than 0 for an inequality row that is meant, (m,).
     """
     words = bound_words(settings)
     joints = settings.get("joints", ())
-    bounds = [bound_name(j, int(code), words, joints) for j, code in enumerate(codes) if code]
+    ramps = settings.get("ramps", ())
+    bounds = [
+        bound_name(j, int(code), (RAMP, *words[1:]) if j in ramps else words, joints)
+        for j, code in enumerate(codes)
+        if code
+    ]
     named = settings.get("rows") or ()
     return bounds + [row for row, acts in zip(named, rows, strict=True) if acts]
 
@@ -68,7 +77,7 @@ def describe(limit: Mapping[str, Any]) -> str:
     if "row" in limit:
         about = f" ({limit['about']})" if "about" in limit else ""
         return f"row {limit['row']} of {limit['part']}{about}"
-    end = " limit" if limit["limit"] in KINDS else ""
+    end = " limit" if limit["limit"] in (*KINDS, RAMP) else ""
     joint = limit.get("name", f"joint {limit['joint']}")
     return f"{joint} {limit['side']} {limit['limit']}{end}"
 

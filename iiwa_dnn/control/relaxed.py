@@ -92,7 +92,7 @@ class Yielding(NamedTuple):
 
     Attributes:
         weights: Weight of each task row, (p,); 0 for a row that is a limit.
-        limits: Numbers of the acceleration and jerk limits, `MotionLimits.numbers`, (6 dof,);
+        limits: Numbers of the acceleration and jerk limits, `MotionLimits.numbers`, (8 dof,);
             empty where there are none.
         settings: Constants with which the network settles, ``[tol, budget]``, (2,).
         scenes: Beginning and end, among the constants of all parts, of those of each scene that

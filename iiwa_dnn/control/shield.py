@@ -61,6 +61,7 @@ from iiwa_dnn.schemes.limits import (
     braking,
     constant_periods,
     joint_bounds,
+    joint_rates,
     positive_rates,
     stated_periods,
 )
@@ -235,7 +236,7 @@ def come_nearer(
     Args:
         state: The request, and where the joints are.
         past: `ControllerState.past`, (8 + k, n).
-        limits: `MotionLimits.numbers`, (6 n,).
+        limits: `MotionLimits.numbers`, (8 n,).
         periods: Periods of the step.
         reaches: Whether the request is one for positions.
         held: Whether it is that of the last step.
@@ -248,11 +249,12 @@ def come_nearer(
         left = wish - state.positions[i]
         above = limits[n + i] - state.positions[i]
         below = state.positions[i] - limits[i]
-        rates = (limits[2 * n + i], limits[3 * n + i], limits[4 * n + i], limits[5 * n + i])
+        rates = joint_rates(limits, n, i)
         most = CUT * min(rates[0], FASTEST)
         if reaches:
             above = left if left >= 0.0 else np.inf
             below = -left if left < 0.0 else np.inf
+            rates = (rates[0], rates[1], rates[2], rates[1], np.inf, 0.0)
             wish = min(max(left / periods.hold, -most), most)
         elif abs(wish) > most:
             wish = math.copysign(most, wish)
@@ -415,7 +417,7 @@ class Shield:
         dt: Control period [s].
         longest_period: Longest control period where periods vary [s]; None: they do not.
         limits: Limits that every command keeps.
-        motion: Their numbers for the joints, `MotionLimits.numbers`, (6 n,).
+        motion: Their numbers for the joints, `MotionLimits.numbers`, (8 n,).
         settings: Control period [s], timeout [s], tracking error [rad], delay [s], (4,).
     """
 

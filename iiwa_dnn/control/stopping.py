@@ -113,7 +113,7 @@ def least_periods(x: Vector, before: Vector, limits: Vector, dt: float, cubic: b
     Args:
         x: Velocities of now [rad/s], (n,).
         before: Velocities of the period before [rad/s], (n,).
-        limits: Constants of the acceleration and jerk limits, (6 n,).
+        limits: Constants of the acceleration and jerk limits, (8 n,).
         dt: Control period [s].
         cubic: Whether a jerk is limited.
 
@@ -199,24 +199,21 @@ def keeps_joint_limits(motion: Motion, q: Vector, limits: Vector, dt: float) -> 
         fastest = limits[2 * n + i] * (1.0 + SLACK)
         if 0.0 < u < 1.0 and abs(velocity_at(x, b, u, True)) > fastest:
             return False
-        if limits[5 * n + i] < limits[3 * n + i] and not keeps_ramp(motion, q, limits, dt, i):
+        if limits[7 * n + i] > 0.0 and not keeps_ramp(motion, q, limits, dt, i):
             return False
     return True
 
 
 @compiled
 def keeps_ramp(motion: Motion, q: Vector, limits: Vector, dt: float, i: int) -> bool:
-    """Test whether joint i of those at q (n,) [rad] has room to brake all along a motion to rest.
-
-    Its velocity limit shrinks towards its position limits: elsewhere it may brake harder than its
-    deceleration, there not later.
-    """
+    """Test whether joint i of those at q (n,) [rad] keeps its position-dependent velocity limit."""
     n = q.size
     at = q[i]
     for k in range(int(motion.periods)):
         x = velocity_at(motion.first[i], motion.bend[i], k / motion.periods, motion.cubic)
         left = limits[n + i] - at if x > 0.0 else at - limits[i]
-        if x * x > 2.0 * limits[5 * n + i] * max(left, 0.0) * (1.0 + SLACK):
+        needed = x * x / (2.0 * limits[6 * n + i]) + abs(x) * limits[7 * n + i]
+        if needed > max(left, 0.0) * (1.0 + SLACK):
             return False
         at += dt * x
     return True

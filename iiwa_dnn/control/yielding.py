@@ -45,7 +45,7 @@ from iiwa_dnn.qp.dense import row_dot, times
 from iiwa_dnn.qp.layout import QPViews, copied, qp_views
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.limits import braking, constant_periods
+from iiwa_dnn.schemes.limits import NUMBERS, braking, constant_periods
 from iiwa_dnn.schemes.program import ProgramArrays, StepProgram
 
 NONE, SLOW, RELAX, STOP, _ = map(int, Action)
@@ -90,7 +90,7 @@ def make_yielding(program: StepProgram, tol: float, dt: float, alike: bool) -> Y
         np.array(scenes, dtype=np.int64).reshape(-1, 2),
         dt,
         constant_periods(dt),
-        bool((limits.reshape(6, -1)[4] < np.inf).any()),
+        bool((limits.reshape(NUMBERS, -1)[4] < np.inf).any()),
         bool((weights == 0.0).any()),
         alike,
     )
@@ -206,7 +206,7 @@ def _note_decision(
 @compiled
 def _widen_bounds(qp: QPViews, limits: Vector, q: Vector) -> None:
     """Replace bounds that acceleration limits have narrowed by those of position and velocity."""
-    dof = limits.size // 6
+    dof = limits.size // NUMBERS
     for i in range(dof):
         fastest = limits[2 * dof + i]
         qp.lb[i] = min(max(POSITION_GAIN * (limits[i] - q[i]), -fastest), fastest)

@@ -27,9 +27,15 @@ brakes no less: for that, A' = A - J' dt leaves room for one step of jerk, and J
 A / (8 dt) and dq_max / (8 dt^2). Samples are above that way by `MARGIN` at most, which is kept free
 at either end. A joint needs a range to turn round in, with J' too (`check_ranges`).
 
-**Ramps.** Where velocity limits shrink towards position limits (`Robot.ramps`), a command leaves
-room to brake at a deceleration B below that of the ramp, D, to a point before the position limit
-(`braking_room`). It can, since it may brake harder.
+**Periods that vary** up to T (`Periods`): a velocity that may be held for h is within the distance
+d of a limit if :math:`v h + v^2 / (2 A) \le d`, and with a jerk limit if h v and the continuous way
+to rest after it are. That is kept whatever period comes next (docs/theory.md).
+
+**Position-dependent velocity limits** (`Robot.ramps`) are zero at :math:`o^2 / (2 D)` before a
+position limit. At the distance x from there one admits v if :math:`v^2 / (2 D) + v\,o / D \le x`,
+the same law with o / D in place of h. With a jerk limit a way to rest at a deceleration B < D that
+ends :math:`(o / D)^2 B D / (2 (D - B))` before that point is below the limit all along; of several
+B the one that admits most counts, as a joint may go on with its own.
 
 Sources: A. Del Prete, "Joint position and velocity bounds in discrete-time acceleration/torque
 control of robot arms", IEEE Robotics and Automation Letters 3(1), 2018, for the second order. The
@@ -69,9 +75,6 @@ EASE = 0.5
 REST = 0.25
 """Where a joint that is pressed against a limit comes to rest, like `MARGIN`, and just inside."""
 
-TANGENT = 1.0
-"""Speed at which the parabola of braking touches a ramp [rad/s]."""
-
 SHARE = 8.0
 """Steps of jerk at least that braking takes to its full deceleration."""
 
@@ -81,9 +84,19 @@ STATED = 4
 HALVINGS = 20
 """Halvings of the range of a command that is to end at a position limit."""
 
-Rates = tuple[float, float, float, float]
-"""Largest velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of a joint, inf for none; and
-the deceleration for which there is room before its position limits [rad/s^2]."""
+NUMBERS = 8
+"""Numbers of a joint in `MotionLimits.numbers`: position limits, and `Rates`."""
+
+LEVELS = 15
+"""Decelerations that are tried below a position-dependent velocity limit."""
+
+LOWER = 0.7
+"""Each of them in units of the one before."""
+
+Rates = tuple[float, float, float, float, float, float]
+"""Largest velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of a joint, inf for none; the
+deceleration for which there is room before its position limits [rad/s^2]; and of its
+position-dependent velocity limit the deceleration D [rad/s^2], inf for none, and o / D [s]."""
 
 
 class Periods(NamedTuple):
@@ -283,6 +296,19 @@ def own_rate_limits(robot: Robot) -> tuple[RateLimits, ...]:
 
 
 @compiled
+def joint_rates(numbers: Vector, n: int, i: int) -> Rates:
+    """Return the rates of joint i of n, from `MotionLimits.numbers`, (8 n,)."""
+    return (
+        numbers[2 * n + i],
+        numbers[3 * n + i],
+        numbers[4 * n + i],
+        numbers[5 * n + i],
+        numbers[6 * n + i],
+        numbers[7 * n + i],
+    )
+
+
+@compiled
 def motion_limits(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
@@ -294,15 +320,15 @@ def motion_limits(
     if not step.rate < np.inf:
         return
     n = step.q.size
-    limits = constants[: 6 * n].reshape(6, n)
-    stated = constants[6 * n :]
+    limits = constants[: NUMBERS * n].reshape(NUMBERS, n)
+    stated = constants[NUMBERS * n :]
     periods = constant_periods(1.0 / step.rate)
     if stated[0] > 0.0:
         periods = Periods(stated[0], stated[1], stated[2], stated[3], True)
     for i in range(n):
         above = limits[1, i] - step.q[i]
         below = step.q[i] - limits[0, i]
-        rates = (limits[2, i], limits[3, i], limits[4, i], limits[5, i])
+        rates = joint_rates(constants, n, i)
         lower, upper = joint_bounds(step.last[i], step.before[i], above, below, rates, periods)
         lb[i] = min(max(lb[i], lower), upper)
         ub[i] = min(max(ub[i], lower), upper)
@@ -323,16 +349,16 @@ class MotionLimits(Limit):
     couplings: tuple[JointCouplingTask, ...] = ()
 
     def constants(self, robot: Robot) -> Vector:
-        """Return `numbers`, and room for the first four numbers of `Periods`, (6 n + 4,).
+        """Return `numbers`, and room for the first four numbers of `Periods`, (8 n + 4,).
 
         These are 0 where periods are constant.
         """
         return np.concatenate([self.numbers(robot), np.zeros(STATED)])
 
     def numbers(self, robot: Robot) -> Vector:
-        """Return position, velocity, acceleration and jerk limits, and decelerations, (6 n,).
+        """Return position limits, and in further rows `Rates`, (8 n,).
 
-        The positions are those at which a joint that brakes at the deceleration has to rest.
+        The positions are those at which a position-dependent velocity limit is zero.
 
         Raises:
             InvalidInputError: A limit does not fit the robot, or a joint's range is too short to
@@ -349,47 +375,31 @@ class MotionLimits(Limit):
             for i in joints:
                 others = joints[joints != i]
                 rates[:, i] = np.minimum(rates[:, i], rates[:, others] @ shares[others] / shares[i])
-        braking, room = braking_room(robot.ramps, rates[1])
-        numbers: Vector = np.concatenate([lower + room, upper - room, *rates, braking])
+        offset, steepness = robot.ramps
+        with np.errstate(invalid="ignore"):  # a joint without a velocity limit
+            share = np.where(np.isinf(rates[0]), 1.0, rates[0] / (offset + rates[0]))
+        braking = np.minimum(rates[1], steepness * share)
+        lag = offset / steepness
+        room = 0.5 * offset * lag
+        ends = [lower + room, upper - room]
+        numbers: Vector = np.concatenate([*ends, *rates, braking, steepness, lag])
         check_ranges(numbers, np.inf)
         return numbers
-
-
-def braking_room(ramps: Matrix, acceleration: Vector) -> tuple[Vector, Vector]:
-    r"""Compute the deceleration and the distance before a position limit that keep a ramp.
-
-    A joint that rests at the distance K before the limit, from the velocity v at the deceleration
-    B, has the distance :math:`K + v^2 / (2 B)` from it. The ramp asks for
-    :math:`(v + o)^2 / (2 D)`, which is at most that for every v where
-    :math:`K = o^2 / (2 (D - B))`.
-
-    Args:
-        ramps: `Robot.ramps`: offset o [rad/s] and deceleration D [rad/s^2], (2, n).
-        acceleration: Largest acceleration [rad/s^2], (n,).
-
-    Returns:
-        B [rad/s^2], (n,); it is the ramp's tangent at `TANGENT` if the acceleration allows that.
-        K [rad], (n,).
-    """
-    offset, deceleration = ramps
-    braking = np.minimum(acceleration, deceleration * TANGENT / (offset + TANGENT))
-    with np.errstate(invalid="ignore"):  # of a joint without both
-        spare = deceleration - braking
-    # Without an offset the ramp is a parabola itself.
-    return braking, np.where(offset > 0.0, offset**2 / np.maximum(2.0 * spare, 1e-300), 0.0)
 
 
 def check_ranges(numbers: Vector, rate: float) -> None:
     """Raise InvalidInputError if a joint's range is too short to turn round in.
 
     Args:
-        numbers: `MotionLimits.numbers`, (6 n,).
+        numbers: `MotionLimits.numbers`, (8 n,).
         rate: Control periods a second [1/s]; inf for a jerk limit that braking may use in full.
     """
-    lower, upper, fastest, _, jerk, braking = numbers.reshape(6, -1)
+    lower, upper, fastest, _, jerk, braking, ramp, lag = numbers.reshape(NUMBERS, -1)
+    with np.errstate(invalid="ignore"):  # a joint without a position-dependent velocity limit
+        lost = np.where(lag > 0.0, lag**2 * ramp * braking / (ramp - braking), 0.0)
     usable = np.minimum(jerk, rate * np.minimum(braking, rate * fastest) / SHARE)
     steepest = np.minimum(braking, np.sqrt(2.0 * usable * fastest))
-    short = (jerk < np.inf) & (steepest**3 > usable**2 * (upper - lower))
+    short = (jerk < np.inf) & (steepest**3 > usable**2 * (upper - lower - lost))
     if short.any():
         i = int(np.flatnonzero(short)[0])
         step = f", and more cannot be used at {1.0 / rate:g} s a step" if rate < np.inf else ""
@@ -404,10 +414,10 @@ def largest_gain(numbers: Vector, rate: float) -> float:
     from one limit to the other (docs/limits.md).
 
     Args:
-        numbers: `MotionLimits.numbers`, (6 n,).
+        numbers: `MotionLimits.numbers`, (8 n,).
         rate: Control periods a second [1/s].
     """
-    _, _, fastest, acceleration, jerk, _ = numbers.reshape(6, -1)
+    _, _, fastest, acceleration, jerk, *_ = numbers.reshape(NUMBERS, -1)
     with np.errstate(invalid="ignore"):  # a joint without limits
         delay = np.fmin(acceleration / jerk, np.sqrt(fastest / jerk))
     return float(1.0 / (delay.max() + 1.0 / rate))
@@ -444,13 +454,16 @@ def joint_bounds(
         rates: Its limits.
         periods: Periods of the step.
     """
-    _, accel, jerk, _ = rates
+    _, accel, jerk, _, _, lag = rates
     above *= periods.share
     below *= periods.share
+    # Below a limit that shrinks, the way to rest is counted at the samples.
+    vary = periods.vary or lag > 0.0
+    own = Periods(periods.dt, periods.hold, periods.longest, periods.share, vary)
     if jerk < np.inf:
-        lower, upper = _jerk_bounds(last, before, above, below, rates, periods)
+        lower, upper = _jerk_bounds(last, before, above, below, rates, own)
     elif accel < np.inf:
-        lower, upper = _acceleration_bounds(last, above, below, rates, periods)
+        lower, upper = _acceleration_bounds(last, above, below, rates, own)
     else:
         return -np.inf, np.inf
     if lower <= upper:
@@ -470,17 +483,36 @@ def _acceleration_bounds(
     last: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where no jerk is limited."""
-    fastest, accel, _, deceleration = rates
+    fastest, accel, _, _, _, _ = rates
     first = last - accel * periods.dt
     final = last + accel * periods.dt
-    hold = periods.hold
-    unit = deceleration * hold
     above -= min(max(above, 0.0), ROUNDING)
     below -= min(max(below, 0.0), ROUNDING)
     # Outside of the range the way back is no quicker than the velocity limit.
-    upper = min(max(unit * approach(above / (unit * hold), periods.vary), -fastest), fastest)
-    lower = min(max(-unit * approach(below / (unit * hold), periods.vary), -fastest), fastest)
+    upper = min(max(_speed_within(above, rates, periods), -fastest), fastest)
+    lower = min(max(-_speed_within(below, rates, periods), -fastest), fastest)
     return min(max(lower, first), final), min(max(upper, first), final)
+
+
+@compiled
+def _speed_within(room: float, rates: Rates, periods: Periods) -> float:
+    """Compute the largest velocity [rad/s] from which a joint can brake within `room` [rad].
+
+    A position-dependent velocity limit is zero at its end, and bounds the velocity on the way.
+    """
+    _, accel, _, deceleration, ramp, lag = rates
+    hold = periods.hold
+    if lag > 0.0:
+        unit = ramp * (hold + lag)
+        speed = unit * approach(room / (unit * (hold + lag)), True)
+        # Where the limit shrinks by more than the joint can brake, it has to have braked before.
+        turn = accel * lag * ramp / (ramp - accel) if ramp > accel else np.inf
+        if speed > turn:
+            unit = accel * hold
+            speed = unit * approach((room - 0.5 * turn * lag) / (unit * hold), True)
+        return speed
+    unit = deceleration * hold
+    return unit * approach(room / (unit * hold), periods.vary)
 
 
 @compiled
@@ -488,7 +520,7 @@ def _jerk_bounds(
     last: float, before: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where the jerk is limited."""
-    fastest, accel, jerk, deceleration = rates
+    fastest, accel, jerk, deceleration, _, _ = rates
     dt = periods.dt
     longest = periods.longest
     slowest = last - accel * dt
@@ -501,17 +533,15 @@ def _jerk_bounds(
     change = jerk * dt * dt
     first = min(max(max(slowest, middle - change), bottom), top)
     final = min(max(min(quickest, middle + change), bottom), top)
-    jerk = min(jerk, min(deceleration / longest, fastest / (longest * longest)) / SHARE)
+    jerk = _usable_jerk(jerk, deceleration, fastest, longest)
     unit = jerk * dt * dt
     lb = min(max(last - unit * approach((last + fastest) / unit, periods.vary), first), final)
     ub = min(max(last + unit * approach((fastest - last) / unit, periods.vary), first), final)
     if lb > ub:
         lb = 0.5 * (lb + ub)
         ub = lb
-    margin = 0.0 if periods.vary else MARGIN * unit * dt
-    limit = deceleration - jerk * longest
-    upper = _ceiling(lb, ub, above - margin, last, periods, (jerk, limit))
-    lower = -_ceiling(-ub, -lb, below - margin, -last, periods, (jerk, limit))
+    upper = _ceiling(lb, ub, above, last, rates, periods)
+    lower = -_ceiling(-ub, -lb, below, -last, rates, periods)
     if lower < upper and max(abs(last), abs(last - before)) < unit:
         # Held at that bound, a joint at its margin would swing by it, 2 + sqrt(3) times as far in
         # each period (the zeros of a sampled triple integrator): all but at rest, it comes to rest.
@@ -539,7 +569,7 @@ def arriving(
     A joint that is all but at rest halves what is left in each period, if its jerk limit allows
     this period's change and the next one's; else the velocity is the wanted one.
     """
-    _, accel, jerk, _ = rates
+    _, accel, jerk, _, _, _ = rates
     dt = periods.dt
     eased = _easing(left, periods.hold)
     turn = max(abs(eased - 2.0 * last + before), abs((EASE + 1.0) * eased - last))
@@ -592,8 +622,14 @@ def stopping_distance(v: float, a: float, J: float, A: float) -> float:
 
 
 @compiled
-def highest(v: float, last: float, periods: Periods, J: float, A: float) -> float:
-    """Compute the highest position of the way to rest after command v, from that before it."""
+def highest(v: float, last: float, periods: Periods, way: tuple[float, float, float]) -> float:
+    """Compute the highest position of the way to rest after command v, from that before it.
+
+    The way has a jerk [rad/s^3] and a deceleration [rad/s^2]. A joint that brakes by more than the
+    third number [rad/s^2] counts as one that brakes by that.
+    """
+    J, A, most = way
+    last = min(last, v + most * periods.dt)
     dt = periods.dt
     a = (v - last) / dt
     start = dt * dt * a / 6.0
@@ -614,24 +650,56 @@ def highest(v: float, last: float, periods: Periods, J: float, A: float) -> floa
 
 
 @compiled
+def _usable_jerk(jerk: float, deceleration: float, fastest: float, period: float) -> float:
+    """Compute J', with which braking takes `SHARE` periods at least to a deceleration [rad/s^3]."""
+    return min(jerk, min(deceleration / period, fastest / (period * period)) / SHARE)
+
+
+@compiled
 def _ceiling(
+    lb: float, ub: float, room: float, last: float, rates: Rates, periods: Periods
+) -> float:
+    """Compute the largest command in [lb, ub] whose way to rest is within `room`, else lb.
+
+    Below a position-dependent velocity limit it ends before that by what the limit asks for beyond
+    the way at constant deceleration: the lower the deceleration, the less.
+    """
+    fastest, accel, jerk, deceleration, ramp, lag = rates
+    dt = periods.dt
+    most = np.inf
+    for level in range(LEVELS if lag > 0.0 else 1):
+        J = _usable_jerk(jerk, deceleration, fastest, periods.longest)
+        A = min(deceleration, accel - J * periods.longest)
+        end = room if periods.vary else room - MARGIN * (J * dt * dt) * dt
+        if lag > 0.0:
+            # One that brakes by more is behind on its way.
+            most = A
+            end -= 0.5 * lag * lag * ramp * A / (ramp - A)
+        way = (J, A, most)
+        if highest(ub, last, periods, way) <= end:
+            return ub
+        if level == 0 or highest(lb, last, periods, way) <= end:
+            lb = _largest_within(lb, ub, end, last, periods, way)
+        deceleration *= LOWER
+    return lb
+
+
+@compiled
+def _largest_within(
     lb: float,
     ub: float,
-    distance: float,
+    end: float,
     last: float,
     periods: Periods,
-    braking_limits: tuple[float, float],
+    way: tuple[float, float, float],
 ) -> float:
-    """Compute the largest command in [lb, ub] whose highest position is within `distance`, else lb.
+    """Compute the largest command in [lb, ub] whose highest position is within `end`, else lb.
 
-    The limits are those of jerk [rad/s^3] and acceleration [rad/s^2] on the way to rest.
+    The way to rest is that of `highest`.
     """
-    J, A = braking_limits
-    if highest(ub, last, periods, J, A) <= distance:
-        return ub
     for _ in range(HALVINGS):
         middle = 0.5 * (lb + ub)
-        if highest(middle, last, periods, J, A) <= distance:
+        if highest(middle, last, periods, way) <= end:
             lb = middle
         else:
             ub = middle

@@ -27,6 +27,7 @@ from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import MEET, CollisionAvoidance
 from iiwa_dnn.schemes.costs import KineticEnergy
 from iiwa_dnn.schemes.limits import (
+    NUMBERS,
     SHARE,
     MotionLimits,
     RateLimits,
@@ -456,7 +457,8 @@ class StepProgram:
         """Return what names in words need (`iiwa_dnn.naming.in_the_way`).
 
         ``rows`` has for each inequality row its part, its number in it from 1, and its name if any,
-        and ``bounding`` the limits that bound without a kind of their own (`naming.KINDS`).
+        ``bounding`` the limits that bound without a kind of their own (`naming.KINDS`), and
+        ``ramps`` the joints whose velocity limit depends on their position.
         """
         limits = self.scheme.limits
         rows: list[dict[str, object]] = []
@@ -470,7 +472,8 @@ class StepProgram:
             for limit in limits
             if not (limit.row_count(self.robot) or isinstance(limit, RateLimits))
         ]
-        return {"rows": rows, "bounding": names}
+        ramps = np.flatnonzero(np.isfinite(self.robot.ramps[1])).tolist()
+        return {"rows": rows, "bounding": names, "ramps": ramps}
 
 
 def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
@@ -563,7 +566,7 @@ class LimitNames:
         pairs = [pair for part in scenes for pair in part.scene(program.robot).pairs]
         self._pairs = [*zip(pairs, program.least.tolist(), strict=True)]
         numbers = (program.rate_limits or MotionLimits()).numbers(program.robot)
-        self._limits = numbers.reshape(6, -1)
+        self._limits = numbers.reshape(NUMBERS, -1)
 
     def off(self, q: Vector) -> list[str]:
         """State which relations of joints the positions q (n,) [rad] do not fulfil."""
@@ -619,11 +622,12 @@ class LimitNames:
                 joints whose lower bounds are meant they have the other sign.
         """
         _, last, before = past
-        _, _, velocity, acceleration, jerk, braking = self._limits
+        _, _, velocity, acceleration, jerk, braking, _, lag = self._limits
         dt, _, longest, _, vary = self.periods
         usable = np.fmin(braking / longest, velocity / longest**2) / SHARE
         unit = dt**2 * np.fmin(jerk, usable)
-        room = [approach(x, vary) for x in (velocity - last) / unit]
+        ways = zip((velocity - last) / unit, vary | (lag > 0.0), strict=True)
+        room = [approach(x, own) for x, own in ways]
         # The velocity after which the acceleration can still be taken back in time.
         fastest = np.where(jerk < np.inf, last + unit * room, velocity)
         by_jerk = 2.0 * last - before + dt**2 * jerk

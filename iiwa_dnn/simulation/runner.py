@@ -22,7 +22,7 @@ from iiwa_dnn.results.record import RATES, Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.limits import MotionLimits, RateLimits
+from iiwa_dnn.schemes.limits import NUMBERS, MotionLimits, RateLimits
 from iiwa_dnn.simulation.loop import Loop
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
 from iiwa_dnn.simulation.noise import NoiseEntry, SignalChain
@@ -190,7 +190,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     program = controller.program
     integrator = solver.settler if controller.mode == "converged" else solver.follower
     ends = [path.duration for path in by_frame(controller.reference, "").values()]
-    of_rates = (program.rate_limits or MotionLimits()).numbers(robot).reshape(6, -1)[3:5]
+    of_rates = (program.rate_limits or MotionLimits()).numbers(robot).reshape(NUMBERS, -1)[3:5]
     kept = dict(zip(RATES, of_rates, strict=True))
     limits: dict[str, Any] = {
         RATES[named.quantity]: kept[named.quantity]

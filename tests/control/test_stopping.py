@@ -19,7 +19,7 @@ JERK = (d.AccelerationLimits(), d.JerkLimits(500.0))
 
 def limits_of(jerk: float) -> np.ndarray:
     """Limits of three joints."""
-    return np.repeat([-3.0, 3.0, 3.0, 10.0, jerk, 10.0], 3)
+    return np.repeat([-3.0, 3.0, 3.0, 10.0, jerk, 10.0, np.inf, 0.0], 3)
 
 
 def way_to_rest(x: np.ndarray, before: np.ndarray, jerk: float, dt: float) -> np.ndarray:

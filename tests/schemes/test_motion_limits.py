@@ -34,7 +34,7 @@ def adversary(q: float, upper: float, limits: Any, dt: float, draws: Any, out: A
     last = before = room = wish = 0.0
     mode, left = 0, 0
     for k in range(len(out)):
-        lb, ub = joint_bounds(last, before, upper - q, q + upper, (V, A, J, A), periods)
+        lb, ub = joint_bounds(last, before, upper - q, q + upper, (V, A, J, A, INF, 0.0), periods)
         room = min(room, ub - lb)
         if left == 0:
             mode, left = int(4.0 * draws[k, 0]), 1 + int(400.0 * draws[k, 1])
@@ -99,7 +99,9 @@ def test_outside_a_short_range_a_joint_does_not_come_back_beyond_its_other_side(
     dt, limits = 1e-2, (2.0, 5.0, INF)
     q, last = 0.3, 0.0  # above a range of 1 mrad
     for _ in range(300):
-        lb, ub = joint_bounds(last, 0.0, -q, q + 1e-3, (*limits, limits[1]), constant_periods(dt))
+        lb, ub = joint_bounds(
+            last, 0.0, -q, q + 1e-3, (*limits, limits[1], INF, 0.0), constant_periods(dt)
+        )
         assert lb <= ub
         last = lb
         q += dt * last
@@ -123,7 +125,7 @@ def test_a_range_that_is_taken_is_long_enough(speed, acceleration, jerk, dt, upp
     limits = (speed, acceleration, jerk)
     while True:
         try:
-            check_ranges(np.array([-upper, upper, *limits, acceleration]), 1.0 / dt)
+            check_ranges(np.array([-upper, upper, *limits, acceleration, INF, 0.0]), 1.0 / dt)
             break
         except d.InvalidInputError:
             upper *= 1.02
@@ -141,7 +143,7 @@ def hostile_periods(meaning: str, random: Any, steps: int) -> tuple[float, float
     V, A = 10.0 ** random.uniform(-0.5, 1.0), 10.0 ** random.uniform(0.0, 2.0)
     J = 10.0 ** random.uniform(2.0, 4.5) if random.random() < 0.5 else INF
     braking_at = A * random.choice([1.0, 0.5])
-    rates = (V, A, J, braking_at)
+    rates = (V, A, J, braking_at, INF, 0.0)
     upper = 0.2 + 2.0 * A**3 / min(J, 1e9) ** 2
     mode = random.integers(3)
     q = last = before = slope = 0.0
@@ -172,6 +174,40 @@ def hostile_periods(meaning: str, random: Any, steps: int) -> tuple[float, float
     return beyond, rate
 
 
+@pytest.mark.parametrize("meaning", ["constant", "dt", "elapsed", "neither"])
+@pytest.mark.parametrize("jerk", [INF, 3e3])
+def test_a_limit_that_shrinks_is_kept_whatever_period_comes(meaning: str, jerk: float) -> None:
+    """At the position at which a command begins, and at the one where it ends."""
+    random = np.random.default_rng(4)
+    for _ in range(12):
+        longest = 10.0 ** random.uniform(-3.0, -1.6)
+        V, A = 10.0 ** random.uniform(0.0, 0.5), 10.0 ** random.uniform(0.7, 1.3)
+        offset, steepness = random.uniform(0.1, 0.5), 10.0 ** random.uniform(0.3, 1.3)
+        lag, room = offset / steepness, offset**2 / (2.0 * steepness)
+        rates = (V, A, jerk, min(A, steepness * V / (V + offset)), steepness, lag)
+        q = last = before = 0.0
+        stated = passed = longest
+        push, worst = 1, 0.0
+        for k in range(400):
+            push = random.choice([-1, 1, 1]) if k % 80 == 0 else push
+            period = longest * random.choice([1e-2, random.random() + 1e-3, 1.0])
+            if meaning == "constant":
+                period = longest
+            own = passed if meaning == "elapsed" else period if meaning == "dt" else longest
+            before = last - own / stated * (last - before)
+            said = (period if meaning == "dt" else None, passed if meaning == "elapsed" else None)
+            periods = stated_periods(longest, None if meaning == "constant" else longest, *said)
+            v = joint_bounds(last, before, 1.5 - q, 1.5 + q, rates, periods)[int(push > 0)]
+            for at in (q, q + period * v):
+                most = np.sqrt(2.0 * steepness * max(1.5 - np.sign(v) * at + room, 0.0)) - offset
+                worst = max(worst, abs(v) - max(most, 0.0))
+            stated, passed = own, period
+            q += period * v
+            before, last = last, v
+        assert worst < 1e-9
+        assert abs(q) <= 1.5
+
+
 @pytest.mark.parametrize("meaning", ["dt", "elapsed", "neither"])
 def test_no_limit_is_passed_whatever_period_comes(meaning: str) -> None:
     random = np.random.default_rng(2)
@@ -192,7 +228,7 @@ def stopping_room(v: float, step: float) -> float:
 @given(above=st.floats(0.0, 1.0), last=st.floats(-1.0, 1.0))
 def test_acceleration_bounds_are_the_exact_kernel(above: float, last: float) -> None:
     dt, A, V = 1e-2, 5.0, 2.0
-    lb, ub = joint_bounds(last, 0.0, above, INF, (V, A, INF, A), constant_periods(dt))
+    lb, ub = joint_bounds(last, 0.0, above, INF, (V, A, INF, A, INF, 0.0), constant_periods(dt))
     at_most = min(V, last + A * dt)
     assert lb == pytest.approx(max(-V, last - A * dt))
     if stopping_room(last - A * dt, A * dt) * dt > above:
@@ -211,7 +247,7 @@ def test_a_joint_pressed_against_its_limit_comes_to_rest(speed, jerk, dt) -> Non
     commands = []
     for _ in range(int(9.0 / dt)):
         lb, ub = joint_bounds(
-            last, before, -q, INF, (speed, 10.0, jerk, 10.0), constant_periods(dt)
+            last, before, -q, INF, (speed, 10.0, jerk, 10.0, INF, 0.0), constant_periods(dt)
         )
         before = last
         last = min(max(speed, lb), ub)
@@ -231,7 +267,7 @@ def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
         wish = min(max(-gain * (q + noise[k]), -V), V)
         change = min(max(wish - wished, -A * dt), A * dt)
         wished = wish
-        lb, ub = joint_bounds(last, before, 1e3, 1e3, (V, A, J, A), periods)
+        lb, ub = joint_bounds(last, before, 1e3, 1e3, (V, A, J, A, INF, 0.0), periods)
         v = wish + braking(last - wish + change, lb - wish, ub - wish, J, periods)
         before, last = last, min(max(v, lb), ub)
         q += dt * last
@@ -246,7 +282,9 @@ def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
 @pytest.mark.parametrize("dt", [1e-3, 4e-3])
 def test_a_loop_is_stable_up_to_the_largest_gain(limits: Any, dt: float) -> None:
     speed, acceleration, jerk = limits
-    gain = largest_gain(np.array([-1.0, 1.0, speed, acceleration, jerk, acceleration]), 1.0 / dt)
+    gain = largest_gain(
+        np.array([-1.0, 1.0, speed, acceleration, jerk, acceleration, INF, 0.0]), 1.0 / dt
+    )
     calm = np.zeros(int(30.0 / dt))
     noise = 1e-4 * np.random.default_rng(0).standard_normal(calm.size)
     for start in (1e-3, 0.1, 2.0):
@@ -292,7 +330,7 @@ def test_a_robots_own_rates_are_those_that_it_has() -> None:
     for name, expected in kinds.items():
         robot = d.load_robot(name)
         assert tuple(map(type, own_rate_limits(robot))) == expected
-        rates = d.Shield(robot).motion.reshape(6, -1)[3:5]
+        rates = d.Shield(robot).motion.reshape(8, -1)[3:5]
         np.testing.assert_array_equal(rates, [robot.ddq_max, robot.dddq_max])
     assert own_rate_limits(d.load_robot("iiwa7").with_limits(acceleration=np.inf)) == ()
 
