@@ -134,10 +134,13 @@ def degenerate(rng: np.random.Generator) -> QP:
     return QP(P, q, G, G @ x + slack, A, A @ x, -np.ones(n), np.ones(n))
 
 
-def with_point(rng: np.random.Generator, flat: bool = False) -> tuple[QP, Vector]:
+def with_point(
+    rng: np.random.Generator, flat: bool = False, room: float = 1.0
+) -> tuple[QP, Vector]:
     """A program of 2 to 12 variables and its KKT point [x | y | z | z_box]; if flat, a linear one.
 
-    Up to n constraints are active, with multipliers between 0.1 and 2.
+    Up to n constraints are active, with multipliers between 0.1 and 2; the others leave about as
+    much room as said.
     """
     n = int(rng.integers(2, 13))
     p = int(rng.integers(0, n // 2 + 1))
@@ -148,12 +151,12 @@ def with_point(rng: np.random.Generator, flat: bool = False) -> tuple[QP, Vector
     multipliers = np.zeros(m + n)
     active = rng.permutation(m + n)[: n - p]
     multipliers[active] = rng.uniform(0.1, 2.0, active.size)
-    slack = np.where(multipliers > 0.0, 0.0, 0.1 + rng.exponential(size=m + n))
+    slack = np.where(multipliers > 0.0, 0.0, room * (0.1 + rng.exponential(size=m + n)))
     y = rng.standard_normal(p)
     z, z_box = np.split(multipliers, [m])
     q = -(P @ x + rows.T @ np.concatenate([y, z]) + z_box)
     h = rows[p:] @ x + slack[:m]
-    qp = QP(P, q, rows[p:], h, rows[:p], rows[:p] @ x, x - 1.0, x + slack[m:])
+    qp = QP(P, q, rows[p:], h, rows[:p], rows[:p] @ x, x - room, x + slack[m:])
     return qp, np.concatenate([x, y, z, z_box])
 
 

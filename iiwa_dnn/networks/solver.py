@@ -14,6 +14,7 @@ from iiwa_dnn.networks.integrators.base import CompiledAnswer, enter_answer
 from iiwa_dnn.networks.integrators.explicit import follow
 from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.networks.integrators.scaling import (
+    LARGE,
     Scaling,
     balanced,
     is_ordinary,
@@ -125,8 +126,9 @@ class DNNSolver:
         """Advance the network until it has settled, and judge the point it has reached.
 
         If it does not settle and no certificate is found, it starts once more, from zero, in units
-        in which nothing of the program stands out, and goes on in those of the program. If the
-        largest entry of the cost or of a row is below 1e-3 or above 1e3, it begins with the former.
+        in which nothing of the program stands out, with the cost at 1e3 and then at 1, and goes on
+        in those of the program. If the largest entry of the cost or of a row is below 1e-3 or above
+        1e3, it begins in scaled units.
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).
@@ -135,17 +137,17 @@ class DNNSolver:
             The solution; `found` only if P is convex and `QP.accepts` the point. Its iterations are
             the linear systems of all attempts, at most those of the settler.
         """
-        plan = [False, True, False] if is_projection(self.network) else [False]
+        plan = [None, LARGE, 1.0, None] if is_projection(self.network) else [None]
         if not is_ordinary(checks.instance("qp", qp, QP).data, *qp.sizes):
             qp = QP(*qp.views)  # P becomes symmetric
             plan = plan[1:] or plan
         state = self._take(qp)
         taken = 0
         time = 0.0
-        for is_scaled in plan:
-            if is_scaled and taken > 0:
+        for cost in plan:
+            if cost == LARGE and taken > 0:
                 state[:] = 0.0
-            scaling = balanced(qp) if is_scaled else None
+            scaling = balanced(qp, cost) if cost else None
             left = self.settler.max_steps - taken
             solution = self._attempt(qp, scaling, state, self.tol, left)
             taken += solution.iterations

@@ -150,7 +150,7 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
     smallest = np.inf
     while systems < budget:
         stuck += 1
-        if rate <= 0.5 * smallest:
+        if rate < 0.5 * smallest:
             smallest = rate
             stuck = 0
         if not rate > tol:

@@ -1,9 +1,9 @@
 """Units in which nothing of a program stands out, and a steeper cost.
 
 The variables and the rows of A and G get factors with which all rows of the KKT matrix have a size
-near 1, and the cost one with which its largest entry is near `LARGE`. For the network that is
-another time constant for each entry of its state; its equilibria are the same. The factors are
-powers of two, so that no number is rounded: residuals are the same but for units.
+near 1, and the cost gets one too. For the network that is another time constant for each entry of
+its state; its equilibria are the same. The factors are powers of two, so that no number is rounded:
+residuals are the same but for units.
 
 An implicit step of length h [rho] leaves the fraction 1 / (1 + h c) of an error along which the
 cost has the curvature c, so that a steeper cost settles sooner where it is nearly flat.
@@ -22,7 +22,7 @@ from iiwa_dnn.qp.solution import Status
 
 LARGE = 1e3
 """Largest coefficient of a row or the cost above which a program is scaled first; the largest entry
-of a scaled cost."""
+of a cost in scaled units, at first."""
 STRICTER = 1e-4
 """Tolerance in scaled units over that in the program's own, where the residuals grow."""
 STEEP = 1e5
@@ -82,8 +82,12 @@ class Scaling(NamedTuple):
 
 
 @np.errstate(over="ignore", invalid="ignore", divide="ignore")
-def balanced(qp: QP) -> Scaling:
-    """Scale a program so that the rows of its KKT matrix have a size near 1, its cost `LARGE`."""
+def balanced(qp: QP, largest: float) -> Scaling:
+    """Scale a program so that the rows of its KKT matrix have a size near 1.
+
+    The largest entry of the cost is given. A large one settles sooner where the cost is nearly
+    flat, a small one where active rows are nearly dependent.
+    """
     n, m, p = qp.sizes
     rows = np.vstack([qp.A, qp.G])
     limits = np.concatenate([qp.b, qp.h])
@@ -92,8 +96,8 @@ def balanced(qp: QP) -> Scaling:
     of_x, of_rows = np.split(factors(matrix), [n])
     # A row of zeros gets a limit near 1: if it cannot hold, its multiplier is seen to grow.
     of_rows = np.where(rows.any(axis=1) | ~np.isfinite(limits), of_rows, _power(1.0 / limits))
-    largest = np.abs(np.vstack([qp.P * np.outer(of_x, of_x), qp.q * of_x])).max()
-    of_cost = _power(largest / LARGE)
+    size = np.abs(np.vstack([qp.P * np.outer(of_x, of_x), qp.q * of_x])).max()
+    of_cost = _power(size / largest)
     of_A, of_G = np.split(of_rows, [p])
     scaled = QP(
         qp.P * np.outer(of_x, of_x) / of_cost,

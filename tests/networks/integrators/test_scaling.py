@@ -8,6 +8,7 @@ import pytest
 import programs
 from iiwa_dnn import QP, DNNSolver, ImplicitEuler, Status
 from iiwa_dnn.networks.integrators.scaling import balanced
+from iiwa_dnn.qp.certificates import certified
 
 
 def error(qp: QP, x: np.ndarray, known: np.ndarray) -> float:
@@ -64,6 +65,50 @@ def test_rows_and_costs_that_are_all_slight_are_seen() -> None:
             assert error(qp, solution.x, known[:n]) < 1e-6
 
 
+@pytest.mark.parametrize("flat", [False, True], ids=["curved", "linear"])
+def test_tiny_feasible_sets(flat: bool) -> None:
+    for seed in range(60):
+        rng = np.random.default_rng([25, flat, seed])
+        qp, point = programs.with_point(rng, flat, room=10.0 ** rng.uniform(-12.0, -3.0))
+        solution = DNNSolver(settler=ImplicitEuler(max_steps=400)).solve(qp)
+        assert solution.found, seed
+        assert error(qp, solution.x, point[: qp.q.size]) < 1e-6
+
+
+def test_costs_of_a_condition_up_to_1e11() -> None:
+    for seed in range(100):
+        rng = np.random.default_rng([26, seed])
+        qp, x = programs.strictly_convex(rng, int(rng.integers(2, 19)), 1e11)
+        solution = DNNSolver(settler=ImplicitEuler(max_steps=400)).solve(qp)
+        assert solution.found, seed
+        assert error(qp, solution.x, x) < 1e-6
+
+
+def test_contradictions_in_other_units_are_seen() -> None:
+    for seed in range(40):
+        rng = np.random.default_rng([27, seed])
+        plain = programs.infeasible(rng)
+        n, m, p = plain.sizes
+        rows = 10.0 ** rng.uniform(-6.0, 6.0, p + m)
+        qp, _ = programs.in_other_units(plain, np.zeros(2 * n + m + p), np.ones(n), rows, 1.0)
+        solution = DNNSolver().solve(qp)
+        assert solution.status in (Status.PRIMAL_INFEASIBLE, Status.NONE_FEASIBLE_NEAR)
+        assert certified(qp, solution.certificate) is solution.status
+
+
+def test_an_exact_point_ends_the_steps() -> None:
+    """Its rates are zero, and no step is better: the gap is rounding, the tolerance below that."""
+    for seed in range(200):
+        rng = np.random.default_rng([28, seed])
+        plain, point = programs.with_point(rng)
+        n, m, p = plain.sizes
+        cost = 10.0 ** rng.uniform(4.0, 8.0)
+        qp, _ = programs.in_other_units(plain, point, np.ones(n), np.ones(m + p), cost)
+        solution = DNNSolver().solve(qp)
+        assert solution.found
+        assert solution.iterations < 200, seed
+
+
 def test_scaled_units_round_nothing() -> None:
     """The factors are powers of two: the program can be had back to the bit, and its residuals."""
     for seed in range(20):
@@ -72,7 +117,7 @@ def test_scaled_units_round_nothing() -> None:
         n, m, p = plain.sizes
         units = 10.0 ** rng.uniform(-4.0, 4.0, n)
         qp, point = programs.in_other_units(plain, point, units, np.ones(m + p), 1e-5)
-        scaling = balanced(qp)
+        scaling = balanced(qp, 1e3)
         factors = scaling.of_point
         assert (np.frexp(factors)[0] == 0.5).all()
         x, box = factors[:n], factors[-n:]
