@@ -1,17 +1,19 @@
-"""References: a path, an origin to start from, and targets along it."""
+"""References: a path, an origin to start from, targets along it, and a start at rest."""
 
 from __future__ import annotations
 
 import copy
+import math
 from abc import ABC, abstractmethod
-from dataclasses import fields, is_dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.checks import Array, finite, finite_array, offers, positive, read_only
-from iiwa_dnn.compiling.library import entry
+from iiwa_dnn.checks import Array, finite, finite_array, not_negative, offers, positive, read_only
+from iiwa_dnn.compiling.library import compiled, entry
 from iiwa_dnn.files import plain
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.references.targets import Target
@@ -24,6 +26,9 @@ Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
 def enter_path(address: int, t: float, constants: Array, target: Array) -> None:
     """Enter a path's function at an address; it moves the target (18,) at time t [s]."""
 
+
+SHORTEST = 1.0
+"""Least length of a soft start that is not given [s]."""
 
 AT_REST = read_only(np.concatenate([np.zeros(3), np.eye(3).ravel(), np.zeros(6)]))
 """Target at position 0 with orientation identity, at rest, `Target.data` (18,)."""
@@ -55,6 +60,10 @@ class Reference(ABC):
         """Set checked parameters of a frozen dataclass."""
         for name, value in values.items():
             object.__setattr__(self, name, value)
+
+    def _check(self, **checks: Callable[[str, Any], Any]) -> None:
+        """Replace parameters of a frozen dataclass by what their checks return."""
+        self._set(**{name: check(name, getattr(self, name)) for name, check in checks.items()})
 
     @property
     def name(self) -> str:
@@ -105,9 +114,7 @@ class Reference(ABC):
         Raises:
             InvalidInputError: If ``t`` is not a finite number.
         """
-        target = self.base.copy()
-        self.move(finite("t", t), target)
-        return Target.from_data(target)
+        return self.sample([finite("t", t)])[0]
 
     def sample(self, times: ArrayLike) -> Target:
         """Compute the targets at times (k,) [s], as one `Target` of arrays (k, ...).
@@ -134,6 +141,60 @@ class Reference(ABC):
             name: value.settings() if isinstance(value, Reference) else plain(value)
             for name, value in values.items()
         }
+
+
+@compiled
+def soft_clock(t: float, begin: float) -> tuple[float, float]:
+    """Compute the time on a path's own clock [s] and its rate, see `SoftStart`."""
+    if begin == 0.0:
+        return t, 1.0
+    if t >= begin:
+        return t - 0.5 * begin, 1.0
+    if t <= 0.0:
+        return 0.0, 0.0
+    u = t / begin
+    return t * u * u * (1.0 - 0.5 * u), u * u * (3.0 - 2.0 * u)
+
+
+@dataclass(frozen=True, eq=False)
+class SoftStart(Reference):
+    r"""A path that would begin at speed, and begins at rest by a change of its clock.
+
+    Until t = begin the path's own time s rises with u = t / begin as
+
+    .. math::
+
+        s = begin\,(u^3 - u^4 / 2), \qquad \dot s = u^2 (3 - 2 u),
+
+    then as t - begin / 2; before t = 0 the path rests. Velocity and acceleration are continuous,
+    and the clock's acceleration is at most 1.5 / begin. The path is the same curve; it comes back
+    to its start later by half of `begin`.
+
+    Attributes:
+        begin: Length of the soft start [s]: by default 1 s or a tenth of a round, whichever is
+            longer; 0 begins at full speed.
+    """
+
+    begin: float | None = field(default=None, kw_only=True)
+
+    @property
+    def _round(self) -> float:
+        """Time of a round at full speed [s]."""
+        return self.period
+
+    @property
+    def duration(self) -> float:
+        """Time until the path is back at its start, at full speed [s]."""
+        lost = 0.5 * (self.begin or 0.0)
+        return lost + self._round * max(1, math.ceil(lost / self._round))
+
+    def _set_begin(self, default: float | None = None) -> float:
+        """Set and return the length of the soft start [s]."""
+        if self.begin is None:
+            ordinary = max(SHORTEST, 0.1 * self._round)
+            self._set(begin=ordinary if default is None else default)
+        self._check(begin=not_negative)
+        return self.begin or 0.0
 
 
 class Ahead(Reference):

@@ -12,8 +12,7 @@ import numpy as np
 from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references.base import Reference
-from iiwa_dnn.references.soft_start import SoftStart, soft_clock
+from iiwa_dnn.references.base import Reference, SoftStart, soft_clock
 
 
 @compiled
@@ -62,7 +61,7 @@ class Heart(Reference):
     period: float = 10.0
 
     def __post_init__(self) -> None:
-        self._set(scale=positive("scale", self.scale), period=positive("period", self.period))
+        self._check(scale=positive, period=positive)
         self._set(constants=np.array([self.scale, 2.0 * np.pi / self.period]))
 
 
@@ -113,14 +112,12 @@ class Circle(SoftStart):
     normal: Vector3 = (0.0, 0.0, 1.0)
 
     def __post_init__(self) -> None:
-        self._set(radius=positive("radius", self.radius), period=positive("period", self.period))
-        self._set(normal=vector3("normal", self.normal))
+        self._check(radius=positive, period=positive, normal=vector3)
         normal = np.array(direction("normal", self.normal))
         axis = np.eye(3)[0 if abs(normal[0]) < 0.9 else 1]
         u = axis - (axis @ normal) * normal
         u /= np.linalg.norm(u)
-        begin = self._set_begin(None, self.period)
-        head = [begin, self.radius, 2.0 * np.pi / self.period]
+        head = [self._set_begin(), self.radius, 2.0 * np.pi / self.period]
         self._set(constants=np.concatenate([head, u, np.cross(normal, u)]))
 
 
@@ -159,7 +156,7 @@ class Line(Reference):
     period: float = 10.0
 
     def __post_init__(self) -> None:
-        self._set(offset=vector3("offset", self.offset), period=positive("period", self.period))
+        self._check(offset=vector3, period=positive)
         self._set(constants=np.array([2.0 * np.pi / self.period, *self.offset]))
 
 
@@ -205,14 +202,12 @@ class Lissajous(SoftStart):
     period: float = 10.0
 
     def __post_init__(self) -> None:
-        for name in ("amplitudes", "turns", "phases"):
-            self._set(**{name: vector3(name, getattr(self, name))})
-        self._set(period=positive("period", self.period))
+        self._check(amplitudes=vector3, turns=vector3, phases=vector3, period=positive)
         if not all(turns.is_integer() for turns in self.turns):
             raise InvalidInputError("turns", "must be whole numbers", self.turns)
         rates = (2.0 * np.pi / self.period) * np.array(self.turns)
-        begin = self._set_begin(None, self.period)
-        self._set(constants=np.concatenate([[begin], self.amplitudes, rates, self.phases]))
+        begin = [self._set_begin()]
+        self._set(constants=np.concatenate([begin, self.amplitudes, rates, self.phases]))
 
 
 @compiled
@@ -233,4 +228,4 @@ class Still(Reference):
 
     def __post_init__(self) -> None:
         """Check the period; raises InvalidInputError."""
-        self._set(period=positive("period", self.period))
+        self._check(period=positive)

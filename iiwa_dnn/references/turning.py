@@ -9,7 +9,7 @@ import numpy as np
 from iiwa_dnn.checks import Array, Vector3, direction, integer, positive, vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references.base import Reference
+from iiwa_dnn.references.base import Reference, SoftStart, soft_clock
 from iiwa_dnn.references.rotations import column_of, combined, scaled, turn_target
 from iiwa_dnn.references.shapes import (
     Circle,
@@ -22,7 +22,6 @@ from iiwa_dnn.references.shapes import (
     line_path,
     lissajous_path,
 )
-from iiwa_dnn.references.soft_start import SoftStart, soft_clock
 from iiwa_dnn.references.waypoints import Waypoints, waypoints_path
 
 TILT = math.radians(20.0)
@@ -69,9 +68,8 @@ class Cone(SoftStart):
     period: float = 10.0
 
     def __post_init__(self) -> None:
-        self._set(angle=_acute(self.angle), period=positive("period", self.period))
-        begin = self._set_begin(None, self.period)
-        self._set(constants=np.array([begin, self.angle, 2.0 * np.pi / self.period]))
+        self._check(angle=_acute, period=positive)
+        self._set(constants=np.array([self._set_begin(), self.angle, 2.0 * np.pi / self.period]))
 
 
 @compiled
@@ -139,8 +137,8 @@ class Tilting(SoftStart):
             problem = f"must be one of {', '.join(kind.__name__ for kind in _ALONG)}"
             raise InvalidInputError("along", problem, self.along)
         rate = 2.0 * np.pi * integer("turns", self.turns, 1) / self._round
-        self._set(angle=_acute(self.angle), axis=vector3("axis", self.axis))
-        begin = self._set_begin(getattr(self.along, "begin", None), self._round)
+        self._check(angle=_acute, axis=vector3)
+        begin = self._set_begin(getattr(self.along, "begin", None))
         # One clock for both.
         along = replace(self.along, begin=0.0) if isinstance(self.along, SoftStart) else self.along
         kind = float(_ALONG.index(type(self.along)))
@@ -157,14 +155,9 @@ class Tilting(SoftStart):
         """Time after which the path repeats [s]."""
         return self.along.period
 
-    @property
-    def duration(self) -> float:
-        """Time to take the path once, with the soft start [s]."""
-        return self._lasting(self._round)
 
-
-def _acute(angle: float) -> float:
+def _acute(argument: str, angle: float) -> float:
     """Return an angle between 0 and pi / 2, or raise InvalidInputError."""
-    if not 0.0 < positive("angle", angle) < 0.5 * math.pi:
-        raise InvalidInputError("angle", f"must be below pi / 2, not {angle}", angle)
+    if not 0.0 < positive(argument, angle) < 0.5 * math.pi:
+        raise InvalidInputError(argument, f"must be below pi / 2, not {angle}", angle)
     return float(angle)

@@ -26,8 +26,14 @@ from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.references.base import Reference
 from iiwa_dnn.references.rotations import added, combined, scaled, turn_target
-from iiwa_dnn.references.smoothing import smoothed, smoothed_turns
-from iiwa_dnn.references.splines import Spline, spline_of_positions, spline_of_turns
+from iiwa_dnn.references.splines import (
+    Spline,
+    smoothed,
+    smoothed_turns,
+    spline_of_positions,
+    spline_of_turns,
+)
+from iiwa_dnn.references.targets import Target
 
 Ends = Literal["clamped", "closed"]
 Interpolation = Literal["limited", "cubic"]
@@ -146,36 +152,31 @@ class Waypoints(Reference):
     turned: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        self._check()
+        self._check_rows()
         knots = self.times - self.times[0]
-        is_closed = self.ends == "closed"
-        points = self.points
-        if self.noise > 0.0:
-            points = smoothed(knots, points, self.noise, is_closed)
-            self._set(moved=read_only(np.linalg.norm(points - self.points, axis=1)))
-        limited = self.interpolation == "limited"
-        moves = spline_of_positions(knots, points - points[0], is_closed, limited)
-        splines = {"m": moves}
-        turns = np.zeros_like(moves.pieces)
+        rule = (self.ends == "closed", self.interpolation == "limited")
+        points = smoothed(knots, self.points, self.noise, rule[0])
+        splines = {"m": spline_of_positions(knots, points - points[0], *rule)}
+        turns = np.zeros_like(splines["m"].pieces)
         if self.quaternions is not None:
             poses = self._poses(knots, self.quaternions)
-            base = np.concatenate([points[0], poses[0].as_matrix().ravel(), np.zeros(6)])
-            self._set(base=read_only(base))
-            splines["rad"] = spline_of_turns(knots, poses, is_closed, limited)
+            self._set(base=read_only(Target(points[0], poses[0].as_matrix()).data))
+            splines["rad"] = spline_of_turns(knots, poses, *rule)
             about_base = [poses[:-1].apply(own) for own in splines["rad"].pieces.swapaxes(0, 1)]
             turns = np.stack([*about_base, (poses[:-1] * poses[0].inv()).as_rotvec()], axis=1)
-        pieces = np.concatenate([moves.pieces, turns], axis=1)
-        head = [float(is_closed), float(len(pieces))]
-        self._set(constants=np.concatenate([head, knots, pieces.ravel()]))
-        jumps = np.any([spline.jumps for spline in splines.values()], axis=0)
-        self._set(jumps=np.flatnonzero(jumps))
+        pieces = np.concatenate([splines["m"].pieces, turns], axis=1)
+        self._set(
+            constants=np.concatenate([[rule[0], len(pieces)], knots, pieces.ravel()]),
+            jumps=np.flatnonzero(np.any([spline.jumps for spline in splines.values()], axis=0)),
+            moved=read_only(np.linalg.norm(points - self.points, axis=1)),
+        )
         for remark in self._remarks(splines):
             warnings.warn(remark, stacklevel=3)  # of the line that makes the path
 
-    def _check(self) -> None:
+    def _check_rows(self) -> None:
         """Check all parameters but the quaternions; raises InvalidInputError."""
         times = finite_array("times", self.times, (-1,))
-        points = finite_array("points", self.points, (len(times), 3))
+        self._set(times=times, points=finite_array("points", self.points, (len(times), 3)))
         one_of("ends", self.ends, ("clamped", "closed"))
         one_of("interpolation", self.interpolation, ("limited", "cubic"))
         if len(times) < 2:
@@ -183,11 +184,9 @@ class Waypoints(Reference):
         for row in np.flatnonzero(times[1:] <= times[:-1]):
             problem = f"must increase: point {row + 2} is at {times[row + 1]:g} s"
             raise InvalidInputError("times", problem, times)
-        noise = not_negative("noise", self.noise)
-        turn_noise = noise if self.turn_noise is None else self.turn_noise
-        self._set(noise=noise, turn_noise=not_negative("turn_noise", turn_noise))
-        unmoved = read_only(np.zeros(len(times)))
-        self._set(times=times, points=points, moved=unmoved, turned=unmoved)
+        turn_noise = self.noise if self.turn_noise is None else self.turn_noise
+        self._set(turn_noise=turn_noise, turned=read_only(np.zeros(len(times))))
+        self._check(noise=not_negative, turn_noise=not_negative)
 
     def _poses(self, knots: Array, quaternions: Array) -> Any:
         """Check the quaternions, and return the orientations, smoothed if there is noise."""
@@ -214,10 +213,9 @@ class Waypoints(Reference):
         """State what smoothing has moved, and where the acceleration jumps, by unit."""
         for done, moved, unit in (("moved", self.moved, "mm"), ("turned", self.turned, "mrad")):
             if moved.any():
-                usual = 1e3 * np.sqrt(np.mean(moved**2))
                 yield (
-                    f"smoothing has {done} the rows by {usual:.3g} {unit} (root of the mean "
-                    f"square) and at most {1e3 * moved.max():.3g} {unit}"
+                    f"smoothing has {done} the rows by {1e3 * np.sqrt(np.mean(moved**2)):.3g} "
+                    f"{unit} (root of the mean square) and at most {1e3 * moved.max():.3g} {unit}"
                 )
         for unit, spline in splines.items():
             if count := np.count_nonzero(spline.jumps):
@@ -257,12 +255,11 @@ class Waypoints(Reference):
         """
         positive("stretch", stretch)
         table = _read(path)
-        quaternions = table[:, 4:] if table.shape[1] > 4 else None
-        options: Any = {"interpolation": interpolation, "noise": noise, "turn_noise": turn_noise}
+        poses = (table[:, 1:4], ends, table[:, 4:] if table.shape[1] > 4 else None)
         with warnings.catch_warnings(record=True) as remarks:
             warnings.simplefilter("always")
             try:
-                made = cls(stretch * table[:, 0], table[:, 1:4], ends, quaternions, **options)
+                made = cls(stretch * table[:, 0], *poses, interpolation, noise, turn_noise)
             except ValueError as error:
                 raise FileError(path, one_line(error)) from error
         for message in (*(remark.message for remark in remarks), *made._abrupt_ends()):

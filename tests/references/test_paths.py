@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 import iiwa_dnn as d
 from iiwa_dnn.references import rotations
-from iiwa_dnn.references.soft_start import SoftStart
+from iiwa_dnn.references.base import SoftStart
 
 CORNERS = [[1, 2, 3], [1.2, 2, 3.1], [1.2, 2.3, 3], [1, 2, 3]]
 TURNS = Rotation.from_rotvec([[3.0, 0.2, 0], [2.8, 0.9, 0.3], [2.4, 0.2, -0.8], [3.0, 0.2, 0]])
