@@ -421,9 +421,8 @@ class Controller:
             q: Joint positions of the first step [rad], (n,), which become the scheme's home if it
                 has none.
         """
-        start = Configuration(self.robot, q)
         with self._turn():
-            self.anchor(start)
+            self.anchor(Configuration(self.robot, q))
             self._derived = self.control_step
 
     def targets(

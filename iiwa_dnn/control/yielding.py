@@ -47,6 +47,7 @@ from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.limits import NUMBERS, braking, constant_periods
 from iiwa_dnn.schemes.program import ProgramArrays, StepProgram
+from iiwa_dnn.schemes.scene import scene_views
 
 NONE, SLOW, RELAX, STOP, _ = map(int, Action)
 BRAKE = -1
@@ -65,8 +66,10 @@ There the joints would race for next to nothing."""
 POSITION_GAIN = 20.0
 """Rate at which the wanted velocity falls towards a position limit [1/s]."""
 
-TOWARDS = (1.0, 0.5, 0.25, 0.125)
-"""Shares of the way from the braking motion in hand to the wanted command that are tried."""
+HALVINGS = 4
+HALVINGS_NEAR = 12
+"""Shares of the way from the braking motion in hand to the wanted command that are tried, each half
+of the one before: where a pair began nearer, there is but a micrometre for the motion's curve."""
 
 
 def make_yielding(program: StepProgram, tol: float, dt: float, alike: bool) -> Yielding:
@@ -363,15 +366,29 @@ def _make_stoppable(
         nearest_within(limits, wanted, yielding, views.figures)
     brake = np.zeros(x.size)
     left = _brake(limits, arrays, past, yielding, views, brake)
-    for k in range(len(TOWARDS)):
+    share = 1.0
+    for _ in range(HALVINGS_NEAR if _is_near(arrays, yielding, views.least) else HALVINGS):
         for i in range(dof):
-            x[i] = brake[i] + TOWARDS[k] * (wanted[i] - brake[i])
+            x[i] = brake[i] + share * (wanted[i] - brake[i])
         rest = stopping_time(arrays, past, views.least, yielding, x[:dof])
         if rest >= 0.0:
             return rest
+        share *= 0.5
     copied(x, brake)
     _go_along(past, following)
     return left
+
+
+@compiled
+def _is_near(arrays: ProgramArrays, yielding: Yielding, least: Vector) -> bool:
+    """Test whether a pair keeps less than the least distance of its scene, `least` (pairs,) [m]."""
+    found = False
+    for k in range(len(yielding.scenes)):
+        own = arrays.constants[yielding.scenes[k, 0] : yielding.scenes[k, 1]]
+        scene = scene_views(own, arrays.jacobian.shape[0])
+        for i in range(len(scene.pairs)):
+            found = found or least[scene.first + i] < scene.least
+    return found
 
 
 @compiled

@@ -111,6 +111,18 @@ def test_a_pair_that_begins_nearer_comes_no_nearer_and_then_keeps_its_distance(
     assert not any("nearer" in words for words in last[-1].against)
 
 
+def test_fast_requests_beside_a_pair_that_began_nearer_move_the_arm() -> None:
+    # There is a micrometre for a motion's curve: an eighth of the way was still too fast.
+    robot = d.load_robot("panda").with_limits(acceleration=np.inf, jerk=np.inf)
+    box = d.Box([0.42902, -0.05781, 0.52525], [0.08, 0.1, 0.06])
+    shield = d.Shield(robot, 0.01, [box])
+    q0 = robot.start_posture()
+    q = q0
+    for _ in range(50):
+        q = q + 0.01 * shield.step(q, [-0.14, 0.65, 0.5, -1.36, -0.94, -0.09, -0.21]).dq
+    assert np.abs(q - q0).max() > 0.01
+
+
 def test_a_pair_that_begins_nearer_is_not_asked_to_retreat() -> None:
     # It went away at 20 times what was left of the distance, whatever the task asked for.
     _, scheme = beside(0.005)
