@@ -52,6 +52,14 @@ static inline double *read_doubles(PyObject *object, int axes, int64_t *size, bo
     return read_array(object, axes, NPY_DOUBLE, "float64", size, writes);
 }
 
+static inline bool has_size(const char *record, int64_t size, int64_t fixed, int64_t shared)
+{
+    const int64_t rest = size - fixed;
+    if (rest >= 0 && (shared ? rest % shared == 0 : rest == 0)) return true;
+    PyErr_Format(PyExc_ValueError, "an array of %lld numbers is no %s", (long long)size, record);
+    return false;
+}
+
 static inline int64_t *read_ints(PyObject *object, int axes, int64_t *size, bool writes)
 {
     return read_array(object, axes, NPY_INT64, "int64", size, writes);

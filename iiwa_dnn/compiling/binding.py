@@ -93,6 +93,14 @@ def _read(kind: Kind, place: str, source: str, written: set[str]) -> list[str]:
         word = "read_doubles" if kind.element is FLOAT else "read_ints"
         rest = f"{kind.axes}, &a_{place}.size0, {str(place in written).lower()}"
         return [f"!((a_{place}.data = {word}({source}, {rest})))"]
+    if kind.sizes:
+        numbers = f"a_{place}.numbers"
+        writes = str(any(each.startswith(f"{place}.") for each in written)).lower()
+        return [
+            f"!(({numbers}.data = read_doubles({source}, 1, &{numbers}.size0, {writes})))",
+            f'!has_size("{kind.tag}", {numbers}.size0, {kind.sizes[0]}, {kind.sizes[1]})',
+            f"((a_{place} = {kind.tag}_of({numbers})), false)",
+        ]
     if not kind.members:
         return [f"!{_READERS[kind.tag]}({source}, &a_{place})"]
     lines = [f"!is_tuple({source}, {len(kind.members)})"]

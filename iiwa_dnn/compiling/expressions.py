@@ -9,7 +9,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from .kinds import ARRAYS, BOOL, FLOAT, INT, Kind
-from .sources import Module, decoration, fail
+from .sources import Module, c_word, decoration, fail
 
 if TYPE_CHECKING:
     from .translator import Translator
@@ -46,16 +46,6 @@ _FUNCTIONS = {
 digit."""
 
 _NUMBERS: dict[Kind, type] = {BOOL: bool, INT: int, FLOAT: float}
-_WORDS = re.compile(
-    "alignas|alignof|and_eq|arena|asm|auto|bitand|bitor|case|catch|char|compl|const|"
-    "const_cast|constexpr|decltype|default|delete|do|double|dynamic_cast|enum|explicit|"
-    "export|extern|float|friend|goto|inline|int|int64_t|long|mark|mutable|namespace|"
-    "new|noexcept|not_eq|nullptr|operator|or_eq|private|protected|public|register|"
-    "reinterpret_cast|restrict|short|signed|sizeof|static|static_assert|static_cast|"
-    "struct|switch|template|this|thread_local|throw|typedef|typeid|typename|union|"
-    "unsigned|using|virtual|void|volatile|wchar_t|xor|xor_eq"
-)
-"""Names that a variable of C has not: words of C, of C++, and of a kernel's own."""
 
 
 class Value(NamedTuple):
@@ -123,11 +113,6 @@ class Value(NamedTuple):
     def is_literal(self) -> bool:
         """Test whether it is a struct that has no address."""
         return self.text.startswith(f"({self.kind.tag}){{")
-
-
-def c_word(name: str) -> str:
-    """Return a variable's name in C, which is no word of C, of C++ or of a kernel's own."""
-    return f"{name}_" if _WORDS.fullmatch(name) else name
 
 
 def joined(sign: str, values: Sequence[Value]) -> Value:
@@ -323,12 +308,22 @@ class Expressions:
         return self.translator.constant(home.c_name(node.id), found)
 
     def _attribute(self, node: ast.Attribute) -> Value:
-        """Translate a member of a named tuple, or an array's size."""
+        """Translate a member of a named tuple, record or enumeration, or an array's size."""
+        name = ast.unparse(node.value)
+        home, found = self.translator.package.find(self.module, name)
+        if name not in self.kinds and isinstance(found, ast.ClassDef):
+            kind = self.translator.kinds.of(home, found)
+            return Value(kind, f"{home.c_name(found.name)}_{node.attr}")
         owner = self.value(node.value)
         if owner.kind.axes and node.attr == "size":
             return owner.size
         known = self.translator.plan.get(owner.kind.tag, {}) if owner.is_plan else {}
         own = owner.member(node.attr, owner.kind.members[node.attr])
+        if owner.kind.sizes and own.kind is FLOAT:
+            numbers = owner.member("at", owner.kind)._replace(
+                pointer=owner.member("at", FLOAT).text
+            )
+            own = numbers.member(node.attr, FLOAT)._replace(places=own.places)
         return known.get(node.attr, own)
 
     def _comparison(self, values: list[Value], signs: list[str]) -> Value:
@@ -406,6 +401,9 @@ class Expressions:
                     texts = [own.size.text, joined("*", shape).text, shape[0].text]
                     shape[0] = Value(INT, f"shaped({', '.join(texts)})")
                 return array(own.kind.element, own.data, shape)._replace(places=own.places)
+            case ast.Attribute(value=record, attr="of"):
+                kind = self.translator.kinds.of(self.module, record)
+                return self._record(kind, self.value(node.args[0]))
             case ast.Attribute(value=ast.Name(id="np"), attr="empty" | "zeros" as word):
                 shape = [*map(self._once, getattr(node.args[0], "elts", node.args))]
                 return self._taken(FLOAT, word, [joined("*", shape)], shape)
@@ -420,6 +418,18 @@ class Expressions:
             views = {f".{name}": own.places for own, (name, _) in given}
             return self._named(kind, literal(kind, texts), views)
         return self._standard(name, values)
+
+    def _record(self, kind: Kind, numbers: Value) -> Value:
+        """View an array as a record."""
+        assert kind.sizes
+        if self.translator.is_checked:
+            size = numbers.size.text
+            fixed, shared = kind.sizes
+            asked = f"{fixed} + {shared} * int_max(0, ({size} - {fixed}) / {max(1, shared)})"
+            text = f"shaped({size}, {asked}, {size})"
+            numbers = array(FLOAT, numbers.data, [Value(INT, text)])._replace(places=numbers.places)
+        views = {f".{name}": numbers.places for name in kind.members}
+        return self._named(kind, f"{kind.tag}_of({numbers.text})", views)
 
     def _taken(
         self, element: Kind | None, word: str, given: list[Value], sizes: list[Value]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from dataclasses import dataclass, field
 
-from .sources import Module, Package, fail
+from .sources import Module, Package, c_word, fail
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,7 +17,8 @@ class Kind:
         code: Its letter where types are told apart by a text.
         element: Type of the elements of an array without gaps, or of a plain tuple.
         axes: Number of axes of an array.
-        members: Type of each member of a tuple, plain or named.
+        members: Type of each member of a tuple, plain or named, or of a record.
+        sizes: Of a record: the number of its own numbers, and of parts of a shared size.
     """
 
     tag: str
@@ -25,10 +26,11 @@ class Kind:
     element: Kind | None = None
     axes: int = 0
     members: dict[str, Kind] = field(default_factory=dict)
+    sizes: tuple[int, int] | None = None
 
     @property
     def is_named(self) -> bool:
-        """Test whether it is a named tuple, which is handed on by its address."""
+        """Test whether it is a named tuple or a record, which is handed on by its address."""
         return bool(self.members) and self.element is None
 
     @property
@@ -77,8 +79,10 @@ class Kinds:
             ), _:
                 if {ast.unparse(each) for each in others} == {ast.unparse(item)}:
                     return self.tuple(self.of(module, item), 1 + len(others))
-            case _, ast.ClassDef():
-                return self._named(home, found)
+            case _, ast.ClassDef(bases=bases):
+                base = ast.unparse(bases[0]) if bases else ""
+                make = {"IntEnum": self._enumeration, "Record": self._record}
+                return make.get(base, self._named)(home, found)
             case _, ast.Assign(value=value):
                 return self.of(home, value)
         fail(module, node, "is no type of a kernel's variable")
@@ -94,7 +98,50 @@ class Kinds:
         rows = [each for each in node.body if isinstance(each, ast.AnnAssign)]
         members = {ast.unparse(row.target): self.of(module, row.annotation) for row in rows}
         tag = module.c_name(node.name)
-        about = (ast.get_docstring(node) or "").partition("\n")[0]
         fields = "".join(f"\n    {kind.tag} {name};" for name, kind in members.items())
-        self.structs[tag] = f"/* {about} */\ntypedef struct {{{fields}\n}} {tag};"
+        self.structs[tag] = f"/* {_about(node)} */\ntypedef struct {{{fields}\n}} {tag};"
         return Kind(tag, f"<{''.join(k.code for k in members.values())}>", members=members)
+
+    def _enumeration(self, module: Module, node: ast.ClassDef) -> Kind:
+        """Write an enumeration, whose members are integers."""
+        tag = module.c_name(node.name)
+        rows = [f"    {tag}_{own.name} = {own.value}," for own in module[node.name]]
+        inner = "\n".join(rows)
+        self.structs[tag] = f"/* {_about(node)} */\ntypedef enum {{\n{inner}\n}} {tag};"
+        return INT
+
+    def _record(self, module: Module, node: ast.ClassDef) -> Kind:
+        """Write a record: its array, a pointer to its numbers, and its parts, which follow them."""
+        tag = module.c_name(node.name)
+        rows = [own for own in node.body if isinstance(own, ast.AnnAssign)]
+        names = [ast.unparse(own.target) for own in rows if own.value is None]
+        parts = {ast.unparse(own.target): module.value(own.value) for own in rows if own.value}
+        fixed = len(names) + sum(filter(None, parts.values()))
+        shared = [*parts.values()].count(None)
+        inner = "\n".join(f"    double {c_word(name)};" for name in names)
+        if names:
+            self.structs[f"{tag}_numbers"] = f"typedef struct {{\n{inner}\n}} {tag}_numbers;"
+        pointer = [f"    {tag}_numbers *at;"] * bool(names)
+        lines = ["    Vector numbers;", *pointer, *(f"    Vector {c_word(own)};" for own in parts)]
+        inner = "\n".join(lines)
+        self.structs[tag] = f"/* {_about(node)} */\ntypedef struct {{\n{inner}\n}} {tag};"
+        values = ["numbers", *[f"({tag}_numbers *)numbers.data"] * bool(names)]
+        start = (len(names), 0)
+        for count in parts.values():
+            size = "n" if count is None else str(count)
+            values.append(f"{{numbers.data + {start[0]} + {start[1]} * n, {size}}}")
+            start = (start[0], start[1] + 1) if count is None else (start[0] + count, start[1])
+        inner = ",\n        ".join(values)
+        n = f"    const int64_t n = (numbers.size0 - {fixed}) / {max(1, shared)};\n" * bool(parts)
+        self.structs[f"{tag}_of"] = (
+            f"static inline {tag} {tag}_of(Vector numbers)\n{{\n{n}"
+            f"    const {tag} own = {{\n        {inner}\n    }};\n    return own;\n}}"
+        )
+        members = {"numbers": _KINDS["Vector"], **dict.fromkeys(names, FLOAT)}
+        members |= dict.fromkeys(parts, _KINDS["Vector"])
+        return Kind(tag, f"{{{tag}}}", members=members, sizes=(fixed, shared))
+
+
+def _about(node: ast.ClassDef) -> str:
+    """Return the first line of a docstring."""
+    return (ast.get_docstring(node) or "").partition("\n")[0]

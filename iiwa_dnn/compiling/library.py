@@ -5,8 +5,10 @@ from __future__ import annotations
 import ctypes
 import math
 import os
+import re
 import threading
 from collections.abc import Callable, Iterator
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any, ClassVar, Generic, ParamSpec, TypeVar, cast, get_type_hints
@@ -14,6 +16,7 @@ from typing import Any, ClassVar, Generic, ParamSpec, TypeVar, cast, get_type_hi
 import numpy as np
 
 from iiwa_dnn.compiling.build import build
+from iiwa_dnn.compiling.records import Record
 from iiwa_dnn.compiling.sources import c_name
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -131,7 +134,7 @@ class Entry(Generic[P, R]):
 
     def _callback(self, function: Callable[..., Any]) -> Any:
         """Make a function of C that calls one in Python; its error is raised by `raise_failure`."""
-        letters, _, result = self._types.partition(":")
+        letters, _, result = re.sub(r"\{\w+\}", "v", self._types).partition(":")
         kinds = [kind for letter in letters for kind in _FLAT.get(letter, [])]
         is_tuple = result[0] == "("
         kinds += [ctypes.POINTER(ctypes.c_double)] * is_tuple
@@ -169,7 +172,7 @@ _FLAT: dict[str, list[Any]] = {
 def _rebuilt(hint: Any, codes: Iterator[str], values: Iterator[Any]) -> Any:
     """Make an argument of Python from flat ones of C; a named tuple holds no other."""
     if hasattr(hint, "_fields"):
-        return hint(*[_rebuilt(None, codes, values) for _ in hint._fields])
+        return hint(*[_rebuilt(own, codes, values) for own in _hints(hint)])
     code = next(code for code in codes if code in _FLAT)
     first = next(values)
     if code in "idb":
@@ -177,4 +180,11 @@ def _rebuilt(hint: Any, codes: Iterator[str], values: Iterator[Any]) -> Any:
     shape = [next(values) for _ in _FLAT[code][1:]]
     kind = ctypes.c_double if code in "vm" else ctypes.c_int64
     memory: Any = (kind * math.prod(shape)).from_address(first)
-    return np.ctypeslib.as_array(memory).reshape(shape)
+    array = np.ctypeslib.as_array(memory).reshape(shape)
+    return array.view(hint) if isinstance(hint, type) and issubclass(hint, Record) else array
+
+
+@cache
+def _hints(own: type) -> list[Any]:
+    """Return the types of the members of a named tuple."""
+    return [*get_type_hints(own).values()]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NoReturn
@@ -12,6 +13,18 @@ KERNELS = ("compiled", "released")
 
 ENTRY = "entry"
 """Decorator of a function without a body, which calls the kernel at an address."""
+
+
+_WORDS = re.compile(
+    "alignas|alignof|and_eq|arena|asm|auto|bitand|bitor|case|catch|char|compl|const|"
+    "const_cast|constexpr|decltype|default|delete|do|double|dynamic_cast|enum|explicit|"
+    "export|extern|float|friend|goto|inline|int|int64_t|long|mark|mutable|namespace|"
+    "new|noexcept|not_eq|nullptr|operator|or_eq|private|protected|public|register|"
+    "reinterpret_cast|restrict|short|signed|sizeof|static|static_assert|static_cast|"
+    "struct|switch|template|this|thread_local|throw|typedef|typeid|typename|union|"
+    "unsigned|using|virtual|void|volatile|wchar_t|xor|xor_eq"
+)
+"""Names that a variable of C has not: words of C, of C++, and of a kernel's own."""
 
 
 class TranslationError(Exception):
@@ -52,6 +65,11 @@ def c_name(module: str, name: str, package: str = "iiwa_dnn") -> str:
     """Return the name in C of what a module binds: its full name, within a package without it."""
     words = [*module.removeprefix(f"{package}.").split("."), name.strip("_")]
     return "_".join(words).lstrip("_")
+
+
+def c_word(name: str) -> str:
+    """Return a variable's name in C, which is no word of C, of C++ or of a kernel's own."""
+    return f"{name}_" if _WORDS.fullmatch(name) else name
 
 
 class Module(dict[str, Any]):

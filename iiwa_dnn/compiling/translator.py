@@ -17,9 +17,18 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from .expressions import SIGNS, Expressions, Rank, Value, array, c_word, number
-from .kinds import INT, VOID, Kind, Kinds
-from .sources import ENTRY, Module, Package, TranslationError, decoration, fail, stored_names
+from .expressions import SIGNS, Expressions, Rank, Value, array, number
+from .kinds import FLOAT, INT, VOID, Kind, Kinds
+from .sources import (
+    ENTRY,
+    Module,
+    Package,
+    TranslationError,
+    c_word,
+    decoration,
+    fail,
+    stored_names,
+)
 
 
 class Translator:
@@ -338,6 +347,11 @@ class Function(Expressions):
                     self.lines += [f"{head} {{", f"    {first}[own_k] = {text};", "}"]
                 else:
                     self.lines.append(f"{whole.text} {sign} {text};")
+            case ast.Attribute():
+                number = self.value(target)
+                self.require(number.kind is FLOAT, target, "is no number of a record")
+                self.written |= number.places
+                self.lines.append(f"{number.text} {sign} {value.converted(FLOAT).text};")
             case _:
                 fail(self.module, target, "has no translation")
 
@@ -411,6 +425,8 @@ def _flat(value: Value) -> Iterator[tuple[str, str]]:
     if kind.element and kind.axes:
         yield f"{kind.element.tag} *", value.data.text
         yield from (("int64_t", size.text) for size in value.sizes)
+    elif kind.sizes:
+        yield from _flat(value.member("numbers", kind.members["numbers"]))
     elif kind.members:
         for name, own in kind.members.items():
             yield from _flat(value.member(name, own))

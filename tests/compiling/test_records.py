@@ -1,0 +1,246 @@
+"""Records: numbers by their names, the same in Python and in C."""
+
+import importlib.util
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from iiwa_dnn.compiling.build import build
+from iiwa_dnn.compiling.sources import TranslationError
+from iiwa_dnn.compiling.translator import Translator
+
+SOURCE = '''
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from iiwa_dnn.compiling.records import Record, part
+
+Vector = np.ndarray
+
+
+def compiled(function):
+    return function
+
+
+entry = compiled
+
+
+class Mode(IntEnum):
+    """Modes of a motion."""
+
+    SLOW = 3
+    FAST = 5
+
+
+class Motion(Record):
+    """State of a motion."""
+
+    time: float
+    new: float
+    position: Vector = part()
+    axis: Vector = part(3)
+    velocity: Vector = part()
+
+
+class Stats(Record):
+    """Statistics of a solver."""
+
+    count: float
+    size: float
+
+
+class Plan(NamedTuple):
+    """A motion and its period."""
+
+    motion: Motion
+    dt: float
+
+
+@compiled
+def advance(motion: Motion, dt: float) -> float:
+    motion.time += dt
+    motion.new = 2 * motion.time
+    for i in range(motion.position.size):
+        motion.position[i] += dt * motion.velocity[i]
+    motion.axis[:] = motion.new
+    return motion.position[0] * motion.axis[2]
+
+
+@compiled
+def within(plan: Plan) -> float:
+    motion = plan.motion
+    before = motion.time
+    return advance(motion, plan.dt) - before + plan.motion.time
+
+
+@compiled
+def largest(motion: Motion) -> float:
+    found = -np.inf
+    for i in range(motion.numbers.size):
+        found = max(found, motion.numbers[i])
+    return found
+
+
+@compiled
+def count_up(values: Vector, start: int) -> float:
+    stats = Stats.of(values[start : start + 2])
+    stats.count += 1
+    return share(stats)
+
+
+@compiled
+def share(stats: Stats) -> float:
+    return stats.count / stats.size
+
+
+@compiled
+def mode_of(mode: int) -> int:
+    return mode + Mode.SLOW if mode != Mode.FAST else Mode.FAST
+
+
+@compiled
+def any_of(values: Vector) -> float:
+    return Stats.of(values).size
+
+
+@entry
+def enter(address: int, plan: Plan, stats: Stats) -> float:
+    """Enter a kernel with records."""
+'''
+
+
+def _module(path: Path, name: str) -> ModuleType:
+    spec: Any = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _package(folder: Path) -> Path:
+    (folder / "package").mkdir()
+    (folder / "package" / "own.py").write_text(SOURCE)
+    return folder / "package"
+
+
+@pytest.fixture(scope="module", params=["0", "1"])
+def both(request: Any, tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Any]:
+    """The kernels above as Python and as a library, plain and checked."""
+    folder = _package(tmp_path_factory.mktemp("records"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("IIWA_DNN_CHECKED", request.param)
+        return _module(folder / "own.py", "own"), _module(build(folder), "_kernels")
+
+
+def _motion(python: Any, n: int = 2) -> Any:
+    return python.Motion.of(np.random.default_rng(n).standard_normal(5 + 2 * n))
+
+
+def test_members_lie_in_the_array_one_after_another(both: tuple[Any, Any]) -> None:
+    python, _ = both
+    motion = python.Motion.of(np.arange(9.0))
+    assert (motion.time, motion.new, motion.shared) == (0.0, 1.0, 2)
+    parts = [motion.position.tolist(), motion.axis.tolist(), motion.velocity.tolist()]
+    assert parts == [[2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0]]
+    motion.velocity[1] = -1.0
+    motion.new = -2.0
+    assert motion.numbers.tolist() == [0.0, -2.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, -1.0]
+    assert python.Motion.zeros(4).velocity.shape == (4,)
+
+
+@pytest.mark.parametrize("n", [1, 2, 7])
+def test_c_reads_and_writes_what_python_does(both: tuple[Any, Any], n: int) -> None:
+    python, library = both
+    one, other = _motion(python, n), _motion(python, n)
+    assert library.own_advance(one, 0.1) == python.advance(other, 0.1)
+    assert one.tobytes() == other.tobytes()
+    assert other.time == other.new / 2
+    assert library.own_within((one, 0.3)) == python.within(python.Plan(other, 0.3))
+    assert one.tobytes() == other.tobytes()
+    assert library.own_largest(one) == max(other.numbers)
+
+
+def test_a_kernel_views_a_part_of_an_array_as_a_record(both: tuple[Any, Any]) -> None:
+    for kernel in (both[0].count_up, both[1].own_count_up):
+        values = np.array([9.0, 1.0, 4.0, 9.0])
+        assert kernel(values, 1) == 0.5
+        assert values.tolist() == [9.0, 2.0, 4.0, 9.0]
+
+
+@pytest.mark.parametrize("size", [0, 4, 6, 8])
+def test_an_array_of_another_size_is_no_such_record(both: tuple[Any, Any], size: int) -> None:
+    python, library = both
+    with pytest.raises(ValueError, match="is no Motion"):
+        python.Motion.of(np.zeros(size))
+    with pytest.raises(ValueError, match=f"an array of {size} numbers is no own_Motion"):
+        library.own_largest(np.zeros(size))
+    with pytest.raises(ValueError, match="numbers is no own_Motion"):
+        library.own_within((np.zeros(size), 0.5))
+    with pytest.raises(ValueError, match="is no own_Stats"):
+        library.own_share(np.zeros(size))
+
+
+def test_a_checked_build_refuses_a_view_of_another_size(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("IIWA_DNN_CHECKED", "1")
+    library = _module(build(_package(tmp_path)), "_kernels")
+    assert library.own_any_of(np.arange(2.0)) == 1.0
+    for size in (0, 1, 3):
+        with pytest.raises(ValueError, match=rf"own\.py:\d+: {size} elements are reshaped to 2"):
+            library.own_any_of(np.zeros(size))
+
+
+def test_a_closed_record_is_read_and_never_written(both: tuple[Any, Any]) -> None:
+    python, library = both
+    closed = _motion(python)
+    before = closed.tobytes()
+    closed.flags.writeable = False
+    assert library.own_largest(closed) == python.largest(closed)
+    for call in (lambda: library.own_advance(closed, 0.1), lambda: library.own_within((closed, 1))):
+        with pytest.raises(TypeError, match="is read-only"):
+            call()
+    values = np.ones(4)
+    values.flags.writeable = False
+    with pytest.raises(TypeError, match="is read-only"):
+        library.own_count_up(values, 0)
+    assert closed.tobytes() == before
+
+
+def test_enumerations_stay_enumerations(both: tuple[Any, Any], tmp_path: Path) -> None:
+    python, library = both
+    for mode in (3, 4, 5):
+        assert library.own_mode_of(mode) == python.mode_of(mode)
+    translator = Translator(_package(tmp_path))
+    translator.all()
+    text = translator.text()
+    for line in (
+        "    own_Mode_FAST = 5,\n} own_Mode;",
+        "mode != own_Mode_FAST ? mode + own_Mode_SLOW : own_Mode_FAST;",
+        "motion->at->time += dt;",
+        "motion->at->new_ = 2.0 * motion->at->time;",
+        "    double size;\n} own_Stats_numbers;",
+        "    own_Motion motion;\n    double dt;\n} own_Plan;",
+    ):
+        assert line in text
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [
+        ("motion.lost = 1.0", "has no translation: 'lost'"),
+        ("motion.axis = motion.position", "is no number of a record"),
+    ],
+)
+def test_what_is_no_number_of_a_record_is_not_written(
+    tmp_path: Path, body: str, message: str
+) -> None:
+    folder = _package(tmp_path)
+    source = f"{SOURCE}\n\n@compiled\ndef f(motion: Motion) -> None:\n    {body}\n"
+    (folder / "own.py").write_text(source)
+    with pytest.raises(TranslationError, match=message):
+        Translator(folder).all()
