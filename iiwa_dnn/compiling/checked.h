@@ -7,7 +7,7 @@
 
 static _Thread_local jmp_buf *checked_exit;
 
-static int64_t checked_index(int64_t index, int64_t size, const char *file, int line)
+static inline int64_t checked_index(int64_t index, int64_t size, const char *file, int line)
 {
     if (index >= 0 && index < size) return index;
     PyErr_Format(PyExc_IndexError, "%s:%d: index %lld is none of an axis of %lld", file, line,
@@ -15,7 +15,7 @@ static int64_t checked_index(int64_t index, int64_t size, const char *file, int 
     longjmp(*checked_exit, 1);
 }
 
-static int64_t checked_shape(int64_t size, int64_t asked, int64_t first, const char *file, int line)
+static inline int64_t checked_shape(int64_t size, int64_t asked, int64_t first, const char *file, int line)
 {
     if (asked == size) return first;
     PyErr_Format(PyExc_ValueError, "%s:%d: %lld elements are reshaped to %lld", file, line,
