@@ -69,6 +69,9 @@ MARGIN = 0.2
 ROUNDING = 2e-14
 """Room for what positions are rounded by while a joint brakes at constant deceleration [rad]."""
 
+AT_REST = 1e-100
+"""Velocity that counts as none [rad/s]: a smaller one may vanish in units of a step of jerk."""
+
 EASE = 0.5
 """Share of its way to a position limit that a joint all but at rest may cover in a period."""
 
@@ -584,7 +587,7 @@ def braking(last: float, lb: float, ub: float, jerk: float, periods: Periods) ->
     """Compute the command in [lb, ub] that comes to rest quickest, without turning round."""
     wanted = 0.0
     unit = jerk * periods.dt * periods.dt
-    if jerk < np.inf and last != 0.0:
+    if jerk < np.inf and abs(last) > AT_REST:
         wanted = last - math.copysign(unit * approach(abs(last) / unit, periods.vary), last)
     return min(max(wanted, lb), ub)
 

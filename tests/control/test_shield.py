@@ -410,3 +410,25 @@ def test_what_a_velocity_limit_does_not_let_an_fr3_reach_is_named() -> None:
     left = robot.q_upper[0] - offset**2 / (2.0 * steepness) - path[-1, 0]
     assert 0.0 <= left < 1e-4
     assert commands[-1].limits == ("joint 1 upper position-dependent velocity limit",)
+
+
+@pytest.mark.parametrize("name", ["iiwa7", "panda", "ur5"])
+def test_a_twist_beyond_the_reach_is_said_and_does_not_slide(name: str) -> None:
+    """At the edge of the reach the tip moved 7 to 35 cm sideways in 10 s, and nothing was said."""
+    robot = d.load_robot(name)
+    q = np.array(robot.start_posture())
+    away = d.Configuration(robot, q).position - [0.0, 0.0, 0.3]
+    away /= np.linalg.norm(away)
+    path, commands = drive(d.Shield(robot, 5e-3), 2400, q, twist=[*(0.2 * away), 0.0, 0.0, 0.0])
+    tip = np.array([d.Configuration(robot, q).position for q in path[400::50]])
+    sideways = (tip - tip[0]) - np.outer((tip - tip[0]) @ away, away)
+    assert np.linalg.norm(sideways, axis=1).max() < 0.01
+    assert all(command.clipped for command in commands[400::50])
+    assert commands[-1].limits[0] == "singular posture"
+
+
+def test_a_twist_that_is_fulfilled_is_not_clipped() -> None:
+    path, commands = drive(d.Shield(ROBOT, DT), 100, twist=[0.0, 0.0, 0.02, 0.0, 0.0, 0.0])
+    assert commands[-1].limits == ()
+    J = d.Configuration(ROBOT, path[-2]).jacobian
+    np.testing.assert_allclose(J @ commands[-1].dq, [0, 0, 0.02, 0, 0, 0], atol=4e-4)

@@ -342,3 +342,12 @@ def test_limits_are_the_robots_or_ones_own() -> None:
     assert np.isinf(iiwa.dddq_max).all()
     assert d.JerkLimits().of(panda)[1] == 3750.0
     assert d.JerkLimits(50.0).of(panda).tolist() == [50.0] * 7
+
+
+@pytest.mark.parametrize("last", [5e-324, -1e-310, 1e-3])
+def test_a_joint_that_brakes_comes_to_rest_itself(last: float) -> None:
+    """In units of a step of jerk above 2, 5e-324 rad/s is 0: it was kept for ever."""
+    periods = constant_periods(2e-2)
+    for _ in range(3):
+        last = braking(last, -1.0, 1.0, 1e4, periods)
+    assert last == 0.0
