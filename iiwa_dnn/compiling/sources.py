@@ -43,6 +43,12 @@ def decoration(node: ast.AST | None) -> str:
     return next((word for word in words if word in (*KERNELS, ENTRY)), "")
 
 
+def has_kernels(file: Path) -> bool:
+    """Test whether a file defines a kernel or an entry."""
+    words = "|".join((*KERNELS, ENTRY))
+    return bool(re.search(rf"^@({words})\b", file.read_text(encoding="utf-8"), re.MULTILINE))
+
+
 def stored_names(node: ast.AST) -> list[str]:
     """List the variables that a node writes."""
     names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
@@ -78,7 +84,8 @@ class Module(dict[str, Any]):
     Attributes:
         package: The package.
         name: Full name of the module.
-        path: Path of the file, from the folder that holds the package.
+        file: The file.
+        path: Its path, from the folder that holds the package.
         names: For each name the statement that binds it.
     """
 
@@ -86,6 +93,7 @@ class Module(dict[str, Any]):
         """Read a file."""
         self.package = package
         self.name = name
+        self.file = file
         self.path = f"{name.replace('.', '/')}.py"
         self.names: dict[str, Any] = {}
         for node in ast.parse(file.read_text(encoding="utf-8")).body:
@@ -117,6 +125,11 @@ class Package:
         self.folder = folder
         self._modules: dict[str, Module] = {}
 
+    @property
+    def modules(self) -> list[Module]:
+        """Modules that were read so far."""
+        return [*self._modules.values()]
+
     def module(self, name: str, file: Path | None = None) -> Module:
         """Return a module by its full name, from a file unless it is one of the package."""
         if name not in self._modules:
@@ -128,6 +141,8 @@ class Package:
     def kernels(self) -> Iterator[tuple[Module, ast.FunctionDef]]:
         """List all functions that are translated, with their modules, by paths."""
         for path in sorted(self.folder.rglob("*.py")):
+            if not has_kernels(path):
+                continue
             name = ".".join(path.relative_to(self.folder.parent).with_suffix("").parts)
             module = self.module(name.removesuffix(".__init__"))
             for node in module.names.values():

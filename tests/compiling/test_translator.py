@@ -2,6 +2,7 @@
 
 import importlib.util
 import re
+import shutil
 from copy import deepcopy
 from pathlib import Path
 from types import ModuleType
@@ -527,3 +528,40 @@ def test_the_library_follows_its_sources(tmp_path: Path) -> None:
     source.write_text(source.read_text().replace("a + 1.0", "a + 2.0"))
     build(folder)
     assert _module(made, "_kernels").own_f(1.0) == 3.0
+
+
+def test_a_file_that_no_kernel_needs_is_not_translated_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A draft is compiled quickly, with the same results; both kinds take turns in one place."""
+    source = "def f(a: float) -> float:\n    return a + NUMBER"
+    folder = _write(tmp_path, source)
+    own = folder / "own.py"
+    own.write_text(f"from package.numbers import NUMBER\n{own.read_text()}")
+    (folder / "numbers.py").write_text("NUMBER = 1.0\n")
+    (folder / "other.py").write_text("WORD = 1\n")
+    translations = []
+    whole = Translator.all
+
+    def noted(own: Translator) -> None:
+        translations.append(own)
+        whole(own)
+
+    def library() -> Any:
+        """Load a copy: of one path a process loads one library."""
+        copy = tmp_path / f"{len(list(tmp_path.iterdir()))}.so"
+        return _module(shutil.copy(build(folder), copy), "_kernels")
+
+    monkeypatch.setattr(Translator, "all", noted)
+    assert library().own_f(1.0) == 2.0
+    (folder / "other.py").write_text("WORD = 2  # in no kernel\n")
+    assert library().own_f(1.0) == 2.0
+    assert len(translations) == 1
+    (folder / "numbers.py").write_text("NUMBER = 2.0\n")
+    assert library().own_f(1.0) == 3.0
+    kernel = "@compiled\ndef g(a: float) -> float:\n    return -a\n"
+    (folder / "other.py").write_text(f"{HEAD}\n\n{kernel}")
+    assert library().other_g(1.0) == -1.0
+    monkeypatch.setenv("IIWA_DNN_DRAFT", "1")
+    assert library().own_f(1.0) == 3.0
+    assert len(translations) == 4
