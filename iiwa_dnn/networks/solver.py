@@ -25,12 +25,17 @@ from iiwa_dnn.qp.certificates import find_certificate
 from iiwa_dnn.qp.dense import is_convex
 from iiwa_dnn.qp.layout import Sizes, Triple, Vector, check_size, data_size
 from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import is_accepted
 from iiwa_dnn.qp.solution import Solution, Status
 
 SHARPENED = 1e-14
 SHARPENING = 20
 """Tolerance of `DNNSolver.sharpen`, and the linear systems of each of its two rounds."""
 
+_COSTS: tuple[float | None, ...] = (None, LARGE, 1.0, None)
+"""Largest entries of the cost in the attempts of a `solve`; None: the program as it is."""
+_OPEN = (Status.NOT_SETTLED, Status.NOT_FINITE)
+"""Ends after which another attempt is made."""
 DIVERGENCE = 1e8
 """Ratio of a state or a residual to the largest number of a program beyond which it diverges."""
 
@@ -137,7 +142,7 @@ class DNNSolver:
             The solution; `found` only if P is convex and `QP.accepts` the point. Its iterations are
             the linear systems of all attempts, at most those of the settler.
         """
-        plan = [None, LARGE, 1.0, None] if is_projection(self.network) else [None]
+        plan = _COSTS if is_projection(self.network) else _COSTS[:1]
         if not is_ordinary(checks.instance("qp", qp, QP).data, *qp.sizes):
             qp = QP(*qp.views)  # P becomes symmetric
             plan = plan[1:] or plan
@@ -152,8 +157,7 @@ class DNNSolver:
             solution = self._attempt(qp, scaling, state, self.tol, left)
             taken += solution.iterations
             time += solution.network_time
-            again = solution.status in (Status.NOT_SETTLED, Status.NOT_FINITE)
-            if not again or taken >= self.settler.max_steps:
+            if solution.status not in _OPEN or taken >= self.settler.max_steps:
                 break
         # Without a solution the state is not kept: the multipliers grow without bound then, and
         # would spoil every later call.
@@ -199,7 +203,7 @@ class DNNSolver:
 
     def _status(self, qp: QP, point: Vector, residuals: Triple) -> Status:
         """Judge a point by its residuals, and the cost by a Cholesky factor."""
-        if qp.accepts(point, self.tol, self.eps_rel):
+        if is_accepted(qp.data, *qp.sizes, point, self.tol, self.eps_rel):
             return Status.SOLVED
         if not math.isfinite(sum(residuals)):
             return Status.NOT_FINITE
