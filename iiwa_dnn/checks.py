@@ -59,9 +59,10 @@ def integer(argument: str, value: object, least: int) -> int:
 
 def one_of(argument: str, value: T, choices: Sequence[object]) -> T:
     """Return a value that is one of the choices; refuse any other value."""
-    if value not in choices:
+    # Its type first: an array is compared entry by entry.
+    if not isinstance(value, tuple(map(type, choices))) or value not in choices:
         known = ", ".join(map(str, choices))
-        raise InvalidInputError(argument, f"must be one of {known}, not {value!r}", value)
+        raise InvalidInputError(argument, f"must be one of {known}, not {value!r:.80}", value)
     return value
 
 

@@ -37,7 +37,7 @@ _ROUNDING = 1e-9
 """Part of the largest step below which a step or an excursion counts as none."""
 
 _BESIDE = 1e-10
-"""Time between the two equal rows at which a turn rests [s]."""
+"""Least time between the two equal rows at which a turn rests [s]."""
 
 _ROUNDS = 6
 """Rounds before and after a closed path of turns, whose ends are then without effect."""
@@ -95,7 +95,8 @@ def spline_of_turns(times: Array, turns: Any, closed: bool, limited: bool) -> Sp
 
     def fit(knots: Array, rows: Rows, axis: int = 0) -> Array:
         # At rest by rows that are given twice.
-        twice = np.array([knots[0] - _BESIDE, *knots, knots[-1] + _BESIDE])
+        beside = max(_BESIDE, 4.0 * np.spacing(knots[-1]))
+        twice = np.array([knots[0] - beside, *knots, knots[-1] + beside])
         return _turning(twice, turns[np.pad(rows, 1, mode="edge")])[:, 1:-1]
 
     count = len(times) - 1

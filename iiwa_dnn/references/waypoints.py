@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import os
 import warnings
 from collections.abc import Iterator
@@ -38,7 +39,12 @@ from iiwa_dnn.references.targets import Target
 Ends = Literal["clamped", "closed"]
 Interpolation = Literal["limited", "cubic"]
 
-_COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
+_POINT = ["t", "x", "y", "z"]
+_TURN = ["qw", "qx", "qy", "qz"]
+
+SLOW = 1e-3
+"""Largest speed [m/s, rad/s] of a path whose times look as if they were not in seconds."""
+
 _CLOSED_WITHIN = 1e-9  # [rad]
 
 _UNIT_WITHIN = 0.01
@@ -100,6 +106,15 @@ def waypoints_path(t: float, constants: Array, target: Array) -> None:
     turn_target(target, _triple(constants, at + 21), (0.0, 0.0, 0.0))
     rate = scaled(moves, _slope(constants, at + 12, x))
     turn_target(target, _cubic(constants, at + 12, x), rate)
+
+
+class _RowError(InvalidInputError):
+    """A row of a path, counted from 0, is refused."""
+
+    def __init__(self, argument: str, row: int, reason: str) -> None:
+        super().__init__(argument, f"row {row}: {reason}", row)
+        self.row = row
+        self.reason = reason
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -181,9 +196,9 @@ class Waypoints(Reference):
         one_of("interpolation", self.interpolation, ("limited", "cubic"))
         if len(times) < 2:
             raise InvalidInputError("times", "at least 2 points are needed", times)
-        for row in np.flatnonzero(times[1:] <= times[:-1]):
-            problem = f"must increase: point {row + 2} is at {times[row + 1]:g} s"
-            raise InvalidInputError("times", problem, times)
+        for row in np.flatnonzero(times[1:] <= times[:-1]) + 1:
+            problem = f"times must increase, not go from {times[row - 1]:g} s to {times[row]:g} s"
+            raise _RowError("times", row, problem)
         turn_noise = self.noise if self.turn_noise is None else self.turn_noise
         self._set(turn_noise=turn_noise, turned=read_only(np.zeros(len(times))))
         self._check(noise=not_negative, turn_noise=not_negative)
@@ -193,13 +208,15 @@ class Waypoints(Reference):
         from scipy.spatial.transform import Rotation
 
         quaternions = finite_array("quaternions", quaternions, (len(knots), 4))
-        norm = max(np.linalg.norm(quaternions, axis=1), key=lambda each: abs(each - 1.0))
-        if abs(norm - 1.0) > _UNIT_WITHIN:
-            raise InvalidInputError("quaternions", f"must have norm 1, not {norm:.3g}", quaternions)
+        norms = np.linalg.norm(quaternions, axis=1)
+        for row in np.flatnonzero(np.abs(norms - 1.0) > _UNIT_WITHIN):
+            problem = f"a quaternion must have norm 1, not {norms[row]:.3g}"
+            raise _RowError("quaternions", row, problem)
         self._set(quaternions=quaternions)
         turns = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
-        if (turns[1:] * turns[:-1].inv()).magnitude().max() > np.pi - 1e-6:
-            raise InvalidInputError("quaternions", "two neighbours are half a turn apart")
+        half = (turns[1:] * turns[:-1].inv()).magnitude() > np.pi - 1e-6
+        for row in np.flatnonzero(half) + 1:
+            raise _RowError("quaternions", row, "half a turn from the orientation before")
         if self.turn_noise:
             given = turns
             turns = smoothed_turns(knots, given, self.turn_noise, self.ends == "closed")
@@ -238,11 +255,13 @@ class Waypoints(Reference):
     ) -> Waypoints:
         """Read points or poses from a CSV file in [s] and [m].
 
-        The header is ``t,x,y,z`` or ``t,x,y,z,qw,qx,qy,qz``. If the rows of an open path begin or
-        end at speed, a warning says so.
+        The header names the columns ``t,x,y,z``, and of poses ``qw,qx,qy,qz``, in any order, with
+        commas or semicolons between them. Lines before it, empty ones and what follows a ``#`` are
+        skipped. Warnings name columns that are not read, say so if the rows of an open path begin
+        or end at speed, and ask for the unit of times in which nothing moves.
 
         Args:
-            path: The file. Empty lines in it are skipped.
+            path: The file.
             ends: As for :class:`Waypoints`, as the last three.
             stretch: Ratio of the path's times to those of the rows.
             interpolation: "limited" or "cubic".
@@ -254,33 +273,39 @@ class Waypoints(Reference):
             InvalidInputError: If the ratio is not above zero.
         """
         positive("stretch", stretch)
-        table = _read(path)
-        poses = (table[:, 1:4], ends, table[:, 4:] if table.shape[1] > 4 else None)
         with warnings.catch_warnings(record=True) as remarks:
             warnings.simplefilter("always")
             try:
+                table, lines, unread = _read(path)
+                poses = (table[:, 1:4], ends, table[:, 4:] if table.shape[1] > 4 else None)
                 made = cls(stretch * table[:, 0], *poses, interpolation, noise, turn_noise)
-            except ValueError as error:
+            except _RowError as error:
+                raise FileError(path, f"line {lines[error.row]}: {error.reason}") from error
+            except (ValueError, csv.Error) as error:
                 raise FileError(path, one_line(error)) from error
-        for message in (*(remark.message for remark in remarks), *made._abrupt_ends()):
+        for message in (*(remark.message for remark in remarks), *made._doubts(unread)):
             warnings.warn(f"{path}: {message}", stacklevel=2)
         return made
 
-    def _abrupt_ends(self) -> list[str]:
-        """Describe the ends at which an open path of dense rows would be at speed."""
+    def _doubts(self, unread: list[str]) -> Iterator[str]:
+        """State what of a file is not read, slow, or an end of dense rows at speed."""
+        if unread:
+            yield f"columns that are not read: {', '.join(unread)}"
         steps = np.diff(self.times)
+        twists = self.sample(np.linspace(0.0, self.duration, 4 * len(self.times))).data[:, 12:]
+        if 0.0 < np.abs(twists).max() < SLOW:
+            yield f"no speed is above {SLOW:g} m/s or rad/s: are the times in seconds?"
         rows = self.sample(self.times - self.times[0]).position  # smoothed, if there is noise
         speeds = np.linalg.norm(np.diff(rows, axis=0), axis=1) / steps
         usual = np.average(speeds, weights=steps)
-        # Rows that speed up evenly from rest begin at less than half the mean speed.
-        return [
-            f"the rows {word} at {speeds[end]:.3g} m/s, the path at rest: within "
-            f"{steps[end]:.3g} s it changes its speed; let the rows {word} slowly"
-            for word, end in (("begin", 0), ("end", -1))
-            if self.ends == "clamped"
-            and speeds[end] > 0.5 * usual
-            and steps[end] < 0.1 * self.duration
-        ]
+        for word, end in (("begin", 0), ("end", -1)):
+            # Rows that speed up evenly from rest begin at less than half the mean speed.
+            quick = speeds[end] > 0.5 * usual and steps[end] < 0.1 * self.duration
+            if quick and self.ends == "clamped":
+                yield (
+                    f"the rows {word} at {speeds[end]:.3g} m/s, the path at rest: within "
+                    f"{steps[end]:.3g} s it changes its speed; let the rows {word} slowly"
+                )
 
     @property
     def period(self) -> float:
@@ -293,21 +318,45 @@ class Waypoints(Reference):
         return float(self.times[-1] - self.times[0])
 
 
-def _read(path: str | os.PathLike[str]) -> Array:
-    """Read a file of points (m, 4) or poses (m, 8), each with its time."""
+def _read(path: str | os.PathLike[str]) -> tuple[Array, list[int], list[str]]:
+    """Read a file of points (m, 4) or poses (m, 8), each with its time.
+
+    Returns:
+        The table, the numbers of its lines, and the names of the columns that are not read.
+    """
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, TypeError, ValueError) as error:  # ValueError: no UTF-8, a NUL in the path
         raise FileError(path, one_line(error)) from error
-    rows = [(number, line) for number, line in enumerate(lines, 1) if line.strip()]
-    columns = [cell.strip().lower() for cell in rows[0][1].split(",")] if rows else []
-    if columns not in (_COLUMNS[:4], _COLUMNS):
-        raise FileError(path, "the header must be t,x,y,z or t,x,y,z,qw,qx,qy,qz")
-    table = np.empty((len(rows) - 1, len(columns)))
-    for values, (number, line) in zip(table, rows[1:], strict=True):
-        try:
-            values[:] = finite_array("row", line.split(","), values.shape)
-        except InvalidInputError as error:
-            problem = f"{len(columns)} finite numbers are needed, not {line!r}"
-            raise FileError(path, f"line {number}: {problem}") from error
-    return table
+    numbered = enumerate(lines, 1)
+    for _, line in numbered:
+        delimiter = ";" if ";" in line else ","
+        names = [name.lower() for name in _cells(line.lstrip("# "), delimiter)]
+        if set(_POINT) <= set(names):
+            break
+    else:
+        raise FileError(path, "the header must name t, x, y, z, and of poses qw, qx, qy, qz")
+    wanted = _POINT if set(_TURN).isdisjoint(names) else _POINT + _TURN
+    for name in wanted:
+        if names.count(name) != 1:
+            raise FileError(path, f"the header must name {name} once")
+    table = []
+    numbers = []
+    for number, line in numbered:
+        cells = _cells(line.partition("#")[0], delimiter)
+        if any(cells):
+            try:
+                row = dict(zip(names, cells, strict=True))
+                table.append(finite_array("row", [row[name] for name in wanted], (-1,)))
+            except ValueError as error:
+                problem = f"{len(wanted)} finite numbers are needed, not {line!r}"
+                raise FileError(path, f"line {number}: {problem}") from error
+            numbers.append(number)
+    unread = [name for name in names if name and name not in wanted]
+    return np.array(table).reshape(-1, len(wanted)), numbers, unread
+
+
+def _cells(line: str, delimiter: str) -> list[str]:
+    """Split a line of a CSV file."""
+    rows = csv.reader([line], delimiter=delimiter, skipinitialspace=True)
+    return [cell.strip() for cell in next(rows, [])]

@@ -139,12 +139,18 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
     blocking = ", ".join(map(describe, limits)) or pose
     kind = limits[0].get("limit") if limits else None
     advice = "; more time for the path (--period, --stretch) may help" * (kind in KINDS[1:])
-    if kind in KINDS[2:] and incidents["first"]["step"] == 0:
+    if kind in KINDS[2:] and incidents["first"]["step"] == 0 and _is_abrupt(metrics):
         advice = "; the arm starts at rest, the path at speed or elsewhere (heart, line: at rest)"
     yield (
         f"{counted(sum(done.values()))} without a solution ({counts}), the first at "
         f"{_at(incidents['first'])}; most often in the way: {blocking}{advice}"
     )
+
+
+def _is_abrupt(metrics: Mapping[str, Any]) -> bool:
+    """Tell whether the path begins at speed or away from the tip; of an old record, True."""
+    start = max(metrics["settings"].get("start_speed", 1.0), metrics["start_distance_m"] or 0.0)
+    return bool(start > 1e-4)
 
 
 def _unsolved(metrics: Mapping[str, Any]) -> Iterator[str]:

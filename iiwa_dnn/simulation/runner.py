@@ -189,7 +189,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     solver = controller.solver
     program = controller.program
     integrator = solver.settler if controller.mode == "converged" else solver.follower
-    ends = [path.duration for path in by_frame(controller.reference, "").values()]
+    paths = by_frame(controller.reference, "").values()
     of_rates = (program.rate_limits or MotionLimits()).numbers(robot).reshape(NUMBERS, -1)[3:5]
     kept = dict(zip(RATES, of_rates, strict=True))
     limits: dict[str, Any] = {
@@ -202,7 +202,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     return {
         "dt": controller.dt,
         "duration": duration,
-        "path_duration": max(ends, default=duration),
+        "path_duration": max((path.duration for path in paths), default=duration),
         "mode": controller.mode,
         "policy": controller.policy,
         "versions": {name: _version(name) for name in _PACKAGES},
@@ -219,6 +219,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         },
         **limits,
         "beyond_reach": beyond_reach(controller.reference, robot),
+        "start_speed": max((abs(path.at(0.0).data[12:]).max() for path in paths), default=0.0),
         "q0": start.q,
         "tol": solver.tol,
         "rho": solver.network.rho,

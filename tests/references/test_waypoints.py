@@ -119,18 +119,90 @@ def test_csv_dialects(tmp_path: Path, text: str) -> None:
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "qx,qy,qz,qw,z,y,x,t\n0,0,0,1,3,2,1,0\n0.6,0,0,0.8,3,2,1,1\n",
+        "t;x;y;z;qw;qx;qy;qz\n0;1;2;3;1;0;0;0\n1;1;2;3;.8;.6;0;0\n",
+        'Of Monday, again\n\n# t,"x","Y",z,qw,qx,qy,qz\n # base\n"0",1,2,3,1,0,0,0 # start\n'
+        "1,1,2,3,.8,.6,0,0\n",
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_columns_are_read_by_their_names(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "some.csv"
+    file.write_text(text)
+    read = Waypoints.from_csv(file)
+    np.testing.assert_array_equal(read.times, [0.0, 1.0])
+    np.testing.assert_array_equal(read.points, [[1.0, 2.0, 3.0]] * 2)
+    np.testing.assert_array_equal(read.quaternions, [[1.0, 0.0, 0.0, 0.0], [0.8, 0.6, 0.0, 0.0]])
+
+
+def test_columns_that_are_not_read_are_named(tmp_path: Path) -> None:
+    file = tmp_path / "some.csv"
+    file.write_text('t,x,y,z,grip,note\n0,0,0,0,open,"now, then"\n1,1,2,3,,\n')
+    with pytest.warns(UserWarning, match=r"some\.csv: columns that are not read: grip, note$"):
+        read = Waypoints.from_csv(file)
+    np.testing.assert_array_equal(read.points, [[0, 0, 0], [1, 2, 3]])
+
+
+def test_repeated_rows_are_a_pause(tmp_path: Path) -> None:
+    poses = np.hstack([POINTS, QUATERNIONS])[[0, 0, 1, 1, 1, 2, 2]]
+    file = write(tmp_path, f"t,{POSE_HEADER}", np.hstack([np.arange(7.0)[:, None], poses]))
+    with pytest.warns(UserWarning, match="the acceleration jumps"):
+        path = Waypoints.from_csv(file)
+    for start, end, row in ((0.0, 1.0, 0), (2.0, 4.0, 1), (5.0, 6.0, 2)):
+        targets = path.sample(np.linspace(start, end, 41))
+        np.testing.assert_allclose(targets.position, [POINTS[row]] * 41, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(targets.rotation, [TURNS[row].as_matrix()] * 41, atol=1e-12)
+
+
+@pytest.mark.parametrize(("unit", "asked"), [(1.0, False), (1e3, True), (1e9, True)])
+def test_times_in_which_nothing_moves_are_asked_for_their_unit(
+    tmp_path: Path, unit: float, asked: bool
+) -> None:
+    """Also of a path that only turns; a path that only stands is not asked."""
+    times = unit * np.array([[0.0], [1.0], [2.0]])
+    turning = np.hstack([np.zeros((3, 3)), QUATERNIONS[:3]])
+    moving = np.hstack([0.05 * np.eye(3), QUATERNIONS[[0, 0, 0]]])
+    for poses in (turning, moving, moving[[0, 0, 0]]):
+        file = write(tmp_path, f"t,{POSE_HEADER}", np.hstack([times, poses]))
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            Waypoints.from_csv(file)
+        found = [each for each in said if "are the times in seconds?" in str(each.message)]
+        assert bool(found) == (asked and bool(np.ptp(poses, axis=0).any()))
+
+
+def test_quaternions_in_the_place_of_ends_are_refused_by_name() -> None:
+    with pytest.raises(InvalidInputError, match=r"^ends: must be one of clamped, closed, not arr"):
+        Waypoints(TIMES, POINTS, QUATERNIONS)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
     ("content", "reason"),
     [
-        ("", "the header must be"),
-        ("x,y,z\n0,0,0\n1,1,1\n", "the header must be"),
+        ("", "the header must name t, x, y, z"),
+        ("x,y,z\n0,0,0\n1,1,1\n", "the header must name t, x, y, z"),
         ("t,x,y,z\n0,0,0,0\n", "at least 2 points"),
         (GOOD + "2,1,one,1\n", "line 4: 4 finite numbers are needed, not '2,1,one,1'"),
         (GOOD + "\n2,1,1,nan\n", "line 5: 4 finite"),
         (GOOD + "2,1,1\n", "line 4: 4 finite"),
-        (GOOD + "0.5,1,1,1\n", "must increase: point 3 is at 0.5 s"),
+        (GOOD + "\n0.5,1,1,1\n", "line 5: times must increase, not go from 1 s to 0.5 s"),
         (GOOD.encode() + b"\xff\xfe", "'utf-8' codec"),
-        (f"{POSE_HEADER}\n0,0,0,1,0,0,0\n", "the header must be"),
-        (f"t,{POSE_HEADER}\n0,0,0,0,1,0,0,0\n1,1,0,0,0,0,0,0\n", "must have norm 1, not 0"),
+        (f"{POSE_HEADER}\n0,0,0,1,0,0,0\n", "the header must name t, x, y, z"),
+        ("t,x,y,z,qw,qx,qz\n0,0,0,0,1,0,0\n", "the header must name qy once"),
+        ("t,x,y,z,X\n0,0,0,0,1\n", "the header must name x once"),
+        ("t;x;y;z\n0;0;0;0\n1;0,1;0;0\n", "line 3: 4 finite numbers are needed, not '1;0,1;0;0'"),
+        ("t,x,y,z\n# b\n0,0,0,0,5\n", "line 3: 4 finite"),
+        ("t,x,y,z\n0,0,0," + "0" * 140_000, "field larger than field limit"),
+        (
+            f"t,{POSE_HEADER}\n0,0,0,0,1,0,0,0\n# c\n1,1,0,0,0,0,0,0\n",
+            "line 4: a quaternion must have norm 1, not 0",
+        ),
+        (
+            f"t,{POSE_HEADER}\n0,0,0,0,1,0,0,0\n\n1,1,0,0,0,0,1,0\n",
+            "line 4: half a turn from the orientation before",
+        ),
         (None, "No such file"),
     ],
 )

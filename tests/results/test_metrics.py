@@ -335,6 +335,8 @@ def test_the_policies_are_named_with_their_steps():
     assert "in the way: no bound: " in failures(seldom)[1]  # of 6 steps, and limits of 4
     at_speed = slowed([0.4] * 10, blocking=2 * blocking)
     assert failures(at_speed)[1].endswith("path at speed or elsewhere (heart, line: at rest)")
+    too_quick = slowed([0.4] * 10, blocking=2 * blocking, settings={"start_speed": 0.0})
+    assert failures(too_quick)[1].endswith(advice)
     far = slowed([0.4] * 10, settings={"beyond_reach": 0.32})
     assert failures(far)[1].startswith("the path leads 0.32 m beyond the arm's reach")
     lag = make_record(action=action, settings={"mode": "continuous"})

@@ -244,3 +244,18 @@ def test_a_path_that_begins_elsewhere_is_warned_of() -> None:
     options: Any = {"dt": 1e-3, "duration": 0.05, "check": UNCHECKED}
     record = d.simulate(paper_robot(), d.DoubleIndicator(), path, posture, **options)
     assert np.linalg.norm(record.position - record.position_desired, axis=1).max() < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("path", "reason"),
+    [(d.Circle(period=2.0, begin=0.0), "the path at speed"), (d.Line(period=0.1), "more time")],
+)
+def test_a_path_at_speed_is_told_from_one_that_is_too_quick(path: Any, reason: str) -> None:
+    """Both ask for too much in the first step."""
+    start = paper_start()
+    scheme = d.DoubleIndicator(extra_limits=(d.AccelerationLimits(),), tracking="next")
+    robot = paper_robot().with_limits(acceleration=0.05)
+    anchored = path.anchored(start)
+    record = d.simulate(robot, scheme, anchored, start.q, dt=5e-3, duration=0.02, policy="slow")
+    assert d.compute_metrics(record)["incidents"]["first"]["step"] == 0
+    assert reason in d.failures(record)[1]
