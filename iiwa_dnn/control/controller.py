@@ -267,9 +267,7 @@ class Controller:
         if step is None or not state.begun:
             step = self._prepare(q, t, target is None)
         reasons: tuple[str, ...] = ()
-        period = self.dt if dt is None else dt
-        varies = self.longest_period is not None or elapsed is not None
-        if varies or not period == step.dt == state.dt:
+        if dt is not elapsed or not self.dt == step.steady == state.dt:
             reasons = self._take_periods(step, dt, elapsed)
         dt = step.dt
         layout = step.layout
@@ -302,6 +300,8 @@ class Controller:
     ) -> tuple[str, ...]:
         """Take the periods that a step states; return the reason that one is too long."""
         longest = self.longest_period
+        if elapsed is None and dt == step.steady == self._state.dt:
+            return ()
         periods = stated_periods(self.dt, longest, dt, elapsed)
         self._state.set_period(periods.dt)
         if elapsed is not None:

@@ -603,7 +603,7 @@ class Shield:
         velocity = wish[: positions.size].copy() if kind == "dq" else None
         reasons = (*_words_of(flags), *command.reasons)
         decision = ShieldCommand(command.dq, velocity, reasons, command, self, t, periods.dt)
-        hold = self.dt if dt is None else periods.hold
+        hold = controller.control_step.dt
         positions += hold * command.dq
         if settings[3] > 0.0:
             sent = np.vstack([np.append(hold, command.dq), sent])

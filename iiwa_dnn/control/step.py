@@ -100,7 +100,8 @@ class ControlStep:
     Attributes:
         program: The scheme laid out for the robot.
         layout: Columns of the rows that are written.
-        dt: Control period [s].
+        dt: Period that the next command is for [s].
+        steady: The same where periods do not vary, else NaN.
         plan: Arrays and settings that stay the same from step to step.
         has_network: Whether the network is compiled.
         samples: Whether the compiled step samples the targets: all references are compiled, and no
@@ -148,6 +149,7 @@ class ControlStep:
         if longest is not None:
             for start, _ in program.constants_of(JointLimits):
                 program.constants[start] = min(program.constants[start], 1.0 / longest)
+        self._varies = longest is not None
         self.set_periods(dt, constant_periods(dt))
 
     def set_periods(self, dt: float, periods: Periods) -> None:
@@ -158,6 +160,7 @@ class ControlStep:
             periods: Periods as limits count them.
         """
         self.dt = dt
+        self.steady = math.nan if self._varies else dt
         self.layout = self.layout.at_periods(periods)
         arrays = self.plan.arrays._replace(rate=1.0 / dt)
         yielding = self.plan.yielding._replace(dt=dt, periods=periods)

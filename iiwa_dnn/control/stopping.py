@@ -287,6 +287,13 @@ def _along(
 
 
 @compiled
+def _write_bends(x: Vector, before: Vector, periods: float, bend: Vector) -> None:
+    """Write b (n,) of the cubics through x (n,) now and before, which end after so many periods."""
+    for i in range(x.size):
+        bend[i] = bend_of(x[i], before[i], periods)
+
+
+@compiled
 def stopping_time(
     arrays: ProgramArrays, past: Matrix, least: Vector, yielding: Yielding, dq: Vector
 ) -> float:
@@ -318,8 +325,7 @@ def stopping_time(
     if periods == np.inf:
         return -1.0
     if yielding.cubic and periods > 0.0:
-        for i in range(dq.size):
-            bend[i] = bend_of(dq[i], before[i], periods)
+        _write_bends(dq, before, periods, bend)
     # Where periods vary, the first may be the longest and the others as short as can be.
     motion = Motion(dq, bend, periods + yielding.periods.vary, yielding.cubic)
     dt = dt / yielding.periods.share

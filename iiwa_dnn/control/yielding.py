@@ -430,7 +430,8 @@ def _brake(
         return max(rest - 1.0, 0.0)
     lb = limits.lb.copy()
     ub = limits.ub.copy()
-    for i in range(dq.size if periods < np.inf else 0):
+    # Where periods vary, the motion in hand is fitted anew: bounds that any period keeps go first.
+    for i in range(dq.size if periods < np.inf and rest == 0.0 else 0):
         lb[i] = min(lb[i], 0.0)
         ub[i] = max(ub[i], 0.0)
     # Joints that follow others go on to, as they brake.

@@ -231,3 +231,32 @@ def test_a_shield_names_a_period_above_the_longest() -> None:
         command = shield.step(q, np.zeros(7), elapsed=1.0)
     assert command.limits == ("period exceeded",)
     assert shield.step(q, np.zeros(7), elapsed=DT).limits == ()
+
+
+@pytest.mark.parametrize("said", ["dt", "elapsed"])
+def test_beside_obstacles_jerk_and_distances_are_kept_in_any_periods(said: str) -> None:
+    """A motion to rest that is fitted anew in each period broke jerk limits by up to 340 %."""
+    robot = d.load_robot("ur5").with_limits(acceleration=10.0, jerk=1500.0)
+    ball = d.Sphere([-0.5, -0.3, 0.3], 0.08)
+    shield = d.Shield(robot, 1e-2, [ball], 0.02, longest_period=2e-2)
+    scene = d.CollisionAvoidance([ball], distance=0.02).scene(robot)
+    random = np.random.default_rng(1)
+    q = np.array(robot.start_posture())
+    last, slope, elapsed, path = np.zeros(6), np.zeros(6), 1e-2, [q]
+    for k in range(1000):
+        if k % 40 == 0:
+            request = {
+                "twist": [*(2.0 * (np.array([-0.5, -0.3, 0.3]) - 0.3 * random.random(3))), 0, 0, 0]
+            }
+            if k % 80:
+                request = {"dq": 3.0 * random.standard_normal(6)}
+        period = 2e-2 * random.choice([0.02, 1.0])
+        measured = period if said == "dt" else elapsed
+        dq = shield.step(q, **request, **{said: measured}).dq
+        turned = (dq - last) / measured - slope
+        assert np.abs(turned).max() / measured <= 1500.0 * (1.0 + 1e-6)
+        slope, last, elapsed = slope + turned, dq, period
+        q = q + period * dq
+        path.append(q)
+    assert scene.nearest(np.array(path), np.zeros(len(path)))[0].min() > 0.02 - 1e-9
+    assert np.ptp(path, axis=0).max() > 0.3
