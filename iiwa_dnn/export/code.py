@@ -13,6 +13,7 @@ import numpy as np
 from iiwa_dnn.compiling.binding import prelude
 from iiwa_dnn.compiling.expressions import Value
 from iiwa_dnn.compiling.library import Entry, source_of
+from iiwa_dnn.compiling.records import Record
 from iiwa_dnn.compiling.sources import Module, TranslationError, c_name
 from iiwa_dnn.compiling.translator import Function, Translator
 from iiwa_dnn.control import shield as shields
@@ -254,13 +255,15 @@ class _Code:
         if isinstance(own, np.ndarray):
             # In C no array is empty.
             numbers = (own if own.size else np.zeros(1, own.dtype)).ravel().tolist()
-            return self._translator.constant(path.replace(".", "_"), numbers, own.shape)
+            table = self._translator.constant(path.replace(".", "_"), numbers, own.shape)
+            is_record = isinstance(own, Record)
+            return f"{_tag(own)}_of({table.text})" if is_record else table
         if not isinstance(own, tuple):
             return self._translator.constant(path.replace(".", "_"), own)
         items: dict[str, Any] = own._asdict()  # type: ignore[attr-defined]
         values = {each: self._value(f"{path}.{each}", item) for each, item in items.items()}
         constants = {each: item for each, item in values.items() if isinstance(item, Value)}
-        tag = c_name(type(own).__module__, type(own).__name__)
+        tag = _tag(own)
         plan = self._translator.plan
         plan[tag] = {} if plan.get(tag, constants) != constants else constants
         lines = [
@@ -276,3 +279,8 @@ class _Code:
         found = [re.match(r"static inline \S+ \*?(\w+)\(", each) for each in shared]
         used = [e for e, own in zip(shared, found, strict=True) if not own or own[1] in text]
         return "\n\n".join([*used, filled("arena.c", {}), text])
+
+
+def _tag(own: Any) -> str:
+    """Return the name in C of the type of a named tuple or record."""
+    return c_name(type(own).__module__, type(own).__name__)

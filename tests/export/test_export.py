@@ -5,7 +5,7 @@ import importlib
 import re
 import shutil
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 from unittest.mock import Mock
 
 import numpy as np
@@ -16,9 +16,12 @@ from export_settings import SETTINGS, drawing, with_limits
 from helpers_export import QUICK, WARNINGS, needs, run
 from iiwa_dnn import Controller, DoubleIndicator
 from iiwa_dnn.compiling import build
+from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.export import ExportedController, c99, load
+from iiwa_dnn.export.code import _Code
 from iiwa_dnn.export.folder import run as run_controller
+from iiwa_dnn.qp import Vector
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 
 pytestmark = needs("gcc")
@@ -278,6 +281,23 @@ class Page(iiwa_dnn.Limit):
 
     def constants(self, robot: iiwa_dnn.Robot) -> np.ndarray:
         return np.array([robot.frame_id("iiwa7_link_4"), 20.0, 0.1, 0.5, 0.5, 0.5])
+
+
+class _Limits(Record):
+    least: float
+    velocity: Vector = part()
+
+
+class _Settings(NamedTuple):
+    limits: _Limits
+    dt: float
+
+
+def test_a_record_in_a_plan_is_a_view_of_a_table() -> None:
+    settings = _Settings(_Limits.of(np.array([0.5, 1.0, 2.0])), 0.1)
+    text = _Code(False).initializer("plan", settings)
+    assert "_Limits_of((Vector){(double *)plan_limits, 3})," in text
+    assert ".dt = plan_dt," in text
 
 
 class _Plain(iiwa_dnn.Heart):
