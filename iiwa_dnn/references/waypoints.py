@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+import re
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -39,8 +40,7 @@ from iiwa_dnn.references.targets import Target
 Ends = Literal["clamped", "closed"]
 Interpolation = Literal["limited", "cubic"]
 
-_POINT = ["t", "x", "y", "z"]
-_TURN = ["qw", "qx", "qy", "qz"]
+_COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
 
 SLOW = 1e-3
 """Largest speed [m/s, rad/s] of a path whose times look as if they were not in seconds."""
@@ -106,15 +106,6 @@ def waypoints_path(t: float, constants: Array, target: Array) -> None:
     turn_target(target, _triple(constants, at + 21), (0.0, 0.0, 0.0))
     rate = scaled(moves, _slope(constants, at + 12, x))
     turn_target(target, _cubic(constants, at + 12, x), rate)
-
-
-class _RowError(InvalidInputError):
-    """A row of a path, counted from 0, is refused."""
-
-    def __init__(self, argument: str, row: int, reason: str) -> None:
-        super().__init__(argument, f"row {row}: {reason}", row)
-        self.row = row
-        self.reason = reason
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -197,8 +188,8 @@ class Waypoints(Reference):
         if len(times) < 2:
             raise InvalidInputError("times", "at least 2 points are needed", times)
         for row in np.flatnonzero(times[1:] <= times[:-1]) + 1:
-            problem = f"times must increase, not go from {times[row - 1]:g} s to {times[row]:g} s"
-            raise _RowError("times", row, problem)
+            problem = f"row {row} must be above {times[row - 1]:g} s, not at {times[row]:g} s"
+            raise InvalidInputError("times", problem, times)
         turn_noise = self.noise if self.turn_noise is None else self.turn_noise
         self._set(turn_noise=turn_noise, turned=read_only(np.zeros(len(times))))
         self._check(noise=not_negative, turn_noise=not_negative)
@@ -210,13 +201,14 @@ class Waypoints(Reference):
         quaternions = finite_array("quaternions", quaternions, (len(knots), 4))
         norms = np.linalg.norm(quaternions, axis=1)
         for row in np.flatnonzero(np.abs(norms - 1.0) > _UNIT_WITHIN):
-            problem = f"a quaternion must have norm 1, not {norms[row]:.3g}"
-            raise _RowError("quaternions", row, problem)
+            problem = f"row {row} must have norm 1, not {norms[row]:.3g}"
+            raise InvalidInputError("quaternions", problem, quaternions)
         self._set(quaternions=quaternions)
         turns = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
         half = (turns[1:] * turns[:-1].inv()).magnitude() > np.pi - 1e-6
         for row in np.flatnonzero(half) + 1:
-            raise _RowError("quaternions", row, "half a turn from the orientation before")
+            problem = f"row {row} is half a turn from the one before"
+            raise InvalidInputError("quaternions", problem, quaternions)
         if self.turn_noise:
             given = turns
             turns = smoothed_turns(knots, given, self.turn_noise, self.ends == "closed")
@@ -276,13 +268,14 @@ class Waypoints(Reference):
         with warnings.catch_warnings(record=True) as remarks:
             warnings.simplefilter("always")
             try:
-                table, lines, unread = _read(path)
-                poses = (table[:, 1:4], ends, table[:, 4:] if table.shape[1] > 4 else None)
-                made = cls(stretch * table[:, 0], *poses, interpolation, noise, turn_noise)
-            except _RowError as error:
-                raise FileError(path, f"line {lines[error.row]}: {error.reason}") from error
+                table, unread = _read(path)
+                poses = (table[:, 2:5], ends, table[:, 5:] if table.shape[1] > 5 else None)
+                made = cls(stretch * table[:, 1], *poses, interpolation, noise, turn_noise)
             except (ValueError, csv.Error) as error:
-                raise FileError(path, one_line(error)) from error
+                reason = re.sub(
+                    r"row (\d+)", lambda row: f"line {table[int(row[1]), 0]:.0f}", one_line(error)
+                )
+                raise FileError(path, reason) from error
         for message in (*(remark.message for remark in remarks), *made._doubts(unread)):
             warnings.warn(f"{path}: {message}", stacklevel=2)
         return made
@@ -318,11 +311,12 @@ class Waypoints(Reference):
         return float(self.times[-1] - self.times[0])
 
 
-def _read(path: str | os.PathLike[str]) -> tuple[Array, list[int], list[str]]:
-    """Read a file of points (m, 4) or poses (m, 8), each with its time.
+def _read(path: str | os.PathLike[str]) -> tuple[Array, list[str]]:
+    """Read a file of points or poses, each with its time.
 
     Returns:
-        The table, the numbers of its lines, and the names of the columns that are not read.
+        The numbers of its lines, times, points and quaternions, (m, 5) or (m, 9), and the names of
+        the columns that are not read.
     """
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
@@ -332,28 +326,26 @@ def _read(path: str | os.PathLike[str]) -> tuple[Array, list[int], list[str]]:
     for _, line in numbered:
         delimiter = ";" if ";" in line else ","
         names = [name.lower() for name in _cells(line.lstrip("# "), delimiter)]
-        if set(_POINT) <= set(names):
+        known = [name for name in names if name in _COLUMNS]
+        wanted = _COLUMNS[: len(known)]
+        if len(known) in (4, 8) and set(known) == set(wanted):
             break
     else:
-        raise FileError(path, "the header must name t, x, y, z, and of poses qw, qx, qy, qz")
-    wanted = _POINT if set(_TURN).isdisjoint(names) else _POINT + _TURN
-    for name in wanted:
-        if names.count(name) != 1:
-            raise FileError(path, f"the header must name {name} once")
+        problem = "a header must name t, x, y, z, or t, x, y, z, qw, qx, qy, qz, once each"
+        raise FileError(path, problem)
     table = []
-    numbers = []
     for number, line in numbered:
         cells = _cells(line.partition("#")[0], delimiter)
         if any(cells):
             try:
                 row = dict(zip(names, cells, strict=True))
-                table.append(finite_array("row", [row[name] for name in wanted], (-1,)))
+                values = finite_array("row", [row[name] for name in wanted], (-1,))
             except ValueError as error:
                 problem = f"{len(wanted)} finite numbers are needed, not {line!r}"
                 raise FileError(path, f"line {number}: {problem}") from error
-            numbers.append(number)
-    unread = [name for name in names if name and name not in wanted]
-    return np.array(table).reshape(-1, len(wanted)), numbers, unread
+            table.append([number, *values])
+    unread = [name for name in names if name and name not in known]
+    return np.array(table).reshape(-1, 1 + len(wanted)), unread
 
 
 def _cells(line: str, delimiter: str) -> list[str]:

@@ -74,7 +74,7 @@ BAD = [
     ("track --acceleration-limit -1", "limits.acceleration: limit: must be"),
     ("track --seed -1", "seed: must be"),
     ("track hart", "reference: must be one of heart, circle, "),
-    ("track bad.csv", "bad.csv: the header must name t, x, y, z"),
+    ("track bad.csv", "bad.csv: a header must name t, x, y, z"),
     ("track --set reference.radius=1", "no setting in [reference] 'radius'"),
     (
         "track tilting-circle --set reference.along.radius=0",
