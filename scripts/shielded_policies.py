@@ -39,7 +39,7 @@ class ShieldedActions(gymnasium.ActionWrapper[Any, Any, Any]):
         return super().reset(**options)
 
     def action(self, action: Vector) -> Vector:
-        """Return the nearest safe joint velocity [rad/s], (n,)."""
+        """Return the safe joint velocity [rad/s], (n,)."""
         command = self.shield.step(self._positions(self.unwrapped), action)
         self.clipped += command.clipped
         return command.dq
@@ -59,7 +59,7 @@ class ShieldStep:
         self._keys = [f"{name}.pos" for name in names]
 
     def __call__(self, transition: dict[str, Any]) -> dict[str, Any]:
-        """Return a transition with the nearest safe action."""
+        """Return a transition with the safe action."""
         changed = dict(transition)
         goal = np.radians([transition["action"][key] for key in self._keys])
         q = np.radians([transition["observation"][key] for key in self._keys])

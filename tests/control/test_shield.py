@@ -1,4 +1,4 @@
-"""A shield gives the wish itself where the limits admit it, and the nearest safe command else."""
+"""A shield gives the wish itself where the limits admit it, and a safe command close to it else."""
 
 import copy
 import itertools

@@ -1,5 +1,5 @@
 
-/* Compute the safe command dq (CONTROLLER_DOF) [rad/s] that is nearest to a wish [rad/s].
+/* Compute the safe command dq (CONTROLLER_DOF) [rad/s] for a wish [rad/s], each CONTROLLER_DT seconds.
  *
  * Without a new wish (NULL) the last one counts, for @timeout@ s. Without any, or if it is not
  * finite, the arm brakes and stays. Returns an action, as controller_step does.
