@@ -59,6 +59,7 @@ from iiwa_dnn.schemes.limits import (
     Periods,
     arriving,
     braking,
+    checked_longest,
     constant_periods,
     joint_bounds,
     joint_rates,
@@ -456,7 +457,7 @@ class Shield:
         """
         self.robot = checks.instance("robot", robot, Robot)
         self.dt = checks.positive("dt", dt)
-        self.longest_period = longest_period
+        self.longest_period = checked_longest(longest_period, self.dt)
         self._periods = constant_periods(self.dt)
         self.settings = np.array(
             [

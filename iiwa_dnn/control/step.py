@@ -41,7 +41,6 @@ from iiwa_dnn.control.yielding import (
     make_yielding,
     yield_step,
 )
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators.base import (
     BUDGET,
     DURATION,
@@ -65,6 +64,7 @@ from iiwa_dnn.schemes.limits import (
     MotionLimits,
     Periods,
     check_ranges,
+    checked_longest,
     constant_periods,
 )
 from iiwa_dnn.schemes.program import LimitNames, ProgramArrays, StepProgram, assemble
@@ -131,8 +131,7 @@ class ControlStep:
             InvalidInputError: With a jerk limit, a joint's range is too short to turn round in; or
                 `longest` is below `dt`.
         """
-        if longest is not None and longest < dt:
-            raise InvalidInputError("longest_period", f"must be at least dt, {dt:g} s", longest)
+        checked_longest(longest, dt)
         self.program = program
         frames = len(program.target_frames)
         names = LimitNames(program, dt)

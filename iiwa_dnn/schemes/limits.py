@@ -127,6 +127,13 @@ def constant_periods(dt: float) -> Periods:
     return Periods(dt, dt, dt, 1.0, False)
 
 
+def checked_longest(longest: float | None, dt: float) -> float | None:
+    """Return a longest period [s], or None; refuse one that is below the control period [s]."""
+    if longest is not None and checks.positive("longest_period", longest) < dt:
+        raise InvalidInputError("longest_period", f"must be at least dt, {dt:g} s", longest)
+    return longest
+
+
 def stated_periods(
     nominal: float, longest: float | None, dt: float | None, elapsed: float | None
 ) -> Periods:

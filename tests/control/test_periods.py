@@ -96,6 +96,9 @@ def test_settings_of_periods_are_refused_by_name() -> None:
     q = PLAIN.start_posture()
     with pytest.raises(d.InvalidInputError, match="longest_period: must be at least dt"):
         controller(False, longest_period=1e-3).step(q, 0.0, d.Target(np.ones(3)))
+    for longest in (1e-3, 0.0, np.nan):
+        with pytest.raises(d.InvalidInputError, match="longest_period: must be"):
+            d.Shield(PLAIN, DT, longest_period=longest)
     with pytest.raises(d.InvalidInputError, match="elapsed: needs a longest_period"):
         controller(False).step(q, 0.0, d.Target(np.ones(3)), elapsed=1e-3)
 
