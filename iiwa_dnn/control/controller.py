@@ -461,7 +461,7 @@ class Controller:
         with self._turn():
             program = self.program
             program.kinematics.update(q)
-            return program.placement.copy()
+            return program.placement
 
     def program_at(self, q: Vector, targets: Matrix, t: float) -> QP:
         """Build the program at joint positions q (n,) [rad] for targets (k, 18)."""
