@@ -208,8 +208,10 @@ class Controller:
         state = self._state
         before = state.past
         after = before
+        if self._lock._is_owned():  # type: ignore[attr-defined]
+            self._turn()
         try:
-            with self._turn():
+            with self._lock:
                 before = state.past
                 command = self._compute(q, t, target, dt, elapsed)
                 after = state.next
@@ -269,20 +271,20 @@ class Controller:
         reasons: tuple[str, ...] = ()
         if dt is not elapsed or not self.dt == step.steady == state.dt:
             reasons = self._take_periods(step, dt, elapsed)
-        dt = step.dt
         layout = step.layout
         program = step.program
-        if not _is_plain(q, layout.shape):
+        # Of bytes in another order Pinocchio makes other numbers, without a word.
+        if type(q) is not np.ndarray or q.dtype is not _FLOAT or q.shape != layout.shape:
             q = checks.finite_array("q", q, layout.shape)
         program.kinematics.update(q)
         row = np.empty(layout.width)
         past = state.past
         samples = step.samples and target is None
         if not samples:
-            layout.targets(row)[:] = self.targets(t - past[DELAY, 0], target, dt)
+            layout.targets(row)[:] = self.targets(t - past[DELAY, 0], target, step.dt)
         if program.refreshed:
-            program.refresh(q, past[LAST], layout.targets(row), t, dt)
-        following = np.empty(past.shape)
+            program.refresh(q, past[LAST], layout.targets(row), t, step.dt)
+        following = np.empty(step.shape)
         if state.halted:
             past = past.copy()
             past[HALTED] = 1.0
@@ -359,7 +361,7 @@ class Controller:
             paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
             longest = self.longest_period
             step = ControlStep(program, paths, self.solver, self.dt, policy, longest)
-            self._state.watch(program.least.size)
+            self._state.watch(step.shape)
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
             return step
@@ -474,12 +476,6 @@ class Controller:
             least = kept_distances(self._state.next).copy()
             program.write(data, targets, past, self.dt, t, least)
             return QP.from_data(data, program.sizes)
-
-
-def _is_plain(q: ArrayLike, shape: tuple[int, ...]) -> bool:
-    """Tell whether joint positions are an array as compiled code takes it."""
-    # Of bytes in another order Pinocchio makes other numbers, without a word.
-    return type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == shape
 
 
 # A change of one of them is checked, and what is derived from them is made anew.
