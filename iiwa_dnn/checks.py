@@ -129,7 +129,7 @@ def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
         booleans = is_object and not {bool, np.bool_}.isdisjoint(map(type, given.flat))
         if booleans or given.dtype.kind in "bc" or is_masked(value):
             raise TypeError
-        numbers = np.array(given, dtype=np.float64)
+        numbers = np.array(given, dtype=np.float64, order="C")
     except (TypeError, ValueError, OverflowError) as error:
         raise InvalidInputError(argument, "must be numbers, real and not masked", value) from error
     lengths = zip(shape, numbers.shape, strict=False)

@@ -429,10 +429,12 @@ def build(tables: Tables) -> Tables:
     return {**made, **objects(known, "run", run)}
 
 
-def call(function: Callable[..., Any], table: str, values: Tables) -> Any:
-    """Call a function with the values of a table; errors as of `objects`."""
-    given = {key: value for key, value in values.items() if key not in ("name", "q0")}
-    arguments = objects(signature(function).parameters, table, given)
+def call(
+    function: Callable[..., Any], table: str, values: Tables, others: Collection[str] = ()
+) -> Any:
+    """Call a function with the values of a table but some `others`; errors as of `objects`."""
+    given = objects((*others, *signature(function).parameters), table, values)
+    arguments = {key: value for key, value in given.items() if key not in others}
     try:
         return function(**arguments)
     except (AttributeError, TypeError, ValueError) as error:  # an InvalidInputError is one too
@@ -442,7 +444,7 @@ def call(function: Callable[..., Any], table: str, values: Tables) -> Any:
 def choose(choices: Choices, table: str, values: Tables) -> Any:
     """Call the function that the key ``name`` of a table chooses, with its other keys."""
     name = checks.one_of(table, values["name"], tuple(choices))
-    return call(choices[name], table, values)
+    return call(choices[name], table, values, ("name",))
 
 
 def objects(known: Collection[str], table: str, values: Tables) -> Tables:
@@ -470,7 +472,7 @@ def _made(place: str, value: Any) -> Any:
 
 def load(table: Tables) -> Any:
     """Load the robot of a table [robot], with the data sheet's limits."""
-    return call(partial(load_robot, table.get("name", "iiwa7")), "robot", table)
+    return call(partial(load_robot, table.get("name", "iiwa7")), "robot", table, ("name", "q0"))
 
 
 def bounded(sheet: Robot, table: Tables) -> tuple[Robot, list[Any]]:

@@ -85,7 +85,8 @@ class Kinds:
                 return make.get(base, self._named)(home, found)
             case _, ast.Assign(value=value):
                 return self.of(home, value)
-        fail(module, node, "is no type of a kernel's variable")
+        bare = isinstance(node, ast.arg)
+        fail(module, node, "has no annotation" if bare else "is no type of a kernel's variable")
 
     def tuple(self, kind: Kind, count: int) -> Kind:
         """Return the type of a plain tuple, whose items have the same type."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.policies import Action, ProgramKind
+from iiwa_dnn.control.relaxed import DAMPING
 from iiwa_dnn.control.state import LAST, Q
 from iiwa_dnn.naming import DONE, describe, in_the_way
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
@@ -32,6 +33,10 @@ PAST = 3
 
 ACTIVE = 1e-9
 """Multiplier above which a bound or row counts as active."""
+
+SINGULAR = "a singular posture, or tasks against each other"
+DAMPED = 4.0
+"""Squared singular value of the tasks' rows below which damping counts, in units of its own."""
 
 STATUSES = tuple(Status)
 """Statuses by their number in a row."""
@@ -269,15 +274,26 @@ class Command:
             sides, rows = self._layout.multipliers(self.row, ACTIVE)
         names = self._layout.names
         codes = names.codes(self.bounds, sides, self.past)
-        words = map(describe, in_the_way(names.settings, codes, rows))
+        words = [*map(describe, in_the_way(names.settings, codes, rows))]
+        if not words and self.kind is ProgramKind.SOFTENED:
+            words = self._lacks
         return (*self.reasons, *words, *self.conditions)
+
+    @property
+    def _lacks(self) -> list[str]:
+        """State that the rows of the softened program's tasks, or the joints, are not enough."""
+        qp = self.qp
+        rows = (~qp.A.any(axis=1)).sum()
+        rank = (np.linalg.eigvalsh(qp.P) > DAMPED * DAMPING**2).sum()
+        few = f"{qp.q.size} joints for {rows} rows of the tasks"
+        return [SINGULAR if rank < min(qp.q.size, rows) else few] * bool(rank < rows)
 
     @property
     def conditions(self) -> tuple[str, ...]:
         """Pairs that began nearer than they have to be, and relations that joints do not fulfil."""
-        least = self._layout.view(self.row, "least")
-        found: tuple[str, ...] = self._layout.names.conditions(self.past[Q], least)
-        return found
+        names = self._layout.names
+        near = names.near(self._layout.view(self.row, "least"))
+        return (*near, *names.off(self.past[Q]))
 
     @property
     def qp(self) -> QP:

@@ -20,6 +20,7 @@ from iiwa_dnn.control.paths import (
     by_frame,
     doubts,
     far_targets,
+    lost_rank,
     near_pairs,
     paths_of,
 )
@@ -39,7 +40,6 @@ from iiwa_dnn.control.yielding import BRAKE, guard_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
-from iiwa_dnn.qp.layout import data_size
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
@@ -138,6 +138,8 @@ class Controller:
     def _set(self, name: str, value: Any) -> None:
         """Take a setting; what is derived from the settings is made anew."""
         before = vars(self).get(name)
+        if name == "scheme":
+            value.program(self.robot)  # parts that do not fit the robot are refused
         # A number of numpy's names its type where it is written into C.
         own = float(value) if name in ("dt", "longest_period") and value is not None else value
         object.__setattr__(self, name, own)
@@ -208,10 +210,8 @@ class Controller:
         state = self._state
         before = state.past
         after = before
-        if self._lock._is_owned():  # type: ignore[attr-defined]
-            self._turn()
         try:
-            with self._lock:
+            with self._turn():
                 before = state.past
                 command = self._compute(q, t, target, dt, elapsed)
                 after = state.next
@@ -243,9 +243,10 @@ class Controller:
         """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a share of the period.
 
         Raises:
-            InvalidInputError: `dq` has another size, or is not finite.
+            InvalidInputError: `dq` has another size, or is not finite, or the share is below 0.
         """
         sent = checks.finite_array("dq", dq, (self.robot.dof,))
+        share = checks.not_negative("fraction", fraction)
         with self._turn():
             state = self._state
             state.dt = state.dt or self.dt
@@ -253,7 +254,7 @@ class Controller:
             past[BEFORE] = state.past[LAST]
             past[LAST] = sent
             past[REST] = 0.0
-            past[DELAY] = state.past[DELAY] + self.dt * (1.0 - fraction)
+            past[DELAY] = state.past[DELAY] + self.dt * (1.0 - share)
             state.past = past
 
     def _compute(
@@ -271,20 +272,20 @@ class Controller:
         reasons: tuple[str, ...] = ()
         if dt is not elapsed or not self.dt == step.steady == state.dt:
             reasons = self._take_periods(step, dt, elapsed)
+        dt = step.dt
         layout = step.layout
         program = step.program
-        # Of bytes in another order Pinocchio makes other numbers, without a word.
-        if type(q) is not np.ndarray or q.dtype is not _FLOAT or q.shape != layout.shape:
+        if not _is_plain(q, layout.shape):
             q = checks.finite_array("q", q, layout.shape)
         program.kinematics.update(q)
         row = np.empty(layout.width)
         past = state.past
         samples = step.samples and target is None
         if not samples:
-            layout.targets(row)[:] = self.targets(t - past[DELAY, 0], target, step.dt)
+            layout.targets(row)[:] = self.targets(t - past[DELAY, 0], target, dt)
         if program.refreshed:
-            program.refresh(q, past[LAST], layout.targets(row), t, step.dt)
-        following = np.empty(step.shape)
+            program.refresh(q, past[LAST], layout.targets(row), t, dt)
+        following = np.empty(past.shape)
         if state.halted:
             past = past.copy()
             past[HALTED] = 1.0
@@ -361,7 +362,7 @@ class Controller:
             paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
             longest = self.longest_period
             step = ControlStep(program, paths, self.solver, self.dt, policy, longest)
-            self._state.watch(step.shape)
+            self._state.watch(program.least.size)
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
             return step
@@ -403,6 +404,7 @@ class Controller:
         program = self.program
         found = [*doubts(program, start, self.dt, self.mode), *near_pairs(program, start, t)]
         if own:
+            found += lost_rank(program, start, t, self.dt, self.targets)
             found += far_targets(self.scheme, program.target_frames, start, self.targets(t))
             away = beyond_reach(self.reference, self.robot)
             found += [f"the path leads {away:.3g} m beyond the arm's reach"] * (away > 0.0)
@@ -463,7 +465,7 @@ class Controller:
         with self._turn():
             program = self.program
             program.kinematics.update(q)
-            return program.placement
+            return program.placement.copy()
 
     def program_at(self, q: Vector, targets: Matrix, t: float) -> QP:
         """Build the program at joint positions q (n,) [rad] for targets (k, 18)."""
@@ -471,11 +473,14 @@ class Controller:
             program = self.program
             past = self._state.past[: LAST + 2].copy()
             past[Q] = q
-            data = np.empty(data_size(*program.sizes))
-            program.kinematics.update(q)
             least = kept_distances(self._state.next).copy()
-            program.write(data, targets, past, self.dt, t, least)
-            return QP.from_data(data, program.sizes)
+            return program.qp_at(past, targets, self.dt, t, least)
+
+
+def _is_plain(q: ArrayLike, shape: tuple[int, ...]) -> bool:
+    """Test whether joint positions are an array as compiled code takes it."""
+    # Of bytes in another order Pinocchio makes other numbers, without a word.
+    return type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == shape and q.flags.c_contiguous
 
 
 # A change of one of them is checked, and what is derived from them is made anew.

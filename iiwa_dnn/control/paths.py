@@ -1,17 +1,18 @@
 """The references of a control loop, one for each frame that tasks track."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from pinocchio import log3
 
 from iiwa_dnn import checks
+from iiwa_dnn.control.command import SINGULAR
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp import Matrix
-from iiwa_dnn.references import Reference, Target
+from iiwa_dnn.references import Reference
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.collision import unwatched_links
 from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
@@ -29,6 +30,14 @@ PLACES = 200
 """Places of a path at which it is looked at."""
 SLOWEST = 0.1
 """Control period above which a warning is given [s]."""
+DOUBLINGS = 16
+"""Times ahead at which a path's start is looked at: a control period, two, four, ..."""
+NEAR = 0.02
+"""Distance [m] and change of the entries of a rotation in which a path hardly bends."""
+MISSING = 0.2
+"""Part of a task velocity that is more than that bend."""
+ZERO = 1e-3
+"""Ratio of singular values below which they count as zero."""
 
 
 def by_frame(reference: References | None, tip: str) -> Mapping[str, Reference]:
@@ -68,9 +77,9 @@ def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> 
     robot = program.robot
     if problem := robot.outside(start.q):
         yield f"the start posture {problem}"
-    for coupling in LimitNames(program, dt).conditions(start.q, program.least):
+    for coupling in LimitNames(program, dt).off(start.q):
         yield f"{coupling} at the start: they come to it within the limits"
-    yield from _doubts_of_tasks(program, dt)
+    yield from _doubt_of_gain(program, dt)
     if dt > SLOWEST:
         yield f"a control period of {dt:g} s is long: the arm follows each command blindly"
     limits = program.scheme.limits
@@ -86,26 +95,51 @@ def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> 
         yield unwatched(links)
 
 
-def _doubts_of_tasks(program: StepProgram, dt: float) -> Iterator[str]:
-    """State that hard tasks have too many rows, or a gain too high for the limits at dt [s]."""
-    variables = program.sizes[0]
-    # The paper's four rows of an orientation have rank 3; couplings of joints hold always.
-    tasks = [task for task in program.tasks if task.row_weight > 0.0]
-    blocks = sum(getattr(task, "form", "") == "block" for task in tasks)
-    rows = sum(task.row_count(program.robot) for task in tasks) - blocks
-    if rows > variables:
-        yield (
-            f"{variables} joints cannot fulfil the {rows} rows of the tasks; orientation='none' "
-            "leaves the orientation free"
-        )
-    gains = [min(task.gain, 1.0 / dt) for task in tasks if isinstance(task, GainTask)]
-    if program.rate_limits is None or not gains:
+def _doubt_of_gain(program: StepProgram, dt: float) -> Iterator[str]:
+    """State that a gain is too high for the limits on acceleration and jerk at dt [s], if so."""
+    if program.rate_limits is None:
         return
+    gains = [min(task.gain, 1.0 / dt) for task in program.tasks if isinstance(task, GainTask)]
     largest = largest_gain(program.rate_limits.numbers(program.robot), 1.0 / dt)
-    if max(gains) > largest * (1.0 + 1e-9):
+    if max(gains, default=0.0) > largest * (1.0 + 1e-9):
         yield (
             f"a gain of {max(gains):.3g} 1/s is above {largest:.3g} 1/s, up to which a loop with "
             f"these limits on acceleration and jerk is stable at {dt:g} s a step (docs/limits.md)"
+        )
+
+
+def lost_rank(
+    program: StepProgram,
+    start: Configuration,
+    t: float,
+    dt: float,
+    sample: Callable[[float], Matrix],
+) -> Iterator[str]:
+    """State that no joint velocity at the start gives what the hard tasks ask for, if so.
+
+    The path is looked at as long as it is near to where it begins.
+
+    Args:
+        program: The program of its steps.
+        start: Where a loop begins.
+        t: Time at which it begins [s].
+        dt: Control period [s].
+        sample: Returns the targets of a time [s], (k, 18).
+    """
+    first = sample(t)
+    targets = [first, *(sample(t + dt * 2.0**k) for k in range(DOUBLINGS))]
+    past = np.vstack([start.q, np.zeros((2, start.q.size))])
+    near = [each for each in targets if np.abs(each - first)[:, :12].max() <= NEAR]
+    qps = [program.qp_at(past, each, dt) for each in near]
+    b = np.transpose([qp.b for qp in qps])
+    rows, joints = qps[0].A.shape
+    x, _, rank, _ = np.linalg.lstsq(qps[0].A, b, rcond=ZERO)
+    missing = np.linalg.norm(b - qps[0].A @ x, axis=0)
+    if (missing > MISSING * np.linalg.norm(b, axis=0) + 1e-6).any():  # that is rounding
+        few = "orientation='none', or a PositionTask alone, leaves the orientation free"
+        yield (
+            f"{joints} joints cannot fulfil the {rows} rows of the tasks, whose rank at the start "
+            f"is {rank}: {SINGULAR if rank < min(rows, joints) else few}"
         )
 
 
@@ -114,8 +148,7 @@ def near_pairs(program: StepProgram, start: Configuration, t: float) -> Iterator
     parts = [part for part in program.scheme.limits if isinstance(part, CollisionAvoidance)]
     for part in parts:
         scene = part.scene(program.robot)
-        distances = scene.distances(start.q[np.newaxis], np.array([t]))[0]
-        for names, distance in zip(scene.pairs, distances, strict=True):
+        for names, distance in zip(scene.pairs, scene.distances(start.q, t), strict=True):
             if distance < 0.99 * part.distance:
                 yield (
                     f"{' and '.join(names)} are {distance:.3g} m apart at the start, not "
@@ -150,9 +183,8 @@ def far_targets(
     turns = any(isinstance(task, OrientationTask | PoseTask) for task in scheme.tasks)
     for name, data in zip(frames, targets, strict=True):
         frame = start.frame(name)
-        target = Target.from_data(data)
-        distance = float(np.linalg.norm(target.position - frame.position))
-        angle = turns * float(np.linalg.norm(log3(target.rotation @ frame.rotation.T)))
+        distance = np.linalg.norm(data[:3] - frame.position)
+        angle = turns * np.linalg.norm(log3(data[3:12].reshape(3, 3) @ frame.rotation.T))
         if distance > FAR or angle > TURNED:
             yield (
                 f"the reference begins {distance:.3g} m and {angle:.3f} rad from {name}; start at "

@@ -22,7 +22,8 @@ asks for more than all joints together can give is followed as far as they can. 
 contradict each other nevertheless, the arm stops.
 
 With limits on acceleration or jerk the relaxed programs have the bounds of position and velocity
-alone, and the command is a point on the way to their answer, within the bounds of the step;
+alone, and the command is a point on the way to their answer, within the bounds of the step: each
+joint goes there as quickly as it may, so that ``slow`` leaves the path, and comes back to it;
 ``stop`` brakes until the arm stands (`iiwa_dnn.control.yielding`).
 
 Sources: J. M. Hollerbach, "Dynamic scaling of manipulator trajectories", Journal of Dynamic

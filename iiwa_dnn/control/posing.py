@@ -14,8 +14,9 @@ half its unit: :math:`D_{ii}` is 1 rad for a joint that turns, and the larger of
 its range for one that slides. The damping is :math:`\lambda = \mu \|e\|^2`, with :math:`\mu = 0.1`
 unless a step did not make the error smaller: it is taken back, and :math:`\mu` rises until one
 does. Near a posture that has the pose the damping vanishes and the convergence is quadratic;
-elsewhere the end is a posture whose pose is the nearest one around, and the multipliers name what
-is in the way.
+elsewhere the end is a posture whose pose is the nearest one around. Where no start leads to the
+pose, the ends go on with orientation errors weighed a hundredth, and then none: the position comes
+first. The multipliers there name what is in the way.
 
 Sources: T. Sugihara, "Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt
 method", IEEE Trans. Robotics 27(5), 2011, for the damping; D. W. Marquardt, "An algorithm for
@@ -25,7 +26,8 @@ least-squares estimation of nonlinear parameters", J. SIAM 11(2), 1963, for its 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from functools import partial
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,7 +36,6 @@ from iiwa_dnn import checks
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Solution, Vector
-from iiwa_dnn.qp.layout import data_size
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.obstacles import Obstacle
@@ -64,6 +65,9 @@ _STILL = 1e-7
 _ACTS = 1e-3
 """Least ratio of a multiplier to the error for which a limit counts as in the way."""
 
+_SECOND = 1e-2
+"""Weight of the orientation where the position comes first [m/rad]."""
+
 
 @dataclass(frozen=True)
 class PoseSolution:
@@ -71,7 +75,8 @@ class PoseSolution:
 
     Attributes:
         q: Joint positions [rad] whose pose is the target's, (n,); None if none was found.
-        nearest: Configuration at `q`; if none was found, the one with the least error.
+        nearest: Configuration at `q`; if none was found, the one nearest to the target's position,
+            and with the least orientation error there.
         position_error: Distance of `nearest` from the target [m].
         orientation_error: Angle between the orientations of `nearest` and of the target [rad].
         in_the_way: Limits and obstacles that keep `nearest` from the target, in words. If empty
@@ -96,10 +101,11 @@ class _Point(NamedTuple):
     Attributes:
         q: Joint positions [rad], (n,).
         qp: Program of a step at `q`, whose equalities begin with the pose: the Jacobian of the tip,
-            linear over angular, and position [m] over rotation vector [rad] from it to the goal.
+            linear over angular, and position [m] over rotation vector [rad] from it to the goal,
+            the angular rows times the orientation's weight.
         missing: Squared error, the distances by which pairs are too near, and how far mimic joints
             are from where their leaders put them.
-        far: Largest of the errors of the pose [m], [rad], and of those distances.
+        far: Largest of the errors of the pose [m], weighed [rad], and of those distances.
     """
 
     q: Vector
@@ -113,20 +119,23 @@ def solve_pose(
     target: Target,
     q0: ArrayLike | None = None,
     *,
+    orientation: Literal["so3", "none"] = "so3",
     obstacles: Sequence[Obstacle] | CollisionAvoidance = (),
     starts: int = 20,
     seed: int = 0,
     tol: float = 1e-9,
 ) -> PoseSolution:
-    """Find joint positions within the limits at which the tip has a pose.
+    """Find joint positions within the limits at which the tip has a pose, or a position alone.
 
     Of those that several starts lead to, it is the one nearest to `q0`. The first start is `q0`
-    itself, the others are drawn at random within the limits.
+    itself, the others are drawn at random within the limits. Of a pose that none of them leads to,
+    as most are for an arm of five joints, the position comes first.
 
     Args:
         robot: The robot, n joints.
         target: The pose of the tip; its velocity does not matter.
         q0: Joint positions [rad], (n,); None takes the robot's start posture.
+        orientation: ``"so3"``, or ``"none"`` to leave it free.
         obstacles: Obstacles that the arm keeps clear of, where they are at time 0, and it keeps
             clear of itself then too. A `CollisionAvoidance` says the distance; without obstacles
             nothing is watched.
@@ -142,21 +151,28 @@ def solve_pose(
     begin = home if q0 is None else checks.finite_array("q0", q0, (robot.dof,))
     checks.integer("starts", starts, 1)
     checks.positive("tol", tol)
+    weight = float(checks.one_of("orientation", orientation, ("so3", "none")) == "so3")
     program = _program(robot, obstacles)
+    solver = DNNSolver(tol=1e-12)
     goal = np.concatenate([target.data[:12], np.zeros(6)])[np.newaxis]
     random = np.random.default_rng(checks.integer("seed", seed, 0))
-    solver = DNNSolver(tol=1e-12)
     postures = [np.clip(begin, robot.q_lower, robot.q_upper), *robot.draw(random, starts - 1)]
-    ends = [_descend(program, solver, goal, posture, tol) for posture in postures]
+    descend = partial(_descend, program, solver, goal, tol)
+    ends = [descend(posture, weight) for posture in postures]
     found = [end for end in ends if end.far <= tol]
+    if not found and weight > 0.0:
+        weight = _SECOND
+        ends = [descend(descend(end.q, weight).q, 0.0) for end in ends]
+        ends = [_at(program, end.q, goal, weight) for end in ends]
     best = min(ends, key=lambda end: end.missing)
     if found:
         best = min(found, key=lambda end: float(np.linalg.norm(end.q - begin)))
+    error = _at(program, best.q, goal, 1.0).qp.b
     return PoseSolution(
         best.q if found else None,
         Configuration(robot, best.q),
-        math.hypot(*best.qp.b[:3]),
-        math.hypot(*best.qp.b[3:6]),
+        math.hypot(*error[:3]),
+        math.hypot(*error[3:6]),
         () if found else _in_the_way(program, solver, best),
     )
 
@@ -175,25 +191,23 @@ def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -
 
 def _units(robot: Robot) -> Vector:
     """Return the unit of each joint's step, (n,): 1 rad, of a slide 1 m or a tenth of its range."""
-    units = np.ones(robot.dof)
-    slides = list(robot.slides)
-    units[slides] = np.maximum(1.0, 0.1 * (robot.q_upper - robot.q_lower)[slides])
-    return units
+    slides = np.isin(np.arange(robot.dof), list(robot.slides))
+    return np.where(slides, np.maximum(1.0, 0.1 * (robot.q_upper - robot.q_lower)), 1.0)
 
 
 def _descend(
-    program: StepProgram, solver: DNNSolver, goal: Matrix, start: Vector, tol: float
+    program: StepProgram, solver: DNNSolver, goal: Matrix, tol: float, start: Vector, weight: float
 ) -> _Point:
     """Go from a start (n,) [rad] to where the error from the goal (1, 18) gets no smaller."""
     damping = _DAMPING
-    point = _at(program, start, goal)
+    point = _at(program, start, goal, weight)
     for _ in range(_MOST):
         if point.far <= tol:
             break
         step = _solve(program, solver, point, damping)
         if not step.found:
             break
-        trial = _at(program, np.clip(point.q + step.x, *program.robot.limits[:2]), goal)
+        trial = _at(program, np.clip(point.q + step.x, *program.robot.limits[:2]), goal, weight)
         gained = point.missing - trial.missing
         if gained > 0.0:
             damping = max(0.2 * damping, _DAMPING)
@@ -205,12 +219,11 @@ def _descend(
     return point
 
 
-def _at(program: StepProgram, q: Vector, goal: Matrix) -> _Point:
-    """Write the program at joint positions q (n,) [rad] for a goal (1, 18)."""
-    data = np.empty(data_size(*program.sizes))
-    program.kinematics.update(q)
-    program.write(data, goal, np.array([q, 0.0 * q, 0.0 * q]), np.inf)
-    qp = QP.from_data(data, program.sizes)
+def _at(program: StepProgram, q: Vector, goal: Matrix, weight: float) -> _Point:
+    """Write the program at joint positions q (n,) [rad] for a goal (1, 18), and weigh its turn."""
+    qp = program.qp_at(np.array([q, 0.0 * q, 0.0 * q]), goal, np.inf)
+    qp.A[3:6] *= weight
+    qp.b[3:6] *= weight
     error = qp.b[:6]
     linkage = qp.b[6:]
     linkage /= JointCouplingTask.gain  # of a step, as the pose

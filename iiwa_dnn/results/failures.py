@@ -1,5 +1,6 @@
 """The reasons why a run is not a success, in plain words, from its metrics."""
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -141,6 +142,8 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
     advice = "; more time for the path (--period, --stretch) may help" * (kind in KINDS[1:])
     if kind in KINDS[2:] and incidents["first"]["step"] == 0 and _is_abrupt(metrics):
         advice = "; the arm starts at rest, the path at speed or elsewhere (heart, line: at rest)"
+    if kind in KINDS[2:] and "slowed" in done:
+        advice = f"; held back joint by joint, the tip leaves the path{advice}"
     yield (
         f"{counted(sum(done.values()))} without a solution ({counts}), the first at "
         f"{_at(incidents['first'])}; most often in the way: {blocking}{advice}"
@@ -195,9 +198,10 @@ def _broken_limits(metrics: Mapping[str, Any]) -> Iterator[str]:
             yield f"a joint {kind} is not finite"
         elif worst > LIMIT_SLACK:
             where = metrics["violations"][name]
+            degrees = "; are positions in degrees?" * (kind == "position" and worst > 2.0 * math.pi)
             yield (
                 f"joint {kind} limit broken by {_show(worst)} {unit}; {where['joint']} at "
-                f"{_at(where)}"
+                f"{_at(where)}{degrees}"
             )
     near = metrics.get("collisions")
     if near is not None and near["missing_m"] > LIMIT_SLACK:

@@ -1,11 +1,13 @@
 """A configuration: joint positions together with the kinematics that belong to them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
 
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from iiwa_dnn.checks import Array, finite_array, instance, read_only
+from iiwa_dnn.errors import NotFoundError
 from iiwa_dnn.robot.robot import Robot
 
 
@@ -56,6 +58,13 @@ class Configuration(FrameState):
         super().__init__(*_kinematics(robot, checked, robot.tip_id))
         object.__setattr__(self, "robot", robot)
         object.__setattr__(self, "q", checked)
+
+    if not TYPE_CHECKING:  # else a checker of types takes any name
+
+        def __getattr__(self, name: str) -> None:
+            names = [each for each in dir(Configuration) if not each.startswith("_")]
+            names += [each.name for each in fields(Configuration)]
+            raise AttributeError(str(NotFoundError("Configuration attribute", name, names)))
 
     @property
     def inertia(self) -> Array:

@@ -119,19 +119,16 @@ class Robot:
     def reach(self) -> float:
         """Distance of the tip from the base that the links' lengths allow at most [m]."""
         tip = self.model.frames[self.tip_id]
-        own = float(np.linalg.norm(tip.placement.translation))
-        return sum(self.lengths[self.moves[self.tip_id] > 0.0].tolist(), own)
+        joints = list(self.model.supports[tip.parentJoint])[1:]
+        links = [tip.placement, *(self.model.jointPlacements[joint] for joint in joints)]
+        slides = [
+            float(np.abs(self.limits[:2, joint - 1]).max())
+            for joint in joints
+            if joint - 1 in self.slides
+        ]
+        return sum([float(np.linalg.norm(link.translation)) for link in links] + slides)
 
-    @cached_property
-    def lengths(self) -> checks.Array:
-        """Largest distance of each joint's frame from that of the joint before it [m], (n,)."""
-        offsets = [place.translation for place in list(self.model.jointPlacements)[1:]]
-        lengths = np.array([np.linalg.norm(offset) for offset in offsets])
-        slides = list(self.slides)
-        lengths[slides] += np.abs(self.limits[:2, slides]).max(axis=0)
-        return checks.read_only(lengths)
-
-    @cached_property
+    @property
     def slides(self) -> tuple[int, ...]:
         """Numbers from 0 of the joints that slide."""
         joints = enumerate(list(self.model.joints)[1:])
@@ -193,12 +190,16 @@ class Robot:
         """Name the first joint of q (n,) [rad] that is off its limits, in words; "" if none is.
 
         A distance of 1e-9 beyond a limit is forgiven: a run may end there, and the next one begin.
+        Positions beyond a turn that would be within the limits in degrees are asked about.
         """
+        turns = np.radians(q)
+        fit = (turns >= self.q_lower) & (turns <= self.q_upper)
+        hint = "; are the positions in degrees?" * bool(fit.all() and np.abs(q).max() > 2.0 * np.pi)
         for i, (lower, upper, each) in enumerate(
             zip(*self.limits[:2], np.asarray(q), strict=True), 1
         ):
             if not lower - 1e-9 <= each <= upper + 1e-9:
-                return f"is not between {lower:g} and {upper:g} rad: joint {i} is at {each:g}"
+                return f"is not between {lower:g} and {upper:g} rad: joint {i} is at {each:g}{hint}"
         return ""
 
     def with_tool(self, tool: pin.SE3 | ArrayLike, name: str = "tool") -> Robot:

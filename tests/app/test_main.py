@@ -80,6 +80,7 @@ BAD = [
         "track tilting-circle --set reference.along.radius=0",
         "reference.along: radius: must be a finite number",
     ),
+    ("track --set robot.nam=ur5", "no setting in [robot] 'nam'; did you mean: name"),
     ("track --set scheme.wieght=1", "no setting in [scheme] 'wieght'; did you mean: weight"),
     ("track --set limits.tipspeed=1", "no setting in [limits] 'tipspeed'"),
     ("physics --set plant.disturbances.fricton=1", "did you mean: friction"),

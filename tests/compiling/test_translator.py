@@ -363,7 +363,7 @@ def test_a_closed_array_is_read_and_never_written(both: tuple[Any, Any]) -> None
 
 
 REFUSED = [
-    ("def f(a) -> None:\n    pass", "`a` is no type"),
+    ("def f(a) -> None:\n    pass", "`a` has no annotation"),
     ("def f(a: tuple[int, float]) -> None:\n    pass", "`tuple[int, float]` is no type"),
     ("def f(a: float, *, b: float) -> float:\n    return b", "name 'b' is not defined"),
     ("def f(a: int) -> int:\n    return a**2", "`return a ** 2` has no translation"),

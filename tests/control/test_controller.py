@@ -112,6 +112,76 @@ def test_too_few_joints_for_a_pose_are_warned_of_once(orientation: Any, said: in
         assert [str(each.message)[:23] for each in caught] == ["5 joints cannot fulfil "] * times
 
 
+def warnings_of(controller: d.Controller, q: np.ndarray) -> list[str]:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        controller.step(q, 0.0)
+    return [str(each.message) for each in caught]
+
+
+def following(robot: d.Robot, q: Any, path: d.Reference, *tasks: d.Task) -> list[str]:
+    scheme = d.Scheme([d.CyclicMotion()], tasks, [d.JointLimits()])
+    loop = d.Controller(robot, scheme, path.anchored(d.Configuration(robot, q)), dt=1e-2)
+    return warnings_of(loop, np.asarray(q, float))
+
+
+def test_rank_counts_not_rows() -> None:
+    """A table with two axes, and a planar arm of three joints, follow what is in their plane."""
+    quarter = np.pi / 2
+    table = d.robot_from_dh(
+        [(0.0, quarter, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)], velocity=1.0, prismatic=[1, 2]
+    )
+    planar = d.robot_from_dh([(0.4, 0.0, 0.0, 0.0)] * 3, lower=-3.0, upper=3.0, velocity=1.0)
+    bent = [0.3, 0.8, 0.5]
+    for offset, said in (([0.02, -0.03, 0.0], 0), ([0.0, 0.02, 0.03], 1)):
+        across = [offset[2], offset[0], offset[1]]  # the plane of y and z
+        for found in (
+            following(table, [0.1, 0.2], d.Line(offset=across), d.PositionTask()),
+            following(planar, bent, d.Line(offset=offset), d.PositionTask()),
+            following(planar, bent, d.Line(offset=offset), d.PoseTask()),
+        ):
+            assert [" joints cannot fulfil the " in each for each in found] == [True] * said
+
+
+def test_a_start_in_a_singular_posture_is_named() -> None:
+    planar = d.robot_from_dh([(0.4, 0.0, 0.0, 0.0)] * 3, lower=-3.0, upper=3.0, velocity=1.0)
+    inwards = d.Line(offset=[-0.3, 0.0, 0.0])
+    (said,) = following(planar, np.zeros(3), inwards, d.PositionTask())
+    assert said == (
+        "3 joints cannot fulfil the 3 rows of the tasks, whose rank at the start is 1: "
+        "a singular posture, or tasks against each other"
+    )
+    (said,) = following(planar, np.zeros(3), d.Line(offset=[0.0, 0.1, 0.0]), d.PositionTask())
+    assert "beyond the arm's reach" in said  # the way there begins as the joints move
+
+
+def test_a_command_in_a_singular_posture_says_so() -> None:
+    """Straight, no joint moves the tip along the arm; bent, each does."""
+    planar = d.robot_from_dh([(0.4, 0.0, 0.0, 0.0)] * 3, lower=-3.0, upper=3.0, velocity=1.0)
+    scheme = d.Scheme([d.CyclicMotion()], [d.PositionTask()], [d.JointLimits()])
+    for q, reasons in (
+        (np.zeros(3), ("a singular posture, or tasks against each other",)),
+        (np.array([0.3, 1.0, 0.9]), ()),
+    ):
+        tip = d.Configuration(planar, q).position
+        command = d.Controller(planar, scheme, dt=1e-2).step(q, 0.0, d.Target(tip - [0.01, 0, 0]))
+        assert command.against == reasons
+        assert command.ok == (not reasons)
+    up = d.Target(tip + [0.0, 0.0, 0.1], d.Configuration(planar, q).rotation)
+    straight = d.Controller(planar, scheme, dt=1e-2).step(q, 0.0, up)
+    assert straight.against == ("a singular posture, or tasks against each other",)
+    whole = d.Scheme([d.CyclicMotion()], [d.PoseTask()], [d.JointLimits()])
+    raised = d.Controller(planar, whole, dt=1e-2).step(q, 0.0, up)
+    assert "3 joints for 6 rows of the tasks" in raised.against
+
+
+def test_a_start_in_degrees_is_asked_about() -> None:
+    loop = d.Controller(paper_robot(), d.DoubleIndicator(), heart())
+    assert warnings_of(loop, np.degrees(PAPER_Q0))[0].endswith("are the positions in degrees?")
+    loop = d.Controller(paper_robot(), d.DoubleIndicator(), heart())
+    assert "degrees" not in warnings_of(loop, np.array(PAPER_Q0) + [0, 0, 0, 0, 3, 0, 0])[0]
+
+
 SCHEMES: dict[str, d.Scheme] = {
     "so3": d.DoubleIndicator(home=PAPER_Q0),
     "block": d.DoubleIndicator(home=PAPER_Q0, orientation="block"),

@@ -3,6 +3,7 @@
 import numpy as np
 import pinocchio as pin
 import pytest
+from scipy.optimize import minimize
 
 import iiwa_dnn as d
 
@@ -123,3 +124,59 @@ def test_a_slide_without_limits_is_gone_along() -> None:
     slide = d.robot_from_dh([(0, 0, 0, 0)], prismatic=[1])
     answer = d.solve_pose(slide, pose_of(slide, np.array([12345.0])), [0.5], starts=1)
     assert answer.q == pytest.approx([12345.0], abs=1e-9)
+
+
+def five_joints() -> d.Robot:
+    """An arm of five joints, as of small kits."""
+    quarter = np.pi / 2
+    table = [
+        (0.03, -quarter, 0.12, 0.0),
+        (0.116, 0.0, 0.0, -quarter),
+        (0.135, 0.0, 0.0, quarter),
+        (0.0, -quarter, 0.0, -quarter),
+        (0.0, 0.0, 0.1, 0.0),
+    ]
+    return d.robot_from_dh(table, lower=-1.9, upper=1.9, velocity=3.0)
+
+
+def test_a_position_alone_is_found_by_five_joints() -> None:
+    arm = five_joints()
+    for q in arm.draw(np.random.default_rng(2), 5):
+        target = d.Target(d.Configuration(arm, q).position)
+        answer = d.solve_pose(arm, target, orientation="none")
+        assert answer.found
+        distance, angle = error(arm, answer.q, target)
+        assert distance <= 1.001e-9
+        assert answer.position_error == pytest.approx(distance, abs=1e-12)
+        assert answer.orientation_error == pytest.approx(angle, rel=1e-9)
+        assert arm.outside(answer.q) == ""
+
+
+def test_of_a_pose_that_five_joints_do_not_have_the_position_comes_first() -> None:
+    """No posture around that SLSQP finds has the position and a smaller angle."""
+    arm = five_joints()
+    start = d.Configuration(arm, arm.start_posture())
+    target = d.Target(start.position + [0.0, 0.05, 0.0], start.rotation)
+    answer = d.solve_pose(arm, target, starts=5)
+    assert not answer.found
+    assert answer.q is None
+    distance, angle = error(arm, answer.nearest.q, target)
+    assert distance < 1e-9
+    assert answer.position_error < 1e-9
+    at = {
+        "type": "eq",
+        "fun": lambda q: 10.0 * (d.Configuration(arm, q).position - target.position),
+    }
+    best = np.inf
+    for q in answer.nearest.q + np.random.default_rng(0).uniform(-0.2, 0.2, (3, 5)):
+        found = minimize(
+            lambda q: error(arm, q, target)[1] ** 2,
+            q,
+            bounds=[*zip(arm.q_lower, arm.q_upper, strict=True)],
+            constraints=[at],
+            options={"ftol": 1e-12, "maxiter": 300},
+        )
+        if error(arm, found.x, target)[0] < 1e-6:
+            best = min(best, found.fun**0.5)
+    assert best < np.inf
+    assert angle == pytest.approx(best, rel=1e-3)

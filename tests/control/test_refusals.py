@@ -8,7 +8,15 @@ import pytest
 
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, paper_start
-from iiwa_dnn import Controller, DoubleIndicator, InvalidInputError, Shield, Target, solve_pose
+from iiwa_dnn import (
+    AccelerationLimits,
+    Controller,
+    DoubleIndicator,
+    InvalidInputError,
+    Shield,
+    Target,
+    solve_pose,
+)
 from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
 from iiwa_dnn.simulation import MovingAverage
 
@@ -17,6 +25,10 @@ POSE = Target(paper_start().position, paper_start().rotation)
 
 def controller(**options: Any) -> Controller:
     return Controller(paper_robot(), DoubleIndicator(), heart(), **options)
+
+
+def of_three_joints() -> Controller:
+    return Controller(paper_robot(), DoubleIndicator(extra_limits=(AccelerationLimits([1, 2, 3]),)))
 
 
 REFUSED: list[tuple[str, Callable[[], object]]] = [
@@ -40,6 +52,10 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("starts", lambda: solve_pose(paper_robot(), POSE, starts=0)),
     ("target", lambda: solve_pose(paper_robot(), np.eye(4))),  # type: ignore[arg-type]
     ("q0", lambda: solve_pose(paper_robot(), POSE, [0.0, 1.0])),
+    ("orientation", lambda: solve_pose(paper_robot(), POSE, orientation="block")),  # type: ignore[arg-type]
+    ("acceleration: must be one number or 7", lambda: of_three_joints()),
+    ("fraction", lambda: controller().send(np.zeros(7), fraction="a")),  # type: ignore[arg-type]
+    ("fraction", lambda: controller().send(np.zeros(7), fraction=np.nan)),
 ]
 
 
@@ -73,6 +89,22 @@ def test_joint_positions_of_other_types_are_the_numbers_that_they_hold() -> None
     expected = controller().step(q.astype(float), 0.0).dq
     for other in (q, q.astype(">f8"), q.astype("g")):
         np.testing.assert_array_equal(controller().step(other, 0.0).dq, expected)
+
+
+def test_joint_positions_with_gaps_in_memory_are_taken() -> None:
+    q = np.array(PAPER_Q0)
+    expected = controller().step(q, 0.0).dq
+    for other in (np.stack([q, q], axis=1)[:, 0], q[::-1].copy()[::-1]):
+        assert not other.flags.c_contiguous
+        np.testing.assert_array_equal(controller().step(other, 0.0).dq, expected)
+
+
+def test_a_scheme_that_does_not_fit_changes_nothing() -> None:
+    loop = controller()
+    before = loop.scheme
+    with pytest.raises(InvalidInputError, match=r"^acceleration"):
+        loop.scheme = DoubleIndicator(extra_limits=(AccelerationLimits([1, 2, 3]),))
+    assert loop.scheme is before
 
 
 @pytest.mark.parametrize("t", [np.nan, "a", None])

@@ -94,6 +94,8 @@ def test_broken_limits_name_joint_and_time_and_rounding_is_forgiven():
         "joint position limit broken by 0.1 rad; joint 6 at step 3 (t = 0.3 s)",
         "joint velocity limit broken by 0.5 rad/s; joint 1 at step 2 (t = 0.2 s)",
     ]
+    degrees = sample(make_record(), "q", (3, 5), 90.0)
+    assert failures(degrees)[0].endswith("at step 3 (t = 0.3 s); are positions in degrees?")
     unlimited = {"q_lower": [-np.inf] * 7, "q_upper": [np.inf] * 7}
     free = make_record(q=record.q, settings=unlimited)
     assert compute_metrics(free)["position_limit_violation_rad"] == 0.0
@@ -329,6 +331,9 @@ def test_the_policies_are_named_with_their_steps():
     limits += "joint 3 upper velocity limit"
     advice = "more time for the path (--period, --stretch) may help"
     assert failures(half)[1].endswith(f"in the way: {limits}; {advice}")
+    held = slowed([0.4] * 8 + [1.0] * 2, blocking=np.where(blocking, 3, 0))
+    assert "; held back joint by joint, the tip leaves the path" in failures(held)[1]
+    assert "held back" not in failures(half)[1]
     out_of_reach = slowed([0.4] * 8 + [1.0] * 2, blocking=np.minimum(blocking, 1))
     assert failures(out_of_reach)[1].endswith("joint 3 upper position limit")
     seldom = slowed([0.4] * 10, blocking=np.where(np.arange(10)[:, None] < 4, blocking, 0))

@@ -68,3 +68,19 @@ def test_it_stays_as_it_is(iiwa7: Robot, q: Array) -> None:
             setattr(conf, name, None)
     with pytest.raises(AttributeError):
         conf.extra = 1
+
+
+def test_a_name_that_is_none_is_answered_with_those_that_are(iiwa7: Robot, q: Array) -> None:
+    conf = Configuration(iiwa7, q)
+    with pytest.raises(AttributeError, match=r"no Configuration attribute 'nearest'; .* jacobian"):
+        _ = conf.nearest  # type: ignore[attr-defined]
+    with pytest.raises(AttributeError, match="did you mean: position"):
+        _ = conf.postion  # type: ignore[attr-defined]
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(conf)).q, q)
+
+
+def test_positions_in_degrees_are_asked_about(iiwa7: Robot) -> None:
+    home = iiwa7.start_posture()
+    assert iiwa7.outside(np.degrees(home)).endswith("are the positions in degrees?")
+    assert iiwa7.outside(home + 3.0).endswith("joint 2 is at 2.453")
+    assert iiwa7.outside(home) == ""
