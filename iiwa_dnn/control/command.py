@@ -291,9 +291,9 @@ class Command:
     @property
     def conditions(self) -> tuple[str, ...]:
         """Pairs that began nearer than they have to be, and relations that joints do not fulfil."""
-        names = self._layout.names
-        near = names.near(self._layout.view(self.row, "least"))
-        return (*near, *names.off(self.past[Q]))
+        least = self._layout.view(self.row, "least")
+        found: tuple[str, ...] = self._layout.names.conditions(self.past[Q], least)
+        return found
 
     @property
     def qp(self) -> QP:

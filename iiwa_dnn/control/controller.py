@@ -210,8 +210,10 @@ class Controller:
         state = self._state
         before = state.past
         after = before
+        if self._lock._is_owned():  # type: ignore[attr-defined]
+            self._turn()
         try:
-            with self._turn():
+            with self._lock:
                 before = state.past
                 command = self._compute(q, t, target, dt, elapsed)
                 after = state.next
@@ -272,20 +274,21 @@ class Controller:
         reasons: tuple[str, ...] = ()
         if dt is not elapsed or not self.dt == step.steady == state.dt:
             reasons = self._take_periods(step, dt, elapsed)
-        dt = step.dt
         layout = step.layout
         program = step.program
-        if not _is_plain(q, layout.shape):
+        # Of bytes in another order Pinocchio makes other numbers, without a word.
+        plain = type(q) is np.ndarray and q.dtype is _FLOAT and q.flags.c_contiguous
+        if not plain or q.shape != layout.shape:
             q = checks.finite_array("q", q, layout.shape)
         program.kinematics.update(q)
         row = np.empty(layout.width)
         past = state.past
         samples = step.samples and target is None
         if not samples:
-            layout.targets(row)[:] = self.targets(t - past[DELAY, 0], target, dt)
+            layout.targets(row)[:] = self.targets(t - past[DELAY, 0], target, step.dt)
         if program.refreshed:
-            program.refresh(q, past[LAST], layout.targets(row), t, dt)
-        following = np.empty(past.shape)
+            program.refresh(q, past[LAST], layout.targets(row), t, step.dt)
+        following = np.empty(step.shape)
         if state.halted:
             past = past.copy()
             past[HALTED] = 1.0
@@ -362,7 +365,7 @@ class Controller:
             paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
             longest = self.longest_period
             step = ControlStep(program, paths, self.solver, self.dt, policy, longest)
-            self._state.watch(program.least.size)
+            self._state.watch(step.shape)
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
             return step
@@ -465,7 +468,7 @@ class Controller:
         with self._turn():
             program = self.program
             program.kinematics.update(q)
-            return program.placement.copy()
+            return program.placement
 
     def program_at(self, q: Vector, targets: Matrix, t: float) -> QP:
         """Build the program at joint positions q (n,) [rad] for targets (k, 18)."""
@@ -475,12 +478,6 @@ class Controller:
             past[Q] = q
             least = kept_distances(self._state.next).copy()
             return program.qp_at(past, targets, self.dt, t, least)
-
-
-def _is_plain(q: ArrayLike, shape: tuple[int, ...]) -> bool:
-    """Test whether joint positions are an array as compiled code takes it."""
-    # Of bytes in another order Pinocchio makes other numbers, without a word.
-    return type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == shape and q.flags.c_contiguous
 
 
 # A change of one of them is checked, and what is derived from them is made anew.

@@ -77,7 +77,7 @@ def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> 
     robot = program.robot
     if problem := robot.outside(start.q):
         yield f"the start posture {problem}"
-    for coupling in LimitNames(program, dt).off(start.q):
+    for coupling in LimitNames(program, dt).conditions(start.q, program.least):
         yield f"{coupling} at the start: they come to it within the limits"
     yield from _doubt_of_gain(program, dt)
     if dt > SLOWEST:
@@ -148,7 +148,8 @@ def near_pairs(program: StepProgram, start: Configuration, t: float) -> Iterator
     parts = [part for part in program.scheme.limits if isinstance(part, CollisionAvoidance)]
     for part in parts:
         scene = part.scene(program.robot)
-        for names, distance in zip(scene.pairs, scene.distances(start.q, t), strict=True):
+        distances = scene.distances(start.q[np.newaxis], np.array([t]))[0]
+        for names, distance in zip(scene.pairs, distances, strict=True):
             if distance < 0.99 * part.distance:
                 yield (
                     f"{' and '.join(names)} are {distance:.3g} m apart at the start, not "

@@ -410,8 +410,8 @@ class Shield:
     """The limits of a robot, kept for whoever drives it.
 
     The shield integrates its own commands; measured positions that are no further than
-    `tracking_error` from those commanded `delay` ago do not change them. Threads may share a
-    shield: steps wait for each other.
+    `tracking_error` from those commanded `delay` ago do not change them, unless periods vary and
+    are not stated. Threads may share a shield: steps wait for each other.
 
     Attributes:
         robot: The robot, n joints, whose limits hold.
@@ -589,6 +589,9 @@ class Shield:
         if settings[3] > 0.0:
             way, sent = under_way(sent, settings[3])
             measured += way
+        if self.longest_period is not None and dt is None and elapsed is None:
+            # Nobody says for how long the last command was held.
+            copied(self._state.positions, measured)
         for kind in given:
             seen = frame or self.robot.tip if kind == "twist" else JOINTS
         asked = (kind, seen)

@@ -54,11 +54,10 @@ class ControllerState:
         self.past = np.zeros((LEAST, dof))
         self.rest()
 
-    def watch(self, pairs: int) -> None:
-        """Make room for the distances of so many pairs, which begin at the next step."""
-        dof = self.past.shape[1]
-        if len(self.past) != rows_of(pairs, dof):
-            past = np.zeros((rows_of(pairs, dof), dof))
+    def watch(self, shape: tuple[int, int]) -> None:
+        """Make room for the distances of all pairs, which begin at the next step, (8 + k, n)."""
+        if self.past.shape != shape:
+            past = np.zeros(shape)
             past[:LEAST] = self.past[:LEAST]
             self.past = past
             self.next = past

@@ -33,6 +33,7 @@ from iiwa_dnn.control.state import (
     YIELDS,
     Q,
     kept_distances,
+    rows_of,
 )
 from iiwa_dnn.control.yielding import (
     BRAKE,
@@ -100,6 +101,7 @@ class ControlStep:
     Attributes:
         program: The scheme laid out for the robot.
         layout: Columns of the rows that are written.
+        shape: Shape of the states from step to step, (8 + k, dof).
         dt: Period that the next command is for [s].
         steady: The same where periods do not vary, else NaN.
         plan: Arrays and settings that stay the same from step to step.
@@ -136,6 +138,7 @@ class ControlStep:
         frames = len(program.target_frames)
         names = LimitNames(program, dt)
         pairs = program.least.size
+        self.shape = (rows_of(pairs, program.robot.dof), program.robot.dof)
         self.layout = RowLayout(program.sizes, program.robot.dof, frames, names, pairs)
         self.has_network = self._add_network(solver, dt, policy == BRAKE)
         self.samples = self._add_paths(references, dt) and not program.reads_targets

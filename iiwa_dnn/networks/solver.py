@@ -97,10 +97,12 @@ class DNNSolver:
 
     def state_for(self, sizes: Sizes) -> Vector:
         """Return the state itself, (size,), from which a program of sizes (n, m, p) starts."""
-        if sizes not in self._warm:
+        try:
+            return self._warm[sizes]
+        except KeyError:
             some = QP.from_data(np.zeros(data_size(*sizes)), sizes)
             self._keep(sizes, np.zeros(self.network.state_size(some)))
-        return self._warm[sizes]
+            return self._warm[sizes]
 
     def compiled_answer(self, sizes: Sizes, duration: float = 0.0) -> CompiledAnswer | None:
         """Return the compiled function that answers programs of these sizes as this solver does.

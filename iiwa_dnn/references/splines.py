@@ -76,10 +76,12 @@ def spline_of_positions(times: Array, moves: Array, closed: bool, limited: bool)
     # One row more on either side: the next one of a closed path, or one at rest.
     around = moves[[-2 if closed else 0, *range(len(times)), 1 if closed else -1]]
     knots = np.cumsum(np.pad(np.diff(times), (2, 1), mode="wrap"))
-    slopes = PchipInterpolator(knots, around).c[2, 1:]
+    preserving = PchipInterpolator(knots, around).c[:, 1:]
 
     def fit(knots: Array, rows: Rows, axis: int) -> Any:
-        ends = [(1, slopes[row, [axis]]) for row in (rows[0], rows[-1])]
+        if len(rows) == 2:  # most segments of a noisy recording
+            return preserving[:, rows[:1]][..., [axis]]
+        ends = [(1, preserving[2, row, [axis]]) for row in (rows[0], rows[-1])]
         return CubicSpline(knots, moves[rows][:, [axis]], bc_type=ends).c
 
     steps = np.abs(np.diff(moves, axis=0))

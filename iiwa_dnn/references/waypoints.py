@@ -323,16 +323,8 @@ def _read(path: str | os.PathLike[str]) -> tuple[Array, list[str]]:
     except (OSError, TypeError, ValueError) as error:  # ValueError: no UTF-8, a NUL in the path
         raise FileError(path, one_line(error)) from error
     numbered = enumerate(lines, 1)
-    for _, line in numbered:
-        delimiter = ";" if ";" in line else ","
-        names = [name.lower() for name in _cells(line.lstrip("# "), delimiter)]
-        known = [name for name in names if name in _COLUMNS]
-        wanted = _COLUMNS[: len(known)]
-        if len(known) in (4, 8) and set(known) == set(wanted):
-            break
-    else:
-        problem = "a header must name t, x, y, z, or t, x, y, z, qw, qx, qy, qz, once each"
-        raise FileError(path, problem)
+    names, delimiter = _header(numbered)
+    wanted = _COLUMNS if "qw" in names else _COLUMNS[:4]
     table = []
     for number, line in numbered:
         cells = _cells(line.partition("#")[0], delimiter)
@@ -344,8 +336,19 @@ def _read(path: str | os.PathLike[str]) -> tuple[Array, list[str]]:
                 problem = f"{len(wanted)} finite numbers are needed, not {line!r}"
                 raise FileError(path, f"line {number}: {problem}") from error
             table.append([number, *values])
-    unread = [name for name in names if name and name not in known]
+    unread = [name for name in names if name and name not in wanted]
     return np.array(table).reshape(-1, 1 + len(wanted)), unread
+
+
+def _header(lines: Iterator[tuple[int, str]]) -> tuple[list[str], str]:
+    """Go to the header; return the names of the columns and what is between them."""
+    for _, line in lines:
+        delimiter = ";" if ";" in line else ","
+        names = [name.lower() for name in _cells(line.lstrip("# "), delimiter)]
+        known = sorted(name for name in names if name in _COLUMNS)
+        if known in (sorted(_COLUMNS[:4]), sorted(_COLUMNS)):
+            return names, delimiter
+    raise ValueError("a header must name t, x, y, z, or t, x, y, z, qw, qx, qy, qz, once each")
 
 
 def _cells(line: str, delimiter: str) -> list[str]:

@@ -14,6 +14,8 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot.robot import Robot
 
 _WORLD = pin.Convention.WORLD
+_update_jacobians = pin.computeJointJacobians
+_update_placements = pin.updateFramePlacements
 _PLACEMENT = 12  # numbers of a placement: the rotation column by column, then the translation
 
 
@@ -56,11 +58,12 @@ class Kinematics:
     def update(self, q: Array) -> None:
         """Compute the kinematics at joint positions `q` (n,) [rad], which are not checked."""
         model = self.robot.model
+        data = self.data
         if self._dynamics:
-            pin.crba(model, self.data, q, _WORLD)  # leaves the joint Jacobian too
+            pin.crba(model, data, q, _WORLD)  # leaves the joint Jacobian too
         else:
-            pin.computeJointJacobians(model, self.data, q)
-        pin.updateFramePlacements(model, self.data)  # no slower than one of them
+            _update_jacobians(model, data, q)
+        _update_placements(model, data)  # no slower than one of them
 
     def frame(self, name: str) -> tuple[Array, Array]:
         """Return pose (4, 4) and Jacobian (6, n) of a frame, copies.

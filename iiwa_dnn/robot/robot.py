@@ -119,16 +119,19 @@ class Robot:
     def reach(self) -> float:
         """Distance of the tip from the base that the links' lengths allow at most [m]."""
         tip = self.model.frames[self.tip_id]
-        joints = list(self.model.supports[tip.parentJoint])[1:]
-        links = [tip.placement, *(self.model.jointPlacements[joint] for joint in joints)]
-        slides = [
-            float(np.abs(self.limits[:2, joint - 1]).max())
-            for joint in joints
-            if joint - 1 in self.slides
-        ]
-        return sum([float(np.linalg.norm(link.translation)) for link in links] + slides)
+        own = float(np.linalg.norm(tip.placement.translation))
+        return sum(self.lengths[self.moves[self.tip_id] > 0.0].tolist(), own)
 
-    @property
+    @cached_property
+    def lengths(self) -> checks.Array:
+        """Largest distance of each joint's frame from that of the joint before it [m], (n,)."""
+        offsets = [place.translation for place in list(self.model.jointPlacements)[1:]]
+        lengths = np.array([np.linalg.norm(offset) for offset in offsets])
+        slides = list(self.slides)
+        lengths[slides] += np.abs(self.limits[:2, slides]).max(axis=0)
+        return checks.read_only(lengths)
+
+    @cached_property
     def slides(self) -> tuple[int, ...]:
         """Numbers from 0 of the joints that slide."""
         joints = enumerate(list(self.model.joints)[1:])

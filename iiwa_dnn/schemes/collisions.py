@@ -264,14 +264,17 @@ class CollisionAvoidance(Limit):
         distances = (self.distance, self.gain)
         return make_scene(robot, self.obstacles, self.self_collision, distances, self.left_out)
 
+    def pairs(self, robot: Robot) -> list[tuple[str, float]]:
+        """Return the names in words and the least distance [m] of each watched pair."""
+        return [(f"{b} and {a}", self.distance) for a, b in self.scene(robot).pairs]
+
     def row_count(self, robot: Robot) -> int:
         """Return the number of rows: two for each pair, at most `nearest`."""
         return min(self.nearest, ENDS * len(self.scene(robot).pairs))
 
     def row_names(self, robot: Robot) -> list[str]:
         """Return the pair of each row; none where rows change their pair."""
-        pairs = self.scene(robot).pairs
-        names = [f"{b} and {a}" for a, b in pairs for _ in range(ENDS)]
+        names = [name for name, _ in self.pairs(robot) for _ in range(ENDS)]
         return names if len(names) <= self.nearest else []
 
     def extra_frames(self, robot: Robot) -> tuple[str, ...]:

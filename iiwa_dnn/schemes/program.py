@@ -46,7 +46,7 @@ from iiwa_dnn.schemes.parts import (
     enter_limit,
     enter_task,
 )
-from iiwa_dnn.schemes.scene import FIRST_PAIR, PAIRS
+from iiwa_dnn.schemes.scene import FIRST_PAIR
 from iiwa_dnn.schemes.step import Step, StepViews
 from iiwa_dnn.schemes.tasks import JointCouplingTask
 
@@ -272,7 +272,8 @@ class StepProgram:
         table: What compiled code reads of the layout, (1 + parts, 7): in its first row
             ``n, m, p``, the number of joints, that of parts, and the first target's frame.
         constants: Numbers that compiled code reads, (k,).
-        least: Least distance of each watched pair [m], (pairs,).
+        pairs: Names in words and least distance [m] of each watched pair.
+        least: These distances, (pairs,).
     """
 
     def __init__(self, robot: Robot, scheme: Scheme) -> None:
@@ -298,11 +299,12 @@ class StepProgram:
             for kind, parts in enumerate((scheme.costs, self.tasks, soft, limits))
         ]
         self.sizes = (n, rows[LIMITS], rows[TASKS])
-        distances: list[float] = []
-        for start, _ in self.constants_of(CollisionAvoidance):
-            self.constants[start + FIRST_PAIR] = len(distances)
-            distances += [self.constants[start]] * int(self.constants[start + PAIRS])
-        self.least: Vector = np.array(distances)
+        self.pairs: list[tuple[str, float]] = []
+        for block in self.blocks:
+            if isinstance(block.part, CollisionAvoidance):
+                self.constants[block.start + FIRST_PAIR] = len(self.pairs)
+                self.pairs += block.part.pairs(robot)
+        self.least: Vector = np.array([distance for _, distance in self.pairs])
         tip = robot.frame_id(self.target_frames[0])
         head = (*self.sizes, robot.dof, len(self.blocks), tip, 0)
         self.table: IntMatrix = np.array(
@@ -370,9 +372,8 @@ class StepProgram:
 
     @property
     def placement(self) -> Vector:
-        """Placement of the first tracked frame, (12,), a view."""
-        place: Vector = self.kinematics.placements[self.table[0, 5]]
-        return place
+        """Placement of the first tracked frame, (12,), a copy."""
+        return np.array(self.kinematics.placements[self.table[0, 5]])
 
     def append(self, address: int, constants: Vector, second: int = 0) -> None:
         """Add an entry for another compiled function of a control step.
@@ -471,17 +472,16 @@ class StepProgram:
         ``bounding`` the limits that bound without a kind of their own (`naming.KINDS`), and
         ``ramps`` the joints whose velocity limit depends on their position.
         """
-        limits = self.scheme.limits
+        counts = [(limit, limit.row_count(self.robot)) for limit in self.scheme.limits]
         rows: list[dict[str, object]] = []
-        for limit in limits:
-            named = [{"about": name} for name in limit.row_names(self.robot)]
-            count = limit.row_count(self.robot)
+        for limit, count in counts:
+            about = [{"about": name} for name in limit.row_names(self.robot)] or [{}] * count
             part: dict[str, object] = {"part": type(limit).__name__}
-            rows += [part | {"row": i + 1} | (named[i] if named else {}) for i in range(count)]
+            rows += [part | {"row": number} | name for number, name in enumerate(about, 1)]
         names = [
             type(limit).__name__
-            for limit in limits
-            if not (limit.row_count(self.robot) or isinstance(limit, RateLimits))
+            for limit, count in counts
+            if not (count or isinstance(limit, RateLimits))
         ]
         ramps = np.flatnonzero(np.isfinite(self.robot.ramps[1])).tolist()
         return {"rows": rows, "bounding": names, "ramps": ramps}
@@ -573,34 +573,30 @@ class LimitNames:
         self.periods = constant_periods(dt)
         self._robot = program.robot
         self._couplings = [task for task in program.tasks if isinstance(task, JointCouplingTask)]
-        scenes = [part for part in program.parts if isinstance(part, CollisionAvoidance)]
-        pairs = [pair for part in scenes for pair in part.scene(program.robot).pairs]
-        self._pairs = [*zip(pairs, program.least.tolist(), strict=True)]
+        self._pairs = program.pairs
         numbers = (program.rate_limits or MotionLimits()).numbers(program.robot)
         self._limits = numbers.reshape(NUMBERS, -1)
 
-    def off(self, q: Vector) -> list[str]:
-        """State which relations of joints the positions q (n,) [rad] do not fulfil."""
+    def conditions(self, q: Vector, least: Vector) -> tuple[str, ...]:
+        """State which promises wait for the arm to come nearer to them.
+
+        They are pairs that keep another distance than the scheme's, `least` (pairs,) [m], and
+        relations of joints that the positions q (n,) [rad] do not fulfil.
+        """
+        near = [
+            f"{names} meet, and no direction leads apart"
+            if kept == MEET
+            else f"{names} began nearer than {promised:g} m, and keep {kept:.3g} m"
+            for (names, promised), kept in zip(self._pairs, least, strict=True)
+            if kept != promised
+        ]
         found = [(task.coefficients, task.missing(self._robot, q)) for task in self._couplings]
-        return [
+        off = [
             f"{' and '.join(joints)}: {missing:.3g} rad off their JointCouplingTask"
             for joints, missing in found
             if abs(missing) > OFF
         ]
-
-    def near(self, least: Vector) -> list[str]:
-        """State which pairs keep another distance than the scheme's, `least` (pairs,) [m]."""
-        found = [
-            (f"{second} and {first}", promised, kept)
-            for ((first, second), promised), kept in zip(self._pairs, least, strict=True)
-        ]
-        return [
-            f"{names} meet, and no direction leads apart"
-            if kept == MEET
-            else f"{names} began nearer than {promised:g} m, and keep {kept:.3g} m"
-            for names, promised, kept in found
-            if kept != promised
-        ]
+        return (*near, *off)
 
     def codes(self, bounds: Matrix, sides: NDArray[Any], past: Matrix) -> NDArray[np.int8]:
         """Give the bounds on some sides of a program's joints their codes.

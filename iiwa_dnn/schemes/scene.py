@@ -21,6 +21,7 @@ and what that lacks to be linear in the joints' (twice), are at most
 import itertools
 import math
 from collections.abc import Sequence
+from dataclasses import astuple
 from typing import NamedTuple
 
 import numpy as np
@@ -94,17 +95,15 @@ class SceneViews(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """Nearest points of a pair's cores.
+    """Nearest points of a pair's cores, as far as rows need them.
 
     Attributes:
         second: Point of the second body [m], (3,).
-        first: Point of the first body [m], (3,).
         normal: Unit normal from the first to the second, (3,); zero where segments or points meet.
         distance: Distance of the bodies [m], negative where they meet.
     """
 
     second: Triple
-    first: Triple
     normal: Triple
     distance: float
 
@@ -133,14 +132,15 @@ class Scene(NamedTuple):
         for obstacle, part in self.moving:
             constants[part] = self.constants[part] + obstacle.shift(t)
 
-    def distances(self, q: Vector, t: float) -> Vector:
-        """Compute the distance of each pair [m] at q (n,) [rad] and a time t [s], (pairs,)."""
+    def distances(self, q: Matrix, t: Vector) -> Matrix:
+        """Compute the distances of all pairs [m], (k, pairs), at q (k, n) [rad] and t (k,) [s]."""
         constants = self.constants.copy()
-        self.move(constants, t)
         kinematics = Kinematics(self.robot, self.frames)
-        kinematics.update(q)
-        found = np.empty(len(self.pairs))
-        write_distances(constants, self.robot.dof, kinematics.placements, found)
+        found = np.empty((len(q), len(self.pairs)))
+        for row, posture, time in zip(found, q, t, strict=True):
+            self.move(constants, float(time))
+            kinematics.update(posture)
+            write_distances(constants, self.robot.dof, kinematics.placements, row)
         return found
 
     def nearest(self, q: Matrix, t: Vector) -> tuple[Vector, NDArray[np.int64]]:
@@ -148,27 +148,18 @@ class Scene(NamedTuple):
 
         The joints are at q (k, n) [rad] at times t (k,) [s].
         """
-        constants = self.constants.copy()
-        kinematics = Kinematics(self.robot, self.frames)
-        distances = np.empty(len(self.pairs))
-        found = np.empty((len(q), 2))
-        for row, posture, time in zip(found, q, t, strict=True):
-            self.move(constants, float(time))
-            kinematics.update(posture)
-            write_distances(constants, self.robot.dof, kinematics.placements, distances)
-            row[:] = (distances.min(), distances.argmin())
-        return found[:, 0].copy(), found[:, 1].astype(np.int64)
+        found = self.distances(q, t)
+        return found.min(axis=1), found.argmin(axis=1)
 
 
 class _Body(NamedTuple):
-    """A box with a radius in a frame of the robot, 0 the world; a joint or a speed moves it."""
+    """A box with a radius in a frame of the robot, 0 the world, where it may have a speed."""
 
     name: str
     frame: int
     box: PlacedBox
     radius: float
-    joint: int = 0
-    speed: float = 0.0
+    speed: float
 
 
 def make_scene(
@@ -199,8 +190,8 @@ def make_scene(
         raise InvalidInputError("robot", problem, robot)
     bodies = _bodies(robot, obstacles)
     links = len(bodies) - len(obstacles)
-    pairs = list(collision_model(robot).pairs(robot)) if self_collision else []
-    carried = [k for k in range(links) if bodies[k].joint]
+    pairs = [*collision_model(robot).pairs(robot)] if self_collision else []
+    carried = [k for k in range(links) if robot.moves[bodies[k].frame].any()]
     pairs += itertools.product(range(links, len(bodies)), carried)
     names = [(bodies[i].name, bodies[k].name) for i, k in pairs]
     frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
@@ -208,39 +199,31 @@ def make_scene(
     moved = _moved_ends(robot, frames, _constants(robot, distances, placed, rows, motions))
     watched = moved.any(axis=1) & ~_are_given(names, left_out, [body.name for body in bodies])
     if not watched.any():
-        raise _no_pair(robot, obstacles)
+        bare = unwatched_links(robot)
+        reason = f"; {unwatched(bare)}" if bare else ""
+        problem = f"there is no pair that could meet{reason}"
+        raise InvalidInputError("obstacles", problem, obstacles)
     rows[:, STILL] = np.where(moved.all(axis=1), 0.0, 1.0 + moved[:, 0])
     constants = _constants(robot, distances, placed, rows[watched], motions[watched])
     # The last three numbers of a body are its centre.
-    first = HEAD + robot.dof + PER_BODY * (links + 1) - 3
-    centers = [slice(at, at + 3) for at in first + PER_BODY * np.arange(len(obstacles))]
+    ends = HEAD + robot.dof + PER_BODY * np.arange(links + 1, len(bodies) + 1)
+    centers = [slice(end - 3, end) for end in ends]
     moving = [pair for pair in zip(obstacles, centers, strict=True) if pair[0].speed]
     reasons = np.where(moved.any(axis=1), "given", "no joint moves it").tolist()
-    unseen = zip(*zip(*names, strict=True), reasons, strict=True)
-    left = tuple(itertools.compress(unseen, ~watched))
+    left = tuple((*names[at], reasons[at]) for at in np.flatnonzero(~watched))
     return Scene(robot, [*itertools.compress(names, watched)], frames, moving, constants, left)
 
 
 def _bodies(robot: Robot, obstacles: Sequence[Obstacle]) -> list[_Body]:
     """Return the capsules of a robot's links, then the obstacles."""
-    bodies: list[_Body] = []
-    for capsule in collision_model(robot).capsules:
-        frame = robot.frame_id(capsule.link)
-        joint = int(robot.model.frames[frame].parentJoint)
-        box = box_around(capsule.a, capsule.b)
-        bodies.append(_Body(capsule.link, frame, box, capsule.radius, joint))
-    for number, each in enumerate(obstacles, 1):
-        name = f"{type(each).__name__} {number}"
-        bodies.append(_Body(name, 0, each.box, each.thickness, speed=each.speed))
-    return bodies
-
-
-def _no_pair(robot: Robot, obstacles: Sequence[Obstacle]) -> InvalidInputError:
-    """Return the error that there is nothing to keep away from."""
-    bare = unwatched_links(robot)
-    reason = f"; {unwatched(bare)}" if bare else ""
-    problem = f"there is no pair that could meet{reason}"
-    return InvalidInputError("obstacles", problem, obstacles)
+    bodies = [
+        _Body(link, robot.frame_id(link), box_around(a, b), radius, 0.0)
+        for link, a, b, radius in map(astuple, collision_model(robot).capsules)
+    ]
+    return bodies + [
+        _Body(f"{type(each).__name__} {number}", 0, each.box, each.thickness, each.speed)
+        for number, each in enumerate(obstacles, 1)
+    ]
 
 
 def _are_given(
@@ -300,67 +283,35 @@ def _layout(
 
 
 def _motion(robot: Robot, first: _Body, second: _Body) -> Matrix:
-    """Return `bounds_of_motion` of the second body's segment as seen from the first body."""
-    center, rotation, half = second.box
-    placement = robot.model.frames[second.frame].placement
-    ends = [placement.act(center + z * rotation[:, 2]) for z in (-half[2], half[2])]
-    return bounds_of_motion(robot, first.joint, second.joint, np.array(ends))
-
-
-def bounds_of_motion(robot: Robot, first: int, second: int, points: Matrix) -> Matrix:
-    """Find the joints that move points (k, 3) [m] of the second joint's link beside the first's.
-
-    The joints are Pinocchio's, 0 the world; the points are in the frame of the second.
+    """Find the joints that move the second body, a segment, beside the first one.
 
     Returns:
-        Two rows, (2, n): 1 for each joint that moves the second link alone, -1 for each that moves
-        the first alone, else 0; and the largest distance of the points from the axis of each joint
-        that moves them [m], -1 for a prismatic joint, 0 for the others.
+        Two rows, (2, n): 1 for each joint that moves the second body alone, -1 for each that moves
+        the first alone, else 0; and the largest distance of the segment from the axis of each joint
+        that moves it [m], -1 for a prismatic joint, 0 for the others.
     """
     model = robot.model
-    above = [set(list(model.supports[joint])[1:]) for joint in (first, second)]
-    moves = np.zeros(robot.dof)
+    center, rotation, half = second.box
+    placement = model.frames[second.frame].placement
+    moves = robot.moves[second.frame] - robot.moves[first.frame]
     radii = np.zeros(robot.dof)
-    # From the second link to the base, and up to the first: nothing is farther than `reach` from
+    # From the second body to the base, and up to the first: nothing is farther than `reach` from
     # the joint in turn, and `offsets` lead from the joint before it.
-    reach = float(np.linalg.norm(points, axis=1).max())
-    offsets = points
-    for joint in sorted(above[1] - above[0], reverse=True):
+    offsets = np.array([placement.act(center + z * rotation[:, 2]) for z in (-half[2], half[2])])
+    reach = float(np.linalg.norm(offsets, axis=1).max())
+    for j in np.flatnonzero(moves > 0.0)[::-1].tolist():
         # The axis may be met anywhere along itself: only what is across it counts.
-        across = np.linalg.norm(np.cross(_axis(robot, joint), offsets), axis=1).max()
-        moves[model.idx_vs[joint]] = 1.0
-        radii[model.idx_vs[joint]] = reach - np.linalg.norm(offsets, axis=1).max() + across
-        offsets = model.jointPlacements[joint].translation[np.newaxis]
-        reach += _length(robot, joint)
-    for joint in sorted(above[0] - above[1]):
-        reach += _length(robot, joint)  # on the way up a joint's own offset lies ahead of it
-        moves[model.idx_vs[joint]] = -1.0
-        radii[model.idx_vs[joint]] = reach
-    for joint in above[0] ^ above[1]:
-        if _slides(robot, joint):
-            radii[model.idx_vs[joint]] = -1.0
+        axis = np.reshape(model.joints[j + 1].createData().S, (2, 3)).sum(axis=0)
+        across = np.linalg.norm(np.cross(axis, offsets), axis=1).max()
+        radii[j] = reach - np.linalg.norm(offsets, axis=1).max() + across
+        offsets = model.jointPlacements[j + 1].translation[np.newaxis]
+        reach += robot.lengths[j]
+    for j in np.flatnonzero(moves < 0.0):
+        reach += robot.lengths[j]  # on the way up a joint's own offset lies ahead of it
+        radii[j] = reach
+    slides = list(robot.slides)
+    radii[slides] = np.where(moves[slides], -1.0, 0.0)
     return np.array([moves, radii])
-
-
-def _axis(robot: Robot, joint: int) -> Vector:
-    """Direction of a joint's axis in its own frame, (3,)."""
-    data = robot.model.joints[joint].createData()
-    robot.model.joints[joint].calc(data, np.zeros(1), np.zeros(1))
-    axis: Vector = np.ravel(data.S)
-    return axis[:3] if np.any(axis[:3]) else axis[3:]
-
-
-def _slides(robot: Robot, joint: int) -> bool:
-    return "JointModelP" in robot.model.joints[joint].shortname()
-
-
-def _length(robot: Robot, joint: int) -> float:
-    """Largest distance of a joint's frame from its parent's [m]."""
-    length = float(np.linalg.norm(robot.model.jointPlacements[joint].translation))
-    if _slides(robot, joint):
-        at = robot.model.idx_vs[joint]
-        length += float(np.abs([robot.q_lower[at], robot.q_upper[at]]).max())
-    return length
 
 
 @compiled
@@ -426,9 +377,7 @@ def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
         flat = 0.0 if half[0] == 0.0 else 1.0
         normal = (flat * x, flat * y, flat * z)
     outward = axis_at(base, normal)
-    point = combined(1.0, a, s, way)
-    other = combined(1.0, point, -core, outward)
-    return Contact(point, other, outward, core - scene.pairs[k, RADIUS])
+    return Contact(combined(1.0, a, s, way), outward, core - scene.pairs[k, RADIUS])
 
 
 @compiled

@@ -134,7 +134,7 @@ def test_the_clock_of_a_path_falls_behind_by_what_has_passed() -> None:
 
 
 @pytest.mark.parametrize("jerk", [np.inf, 500.0])
-@pytest.mark.parametrize("said", ["dt", "elapsed"])
+@pytest.mark.parametrize("said", ["dt", "elapsed", "neither"])
 def test_a_shield_passes_no_limit_whatever_period_comes(said: str, jerk: float) -> None:
     """The arm goes at the commanded velocity for as long as the period lasts."""
     robot = PLAIN.with_limits(acceleration=10.0, jerk=jerk)
@@ -149,9 +149,10 @@ def test_a_shield_passes_no_limit_whatever_period_comes(said: str, jerk: float) 
                 if k % 160:
                     request = {"position": random.uniform(robot.q_lower - 0.3, robot.q_upper + 0.3)}
             period = LONGEST * random.choice([random.uniform(0.01, 1.0), 1.0])
-            command = shield.step(q, **request, **({said: period if said == "dt" else elapsed}))
+            measured = {"dt": period, "elapsed": elapsed, "neither": DT}[said]
+            stated = {} if said == "neither" else {said: measured}
+            command = shield.step(q, **request, **stated)
             np.testing.assert_allclose(command.command.past[0], q, atol=1e-12)
-            measured = period if said == "dt" else elapsed
             turned = (command.dq - last) / measured - slope
             slope = slope + turned
             assert np.abs(slope).max() <= 10.0 + 1e-6
