@@ -40,11 +40,10 @@ class Kinematics:
             NotFoundError: The robot has no frame of that name.
             InvalidInputError: The inertia matrix is asked for, and a mass is negative.
         """
-        joints = zip(robot.model.names, robot.model.inertias, strict=True)
-        negative = [f"{name!r} ({body.mass:g} kg)" for name, body in joints if body.mass < 0.0]
-        if dynamics and negative:
-            problem = f"'inertia' takes no negative mass, on joint {', '.join(negative)}"
-            raise InvalidInputError("kinetic", problem, robot)
+        for name, body in zip(robot.model.names, robot.model.inertias, strict=True):
+            if dynamics and body.mass < 0.0:
+                problem = f"'inertia' takes no negative mass, on joint {name!r} ({body.mass:g} kg)"
+                raise InvalidInputError("kinetic", problem, robot)
         self.robot = robot
         self.data = robot.model.createData()
         ids = [robot.tip_id, 0, *(robot.frame_id(name) for name in frames)]

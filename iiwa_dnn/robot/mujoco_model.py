@@ -90,7 +90,14 @@ def build_spec(robot: Robot) -> Any:
     """
     mj = import_mujoco()
     root = ET.fromstring(source_of(robot)[1])
-    _strip(root, robot)
+    for link in root.findall("link"):
+        frame = robot.model.frames[robot.frame_id(link.get("name", ""))]
+        # Shapes out of other files; and inertias of the base, some no body's (TIAGo's antennas).
+        needless = link.findall("*/geometry/mesh/../..")
+        if frame.parentJoint == 0:
+            needless += link.findall("inertial")
+        for element in needless:
+            link.remove(element)
     extension = ET.SubElement(root, "mujoco")
     # Not fused: links keep their names, and the base can be told from the world.
     ET.SubElement(extension, "compiler", fusestatic="false", discardvisual="false")
@@ -109,17 +116,6 @@ def build_spec(robot: Robot) -> Any:
     turn = _quaternion(frame.placement)
     carrier.add_site(name=TIP_SITE, pos=frame.placement.translation, quat=turn)
     return spec
-
-
-def _strip(root: ET.Element, robot: Robot) -> None:
-    """Remove what physics does not need: shapes out of other files, inertias of the base."""
-    for link in root.findall("link"):
-        for shape in [*link.findall("visual"), *link.findall("collision")]:
-            if shape.find("geometry/mesh") is not None:
-                link.remove(shape)
-        if robot.model.frames[robot.frame_id(link.get("name", ""))].parentJoint == 0:
-            for inertia in link.findall("inertial"):  # some are no body's, as of TIAGo's antennas
-                link.remove(inertia)
 
 
 def _weld(spec: Any, robot: Robot) -> None:

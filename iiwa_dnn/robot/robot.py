@@ -181,12 +181,7 @@ class Robot:
         given = (lower, upper, velocity, acceleration, jerk)
         for name, row, value in zip(_LIMITS, limits, given, strict=True):
             if value is not None:
-                numbers = checks.array(name, value, np.shape(value))
-                try:
-                    row[:] = numbers
-                except ValueError as error:
-                    problem = f"must be one number or {self.dof}"
-                    raise InvalidInputError(name, problem, value) from error
+                row[:] = checks.array(name, value, np.shape(value) and row.shape)
         return replace(self, limits=limits)
 
     def outside(self, q: ArrayLike) -> str:

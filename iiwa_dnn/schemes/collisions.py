@@ -30,7 +30,6 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import Triple
 from iiwa_dnn.references.rotations import dot
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
@@ -134,8 +133,12 @@ def _write_ends(
         row = ENDS * k + at
         left = contact.distance + height_of(ends[at], contact) - least - ROOM
         limits[row] = gain * left - scene.pairs[k, SPEED]
-        normal = contact.normal
-        fastest = _write_gradient(scene, step.jacobian, k, ends[at], normal, gradients[row])
+        fastest = 0.0
+        for j in range(step.q.size):
+            if scene.moves[k, j] != 0.0:
+                rate = rate_along(step.jacobian, j, ends[at], contact.normal)
+                gradients[row, j] = -scene.moves[k, j] * rate
+                fastest += abs(rate) * scene.dq_max[j]
         slacks[row] = limits[row] - fastest
         limits[row] -= gain * eps
         if left < eps and step.rate < np.inf:
@@ -162,9 +165,7 @@ def kept_distance(scene: SceneViews, contact: Contact, kept: float) -> float:
     if contact.distance >= scene.least + ROOM:
         return scene.least
     if kept == 0.0 or kept == MEET:
-        kept = scene.least
-        if contact.distance < scene.least:
-            kept = contact.distance - ROOM
+        return contact.distance - ROOM if contact.distance < scene.least else scene.least
     return kept
 
 
@@ -175,23 +176,6 @@ def _rank(slacks: Vector, k: int) -> int:
     for i in range(slacks.size):
         rank += slacks[i] < slacks[k] or (slacks[i] == slacks[k] and i < k)
     return rank
-
-
-@compiled
-def _write_gradient(
-    scene: SceneViews, jacobian: Matrix, k: int, point: Triple, normal: Triple, gradient: Vector
-) -> float:
-    """Write the rate at which a point of pair k's second body sinks along a normal, (n,).
-
-    Returns:
-        The largest rate that the velocity limits of the joints allow [m/s].
-    """
-    fastest = 0.0
-    for j in range(gradient.size):
-        if scene.moves[k, j] != 0.0:
-            gradient[j] = -scene.moves[k, j] * rate_along(jacobian, j, point, normal)
-            fastest += abs(gradient[j]) * scene.dq_max[j]
-    return fastest
 
 
 def tuple_of_obstacles(argument: str, value: Any) -> tuple[Obstacle, ...]:

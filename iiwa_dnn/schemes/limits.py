@@ -689,30 +689,14 @@ def _ceiling(
         if highest(ub, last, periods, way) <= end:
             return ub
         if level == 0 or highest(lb, last, periods, way) <= end:
-            lb = _largest_within(lb, ub, end, last, periods, way)
+            beyond = ub
+            for _ in range(HALVINGS):
+                middle = 0.5 * (lb + beyond)
+                if highest(middle, last, periods, way) <= end:
+                    lb = middle
+                else:
+                    beyond = middle
         deceleration *= LOWER
-    return lb
-
-
-@compiled
-def _largest_within(
-    lb: float,
-    ub: float,
-    end: float,
-    last: float,
-    periods: Periods,
-    way: tuple[float, float, float],
-) -> float:
-    """Compute the largest command in [lb, ub] whose highest position is within `end`, else lb.
-
-    The way to rest is that of `highest`.
-    """
-    for _ in range(HALVINGS):
-        middle = 0.5 * (lb + ub)
-        if highest(middle, last, periods, way) <= end:
-            lb = middle
-        else:
-            ub = middle
     return lb
 
 

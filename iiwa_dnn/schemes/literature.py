@@ -158,8 +158,8 @@ class SpeedsBelowSlack(Limit):
     def __init__(self, robot: Robot) -> None:
         """State the rows for a robot with n joints: 2 n."""
         self.rows = 2 * robot.dof
-        eye = np.eye(robot.dof)
-        self._G = np.hstack([np.vstack([eye, -eye]), -np.ones((self.rows, 1))])
+        signs = [[1.0], [-1.0]]
+        self._G = np.hstack([np.kron(signs, np.eye(robot.dof)), -np.ones((self.rows, 1))])
 
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
         """Return G (2 n, n + 1) and h (2 n,)."""

@@ -175,24 +175,23 @@ def answer_of(part: Part, step: Step, n: int, rows: int) -> Vector:
     """
     arrays: dict[str, Matrix] = {}
     for method, names in part._methods.items():
-        arrays |= _checked(part, getattr(part, method)(step), names, step, (n, rows))
+        arrays |= _checked(part, getattr(part, method)(step), names, step.robot.dof, n, rows)
     part._check(arrays)
     return np.concatenate([array.ravel() for array in arrays.values()])
 
 
 def _checked(
-    part: Part, answer: Any, names: tuple[str, str], step: Step, sizes: tuple[int, int]
+    part: Part, answer: Any, names: tuple[str, str], dof: int, n: int, rows: int
 ) -> dict[str, Matrix]:
-    """Return both arrays of an answer by name, with all n variables; sizes are (n, rows)."""
+    """Return both arrays of an answer by name, with all n variables."""
     try:
-        pairs = zip(names, answer, strict=True)
-        given = {name: np.atleast_1d(real_array(name, x)) for name, x in pairs}
+        named = zip(names, answer, strict=True)
+        given = {name: np.atleast_1d(real_array(name, x)) for name, x in named}
     except (TypeError, ValueError) as error:
         problem = f"must return two arrays, {' and '.join(names)}, not {answer!r:.80}"
         raise InvalidInputError(type(part).__name__, problem, answer) from error
-    n, rows = sizes
     for name, array in given.items():
-        width = step.robot.dof if array.shape[-1] == step.robot.dof else n
+        width = dof if array.shape[-1] == dof else n
         shape = _shape(name, width, rows)
         if array.shape != shape:
             problem = f"{name} has shape {array.shape}, not {shape}"

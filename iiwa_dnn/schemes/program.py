@@ -148,8 +148,8 @@ class Scheme:
         """
         scheme = self.anchored(checks.instance("conf", conf, Configuration))
         program = scheme.program(conf.robot)
-        if program.needs_period:
-            checks.positive("dt", dt)
+        if any(getattr(part, "gain", 0.0) == np.inf for part in program.parts):
+            checks.positive("dt", dt)  # which a gain of inf is the inverse of
         q = conf.q
         velocity = np.zeros(q.size) if dq is None else checks.finite_array("dq", dq, (q.size,))
         targets = np.array(targets_of(conf.robot.tip, program.target_frames, target))
@@ -162,9 +162,8 @@ class Scheme:
         energy) with the inertia matrix.
         """
         velocity = np.asarray(dq, dtype=np.float64)
-        if self.kinetic == "identity":
-            return float(velocity @ velocity)
-        return float(velocity @ conf.inertia @ velocity)
+        along = conf.inertia @ velocity if self.kinetic == "inertia" else velocity
+        return float(velocity @ along)
 
     @property
     def kinetic(self) -> str:
@@ -334,11 +333,11 @@ class StepProgram:
         return first
 
     def _frames(self) -> list[str]:
-        """Return the names of the frames whose placements the kernels read, the tip's first."""
+        """Return the names of the frames whose placements the kernels read."""
         robot = self.robot
         own = [part.frame_name(robot) for part in self.parts if not part.copies]
         further = [name for part in self.parts for name in part.extra_frames(robot)]
-        return list(dict.fromkeys([robot.tip, *self.target_frames, *own, *further]))
+        return [*self.target_frames, *own, *further]
 
     @property
     def parts(self) -> list[Part]:
@@ -364,11 +363,6 @@ class StepProgram:
         """Weight of each equality row where a policy lets the tasks yield, (p,)."""
         counts = [task.row_count(self.robot) for task in self.tasks]
         return np.repeat([task.row_weight for task in self.tasks], counts)
-
-    @property
-    def needs_period(self) -> bool:
-        """Test whether a program needs a control period: a gain stands for its inverse."""
-        return any(getattr(part, "gain", 0.0) == np.inf for part in self.parts)
 
     @property
     def placement(self) -> Vector:

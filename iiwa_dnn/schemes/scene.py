@@ -197,7 +197,9 @@ def make_scene(
     frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
     placed, rows, motions = _layout(robot, bodies, pairs)
     moved = _moved_ends(robot, frames, _constants(robot, distances, placed, rows, motions))
-    watched = moved.any(axis=1) & ~_are_given(names, left_out, [body.name for body in bodies])
+    watched = moved.any(axis=1) & ~np.array(
+        _are_given(names, left_out, [body.name for body in bodies]), dtype=bool
+    )
     if not watched.any():
         bare = unwatched_links(robot)
         reason = f"; {unwatched(bare)}" if bare else ""
@@ -228,13 +230,12 @@ def _bodies(robot: Robot, obstacles: Sequence[Obstacle]) -> list[_Body]:
 
 def _are_given(
     names: list[tuple[str, str]], left_out: Sequence[tuple[str, str]], bodies: list[str]
-) -> NDArray[np.bool_]:
+) -> list[bool]:
     """Test which pairs of names are left out; raises NotFoundError if no body has a name."""
     for name in itertools.chain(*left_out):
         if name not in bodies:
             raise NotFoundError("link or obstacle", name, bodies)
-    given = {frozenset(pair) for pair in left_out}
-    return np.array([frozenset(pair) in given for pair in names], dtype=np.bool_)
+    return [pair in left_out or pair[::-1] in left_out for pair in names]
 
 
 def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArray[np.bool_]:

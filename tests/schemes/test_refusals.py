@@ -64,7 +64,10 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
         (lambda limit=limit: d.AccelerationLimits(limit), f"limit: {NUMBER}")
         for limit in (0.0, -1.0, np.nan, "fast", [1.0, -2.0])
     ],
-    (lambda: lay_out(d.AccelerationLimits([1.0, 2.0])), "acceleration: must be one number or 7"),
+    (
+        lambda: lay_out(d.AccelerationLimits([1.0, 2.0])),
+        r"acceleration: must have shape \(7,\), not \(2,\)",
+    ),
     (lambda: lay_out(d.JerkLimits()), "jerk: is needed: robot iiwa7"),
     (lambda: lay_out(d.AccelerationLimits(), d.JerkLimits(1.0)), "jerk: joint 1: 1 rad/s.3 is too"),
     # 375 rad/s^3 is enough, but at 80 ms a step braking cannot make use of so much.
