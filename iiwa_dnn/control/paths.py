@@ -126,20 +126,19 @@ def lost_rank(
         dt: Control period [s].
         sample: Returns the targets of a time [s], (k, 18).
     """
-    first = sample(t)
-    targets = [first, *(sample(t + dt * 2.0**k) for k in range(DOUBLINGS))]
     past = np.vstack([start.q, np.zeros((2, start.q.size))])
-    near = [each for each in targets if np.abs(each - first)[:, :12].max() <= NEAR]
-    qps = [program.qp_at(past, each, dt) for each in near]
+    targets = np.array([sample(t), *(sample(t + dt * 2.0**k) for k in range(DOUBLINGS))])
+    near = np.abs(targets - targets[0])[..., :12].max(axis=(1, 2)) <= NEAR
+    qps = [program.qp_at(past, each, dt) for each in targets[near]]
+    A = qps[0].A
     b = np.transpose([qp.b for qp in qps])
-    rows, joints = qps[0].A.shape
-    x, _, rank, _ = np.linalg.lstsq(qps[0].A, b, rcond=ZERO)
-    missing = np.linalg.norm(b - qps[0].A @ x, axis=0)
+    x, _, rank, _ = np.linalg.lstsq(A, b, rcond=ZERO)
+    missing = np.linalg.norm(b - A @ x, axis=0)
     if (missing > MISSING * np.linalg.norm(b, axis=0) + 1e-6).any():  # that is rounding
         few = "orientation='none', or a PositionTask alone, leaves the orientation free"
         yield (
-            f"{joints} joints cannot fulfil the {rows} rows of the tasks, whose rank at the start "
-            f"is {rank}: {SINGULAR if rank < min(rows, joints) else few}"
+            f"{A.shape[1]} joints cannot fulfil the {len(A)} rows of the tasks, whose rank at the "
+            f"start is {rank}: {SINGULAR if rank < min(A.shape) else few}"
         )
 
 

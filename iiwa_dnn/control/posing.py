@@ -173,7 +173,7 @@ def solve_pose(
         Configuration(robot, best.q),
         math.hypot(*error[:3]),
         math.hypot(*error[3:6]),
-        () if found else _in_the_way(program, solver, best),
+        () if found else _in_the_way(program, solver, best, weight),
     )
 
 
@@ -243,9 +243,11 @@ def _solve(program: StepProgram, solver: DNNSolver, point: _Point, damping: floa
     return solver.solve(QP(P, -error @ jacobian, qp.G, qp.h, qp.A[6:], qp.b[6:], qp.lb, qp.ub))
 
 
-def _in_the_way(program: StepProgram, solver: DNNSolver, point: _Point) -> tuple[str, ...]:
-    """Name the limits whose multipliers keep a posture from the goal."""
+def _in_the_way(
+    program: StepProgram, solver: DNNSolver, point: _Point, weight: float
+) -> tuple[str, ...]:
+    """Name the limits whose multipliers keep a posture from the goal, its turn weighed so."""
     step = _solve(program, solver, point, _DAMPING)
-    least = _ACTS * math.hypot(*point.qp.b[:6])
+    least = _ACTS * math.hypot(*point.qp.b[:3], *weight * point.qp.b[3:6])
     codes = np.sign(step.z_box) * (np.abs(step.z_box) > least)
     return tuple(map(describe, in_the_way(program.settings(), codes, step.z > least)))
