@@ -79,8 +79,7 @@ def load_robot(
     idle = _idle_joints(full, (tip, *others, *checks.names("frames", frames)))
     chosen = checks.names("locked", locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
-    rates = _rates(name, full, tips or (tip,))
-    limits, ramps = _limits(path, model, root, rates)
+    limits, ramps = _limits(path, model, root, _rates(name, full, tips or (tip,)))
     robot = Robot(
         name,
         model,

@@ -253,8 +253,7 @@ class Robot:
         nearest = np.clip(0.0, self.q_lower, self.q_upper)
         lower = np.maximum(self.q_lower, nearest - 2.0 * np.pi)
         upper = np.minimum(self.q_upper, nearest + 2.0 * np.pi)
-        postures: checks.Array = lower + (upper - lower) * ratios
-        return postures
+        return np.array(lower + (upper - lower) * ratios)
 
     def __repr__(self) -> str:
         locked = f", locked: {', '.join(self.locked)}" if self.locked else ""

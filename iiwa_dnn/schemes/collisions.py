@@ -187,10 +187,11 @@ def tuple_of_obstacles(argument: str, value: Any) -> tuple[Obstacle, ...]:
 def pairs_of_names(argument: str, value: Any) -> tuple[tuple[str, str], ...]:
     """Return pairs of names as tuples; refuse any other value."""
     pairs = value if isinstance(value, list | tuple) else [value]
-    for pair in pairs:
-        if not isinstance(pair, list | tuple) or [*map(type, pair)] != [str, str]:
-            raise InvalidInputError(argument, f"must be pairs of names, not {pair!r}", value)
-    return tuple((first, second) for first, second in pairs)
+    if not all(
+        isinstance(pair, list | tuple) and [*map(type, pair)] == [str, str] for pair in pairs
+    ):
+        raise InvalidInputError(argument, f"must be pairs of names, not {value!r}", value)
+    return tuple(map(tuple, pairs))
 
 
 @dataclass(frozen=True, eq=False)

@@ -195,8 +195,8 @@ def make_scene(
     pairs += itertools.product(range(links, len(bodies)), carried)
     names = [(bodies[i].name, bodies[k].name) for i, k in pairs]
     frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
-    placed, rows, motions = _layout(robot, bodies, pairs)
-    moved = _moved_ends(robot, frames, _constants(robot, distances, placed, rows, motions))
+    unknown = np.zeros(len(pairs))
+    moved = _moved_ends(robot, frames, _constants(robot, distances, bodies, pairs, unknown))
     watched = moved.any(axis=1) & ~np.array(
         _are_given(names, left_out, [body.name for body in bodies]), dtype=bool
     )
@@ -205,8 +205,9 @@ def make_scene(
         reason = f"; {unwatched(bare)}" if bare else ""
         problem = f"there is no pair that could meet{reason}"
         raise InvalidInputError("obstacles", problem, obstacles)
-    rows[:, STILL] = np.where(moved.all(axis=1), 0.0, 1.0 + moved[:, 0])
-    constants = _constants(robot, distances, placed, rows[watched], motions[watched])
+    still = np.where(moved.all(axis=1), 0.0, 1.0 + moved[:, 0])[watched]
+    pairs = [*itertools.compress(pairs, watched)]
+    constants = _constants(robot, distances, bodies, pairs, still)
     # The last three numbers of a body are its centre.
     ends = HEAD + robot.dof + PER_BODY * np.arange(links + 1, len(bodies) + 1)
     centers = [slice(end - 3, end) for end in ends]
@@ -250,36 +251,30 @@ def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArr
         kinematics.update(q)
         write_end_rates(constants, kinematics.jacobian, kinematics.placements, rates)
     moved = (rates > UNMOVED) | (scene.pairs[:, [SPEED]] > 0.0)
-    found: NDArray[np.bool_] = moved & scene.moves.any(axis=1, keepdims=True)
-    return found
+    return np.array(moved & scene.moves.any(axis=1, keepdims=True))
 
 
 def _constants(
-    robot: Robot, distances: tuple[float, float], placed: Matrix, rows: Matrix, motions: Matrix
+    robot: Robot,
+    distances: tuple[float, float],
+    bodies: list[_Body],
+    pairs: list[tuple[int, int]],
+    still: Vector,
 ) -> Vector:
-    """Return `Scene.constants`, (k,), of bodies (b, 16), pairs (k, 5), and their motions."""
-    head = np.array([*distances, len(placed), len(rows), 0.0])
-    parts = (head, robot.dq_max, placed, rows, motions[:, 0], motions[:, 1])
-    return np.concatenate([np.ravel(part) for part in parts])
-
-
-def _layout(
-    robot: Robot, bodies: list[_Body], pairs: list[tuple[int, int]]
-) -> tuple[Matrix, Matrix, Matrix]:
-    """Return the numbers of bodies and of their pairs, by their indices, as `SceneViews` has them.
-
-    They are `bodies`, `pairs`, and `moves` and `radii` as (k, 2, n).
-    """
+    """Return `Scene.constants`, (k,), for pairs of bodies by their indices and `STILL` of each."""
     placed = [
         np.concatenate([[frame], box.half_extents, box.rotation.T.ravel(), box.center])
         for _, frame, box, *_ in bodies
     ]
+    rows = [
+        (bodies[i].speed, k, i, bodies[i].radius + bodies[k].radius, end)
+        for (i, k), end in zip(pairs, still, strict=True)
+    ]
     motions = [_motion(robot, bodies[i], bodies[k]) for i, k in pairs]
-    rows = [(bodies[i].speed, k, i, bodies[i].radius + bodies[k].radius, 0.0) for i, k in pairs]
-    return (
-        np.array(placed),
-        np.reshape(rows, (-1, PER_PAIR)),
-        np.reshape(motions, (-1, 2, robot.dof)),
+    moves, radii = np.reshape(motions, (-1, 2, robot.dof)).transpose(1, 0, 2)
+    head = (*distances, len(bodies), len(pairs), 0.0)
+    return np.concatenate(
+        [np.ravel(part) for part in (head, robot.dq_max, placed, rows, moves, radii)]
     )
 
 
