@@ -53,7 +53,7 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("target", lambda: solve_pose(paper_robot(), np.eye(4))),  # type: ignore[arg-type]
     ("q0", lambda: solve_pose(paper_robot(), POSE, [0.0, 1.0])),
     ("orientation", lambda: solve_pose(paper_robot(), POSE, orientation="block")),  # type: ignore[arg-type]
-    ("acceleration: must be one number or 7", lambda: of_three_joints()),
+    ("acceleration: must have shape", lambda: of_three_joints()),
     ("fraction", lambda: controller().send(np.zeros(7), fraction="a")),  # type: ignore[arg-type]
     ("fraction", lambda: controller().send(np.zeros(7), fraction=np.nan)),
 ]
