@@ -39,7 +39,7 @@ def not_negative(argument: str, value: object) -> float:
 def _number(argument: str, value: object, kind: str, fits: Callable[[float], bool]) -> float:
     # A float first: the test for any kind of number costs more than all the rest of some callers.
     if (
-        isinstance(value, float | Real)
+        isinstance(value, (float, Real))
         and not isinstance(value, bool)
         and math.isfinite(value)
         and fits(float(value))

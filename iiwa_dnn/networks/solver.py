@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import partial
+from itertools import product
 
 import numpy as np
 
@@ -22,15 +22,15 @@ from iiwa_dnn.networks.integrators.scaling import (
 )
 from iiwa_dnn.networks.projection import ProjectionNetwork, is_projection
 from iiwa_dnn.qp.certificates import find_certificate
-from iiwa_dnn.qp.dense import is_convex
+from iiwa_dnn.qp.dense import all_finite, is_convex
 from iiwa_dnn.qp.layout import Sizes, Triple, Vector, check_size, data_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import is_accepted
 from iiwa_dnn.qp.solution import Solution, Status
 
 SHARPENED = 1e-14
-SHARPENING = 20
-"""Tolerance of `DNNSolver.sharpen`, and the linear systems of each of its two rounds."""
+SHARPENING = (4, 20)
+"""Tolerance of `DNNSolver.sharpen`, and the linear systems of a round, at first and again."""
 
 _COSTS: tuple[float | None, ...] = (None, LARGE, 1.0, None)
 """Largest entries of the cost in the attempts of a `solve`; None: the program as it is."""
@@ -57,10 +57,10 @@ class DNNSolver:
             rounding passes in any case (`iiwa_dnn.qp.residuals`).
     """
 
-    network: Network = field(default_factory=ProjectionNetwork)
+    network: Network = ProjectionNetwork()
     tol: float = 1e-9
-    settler: ImplicitEuler = field(default_factory=ImplicitEuler)
-    follower: Integrator = field(default_factory=ExplicitEuler)
+    settler: ImplicitEuler = ImplicitEuler()
+    follower: Integrator = ExplicitEuler()
     eps_rel: float = 0.0
     _warm: dict[Sizes, Vector] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -144,11 +144,11 @@ class DNNSolver:
             The solution; `found` only if P is convex and `QP.accepts` the point. Its iterations are
             the linear systems of all attempts, at most those of the settler.
         """
+        state = self._take(qp)
         plan = _COSTS if is_projection(self.network) else _COSTS[:1]
-        if not is_ordinary(checks.instance("qp", qp, QP).data, *qp.sizes):
+        if not is_ordinary(qp.data, *qp.sizes):
             qp = QP(*qp.views)  # P becomes symmetric
             plan = plan[1:] or plan
-        state = self._take(qp)
         taken = 0
         time = 0.0
         for cost in plan:
@@ -188,19 +188,18 @@ class DNNSolver:
             settler = replace(settler, max_steps=budget)
         if scaling is None:
             settled = settler.settle(self.network, qp, state, point, tol)
-            find = partial(find_certificate, qp, point)
         else:
             state /= scaling.of_state
             tol *= scaling.of_tolerance
             settled = settler.settle(self.network, scaling.qp, state, point, tol)
-            find = partial(scaling.find_certificate, qp, point.copy())
             state *= scaling.of_state
             point *= scaling.of_point
             settled = *settled[:2], *qp.residuals(point)
         status = self._status(qp, point, settled[2:])
         certificate = None
         if status is Status.NOT_SETTLED:
-            status, certificate = find()
+            find = find_certificate if scaling is None else scaling.find_certificate
+            status, certificate = find(qp, point)
         return Solution(point, qp.sizes, status, *settled, certificate)
 
     def _status(self, qp: QP, point: Vector, residuals: Triple) -> Status:
@@ -227,11 +226,12 @@ class DNNSolver:
         state = self._warm.get(qp.sizes)
         if state is None or not solution.found or not is_projection(self.network):
             return solution
-        for scaling in (steep(qp), None):
-            new = state.copy()
-            left = min(SHARPENING, self.settler.max_steps - solution.iterations)
-            if left < 1:
+        for most, is_steep in product(SHARPENING, (True, False)):
+            left = min(most, self.settler.max_steps - solution.iterations)
+            if left < 1 or solution.residuals.largest <= SHARPENED:
                 break
+            new = state.copy()
+            scaling = steep(qp) if is_steep else None
             sharper = self._attempt(qp, scaling, new, SHARPENED, left)
             if sharper.found and sharper.residuals.largest < solution.residuals.largest:
                 state = new
@@ -279,7 +279,7 @@ class DNNSolver:
     def _take(self, qp: QP) -> Vector:
         """Take the warm state, or make one; nobody else has it until it is kept."""
         state = self._warm.pop(checks.instance("qp", qp, QP).sizes, None)
-        if state is None or not np.isfinite(state).all():
+        if state is None or not all_finite(state, 0, state.size):
             state = np.zeros(checks.integer("state_size", self.network.state_size(qp), 0))
             if not is_projection(self.network):
                 check_size(

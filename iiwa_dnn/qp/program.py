@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn.checks import is_masked
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp.dense import all_finite, is_convex, is_symmetric
+from iiwa_dnn.qp.dense import all_finite, is_convex, is_symmetric, symmetrize
 from iiwa_dnn.qp.layout import (
     Matrix,
     QPViews,
@@ -145,9 +145,7 @@ class QP:
         if n == 0 or [v.shape for v in arrays] != field_shapes(sizes):  # rarely
             self.sizes = _check_shapes((P, q, G, h, A, b), arrays)
         self.data = np.concatenate(arrays, axis=None)
-        cost = self.P
-        if (cost != cost.T).any() and is_symmetric(cost, float(np.abs(cost).max())):
-            cost[:] = 0.5 * cost + 0.5 * cost.T
+        symmetrize(self.data[: n * n].reshape(n, n))
 
     @classmethod
     def from_data(cls, data: Vector, sizes: Sizes) -> QP:

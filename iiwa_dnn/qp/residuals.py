@@ -128,8 +128,16 @@ def cost_size(qp: QPViews) -> float:
     """Compute the largest absolute entry of P and q; NaN if one is NaN."""
     largest = 0.0
     for i in range(qp.q.size):
-        _, _, of_row = terms(qp.P, i, qp.q, False)
-        largest = larger(largest, larger(of_row, abs(qp.q[i])))
+        largest = larger(largest, larger(row_size(qp.P, i), abs(qp.q[i])))
+    return largest
+
+
+@compiled
+def row_size(rows: Matrix, j: int) -> float:
+    """Compute the largest absolute entry of row j of a matrix (k, n); NaN if one is NaN."""
+    largest = 0.0
+    for k in range(rows.shape[1]):
+        largest = larger(largest, abs(rows[j, k]))
     return largest
 
 
@@ -157,7 +165,38 @@ def is_accepted(
 ) -> bool:
     """Check a point (2n + m + p,) by the rule of acceptance, and that `QP.data` is convex."""
     qp = qp_views(data, n, m, p)
-    return fits(qp, point, eps_abs, eps_rel) and is_convex(qp.P, np.empty((n, n)))
+    primal, dual, gap = point_residuals(qp, point)
+    is_small = within(primal, dual, gap, eps_abs) and has_weights_of_one(qp)
+    if not (is_small or fits(qp, point, eps_abs, eps_rel)):
+        return False
+    return is_convex(qp.P, np.empty((n, n)))
+
+
+@compiled
+def has_weights_of_one(qp: QPViews) -> bool:
+    """Check that each row of A and G and of [P | q] has an entry of at least `SLIGHT`.
+
+    All weights are 1 then: a point whose residuals are within `eps_abs` keeps the rule.
+    """
+    for j in range(qp.b.size):
+        if not has_weight_of_one(qp.A, j):
+            return False
+    for j in range(qp.h.size):
+        if not has_weight_of_one(qp.G, j):
+            return False
+    for i in range(qp.q.size):
+        if not (abs(qp.q[i]) >= SLIGHT or has_weight_of_one(qp.P, i)):
+            return False
+    return True
+
+
+@compiled
+def has_weight_of_one(rows: Matrix, j: int) -> bool:
+    """Check that row j of a matrix (k, n) has an entry of at least `SLIGHT`."""
+    for k in range(rows.shape[1]):
+        if abs(rows[j, k]) >= SLIGHT:
+            return True
+    return False
 
 
 @compiled

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.library import compiled, released
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators import pseudo_transient
 from iiwa_dnn.networks.integrators.base import (
@@ -32,8 +32,6 @@ from iiwa_dnn.networks.integrators.base import (
     Answered,
     Integrator,
     Settled,
-    answer_program,
-    enter_answer,
 )
 from iiwa_dnn.networks.integrators.implicit_steps import (
     Condensed,
@@ -42,7 +40,7 @@ from iiwa_dnn.networks.integrators.implicit_steps import (
 )
 from iiwa_dnn.networks.integrators.pseudo_transient import LONGEST
 from iiwa_dnn.networks.projection import field, is_projection, mark_active
-from iiwa_dnn.qp.layout import QPViews, Vector, check_size, copied, qp_views
+from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, check_size, copied, qp_views
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import fits, kkt_point, within
 
@@ -99,7 +97,11 @@ class ImplicitEuler(Integrator):
         primal projection.
         """
         if is_projection(network):
-            return settle_program(qp, state, point, tol, self.max_steps)
+            n, m, p = qp.sizes
+            check_size("state", state, 3 * n + m + p)
+            check_size("point", point, 2 * n + m + p)
+            settled = settle_program(qp.data, qp.sizes, state, point, tol, self.max_steps)
+            return int(settled[0]), *settled[1:]
         return pseudo_transient.settle(network, qp, state, point, tol, self.max_steps)
 
 
@@ -187,12 +189,13 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
     return systems, time, primal, dual, gap
 
 
-def settle_program(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -> Settled:
-    """Settle the projection network from `state` (size,); see `settle`."""
-    n, m, p = qp.sizes
-    check_size("state", state, 3 * n + m + p)
-    check_size("point", point, 2 * n + m + p)
-    constants = np.array([tol, max_systems])
-    address = enter_answer.address(settle)
-    answered = answer_program(qp.data, qp.sizes, address, 0, constants, state, point)
-    return int(answered[0]), *answered[1:]
+@released
+def settle_program(
+    data: Vector, sizes: Sizes, s: Vector, point: Vector, tol: float, max_systems: int
+) -> Answered:
+    """Settle the projection network from `s` (size,) for a program's flat array; see `settle`."""
+    n, m, p = sizes
+    constants = np.empty(BUDGET + 1)
+    constants[TOLERANCE] = tol
+    constants[BUDGET] = max_systems
+    return settle(qp_views(data, n, m, p), 0, constants, s, point)

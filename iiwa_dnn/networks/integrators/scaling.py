@@ -9,6 +9,7 @@ An implicit step of length h [rho] leaves the fraction 1 / (1 + h c) of an error
 cost has the curvature c, so that a steeper cost settles sooner where it is nearly flat.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp.certificates import certified, find_certificate
 from iiwa_dnn.qp.layout import Matrix, Vector, qp_views
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import SLIGHT, cost_size, terms
+from iiwa_dnn.qp.residuals import SLIGHT, cost_size, has_weight_of_one, row_size
 from iiwa_dnn.qp.solution import Status
 
 LARGE = 1e3
@@ -39,16 +40,30 @@ def is_ordinary(data: Vector, n: int, m: int, p: int) -> bool:
     """
     qp = qp_views(data, n, m, p)
     for i in range(n):
-        for k in range(i):
-            if qp.P[i, k] != qp.P[k, i]:
-                return False
-    for j in range(p + m):
-        _, _, largest = terms(qp.A if j < p else qp.G, j if j < p else j - p, qp.q, False)
-        holds = qp.b[j] == 0.0 if j < p else qp.h[j - p] >= 0.0
-        if not (SLIGHT <= largest <= LARGE or (largest == 0.0 and holds)):
+        if not abs(qp.q[i]) <= LARGE:
             return False
-    cost = cost_size(qp)
-    return SLIGHT <= cost <= LARGE or cost == 0.0
+        for k in range(n):
+            if not abs(qp.P[i, k]) <= LARGE or qp.P[i, k] != qp.P[k, i]:
+                return False
+    for j in range(p):
+        if not _is_ordinary_row(qp.A, j, qp.b[j] == 0.0):
+            return False
+    for j in range(m):
+        if not _is_ordinary_row(qp.G, j, qp.h[j] >= 0.0):
+            return False
+    for i in range(n):
+        if abs(qp.q[i]) >= SLIGHT or has_weight_of_one(qp.P, i):
+            return True
+    return cost_size(qp) == 0.0
+
+
+@compiled
+def _is_ordinary_row(rows: Matrix, j: int, holds: bool) -> bool:
+    """Check the largest entry of row j of a matrix (k, n), which `holds` where it is zero."""
+    for k in range(rows.shape[1]):
+        if not abs(rows[j, k]) <= LARGE:
+            return False
+    return has_weight_of_one(rows, j) or (holds and row_size(rows, j) == 0.0)
 
 
 class Scaling(NamedTuple):
@@ -72,8 +87,8 @@ class Scaling(NamedTuple):
         return self.of_state[: 2 * n + m + p]
 
     def find_certificate(self, given: QP, point: Vector) -> tuple[Status, Vector | None]:
-        """Look for a certificate of the program as it was given, with a point in these units."""
-        status, certificate = find_certificate(self.qp, point)
+        """Look for a certificate of the program as it was given, and its point."""
+        status, certificate = find_certificate(self.qp, point / self.of_point)
         if certificate is not None:
             x, multipliers = np.split(self.of_point, [given.q.size])
             certificate = certificate * (x if certificate.size == x.size else multipliers)
@@ -117,9 +132,10 @@ def balanced(qp: QP, largest: float) -> Scaling:
 def steep(qp: QP) -> Scaling:
     """Scale the cost of a program so that its largest entry is near `STEEP`."""
     n, m, p = qp.sizes
-    of_cost = _power((cost_size(qp.views) or 1.0) / STEEP)
     scaled = QP.from_data(qp.data.copy(), qp.sizes)
-    scaled.data[: n * n + n] /= of_cost
+    cost = scaled.data[: n * n + n]
+    of_cost = 2.0 ** round(math.log2(np.abs(cost).max(initial=1e-300) / STEEP))
+    cost /= of_cost
     of_state = np.ones(3 * n + m + p)
     of_state[n:] = of_cost
     return Scaling(scaled, of_state, 1.0 / of_cost)
