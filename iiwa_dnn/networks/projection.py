@@ -20,7 +20,6 @@ section III, its slips corrected (docs/errata.md).
 """
 
 from dataclasses import dataclass
-from functools import cache
 from typing import TypeGuard
 
 import numpy as np
@@ -198,10 +197,8 @@ class ProjectionNetwork(Network):
 
 def is_projection(network: Network) -> TypeGuard[ProjectionNetwork]:
     """Check that the compiled loops for the projection network integrate exactly this network."""
-    return _is_projection(type(network))
-
-
-@cache
-def _is_projection(kind: type[Network]) -> bool:
+    kind = type(network)
+    if kind is ProjectionNetwork:  # quickly
+        return True
     own = (kind.flow, kind.state_size, kind.compiled_rates)
     return own == (Network.flow, ProjectionNetwork.state_size, projection_rates)

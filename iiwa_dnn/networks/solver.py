@@ -39,6 +39,10 @@ _OPEN = (Status.NOT_SETTLED, Status.NOT_FINITE)
 DIVERGENCE = 1e8
 """Ratio of a state or a residual to the largest number of a program beyond which it diverges."""
 
+_NETWORK = ProjectionNetwork()
+_SETTLER = ImplicitEuler()
+_FOLLOWER = ExplicitEuler()
+
 
 @dataclass(frozen=True)
 class DNNSolver:
@@ -57,10 +61,10 @@ class DNNSolver:
             rounding passes in any case (`iiwa_dnn.qp.residuals`).
     """
 
-    network: Network = ProjectionNetwork()
+    network: Network = _NETWORK
     tol: float = 1e-9
-    settler: ImplicitEuler = ImplicitEuler()
-    follower: Integrator = ExplicitEuler()
+    settler: ImplicitEuler = _SETTLER
+    follower: Integrator = _FOLLOWER
     eps_rel: float = 0.0
     _warm: dict[Sizes, Vector] = field(default_factory=dict, init=False, repr=False, compare=False)
 

@@ -29,6 +29,8 @@ def row_dot(rows: Matrix, j: int, x: Vector) -> float:
     From `LONG` terms on four sums are added, of each fourth term: a processor forms them at once.
     """
     size = rows.shape[1]
+    row = rows[j]
+    own = x[: rows.shape[1]]
     value = 0.0
     first = 0
     if size >= LONG:
@@ -36,14 +38,14 @@ def row_dot(rows: Matrix, j: int, x: Vector) -> float:
         three = 0.0
         four = 0.0
         for k in range(size // 4):
-            value += rows[j, 4 * k] * x[4 * k]
-            two += rows[j, 4 * k + 1] * x[4 * k + 1]
-            three += rows[j, 4 * k + 2] * x[4 * k + 2]
-            four += rows[j, 4 * k + 3] * x[4 * k + 3]
+            value += row[4 * k] * own[4 * k]
+            two += row[4 * k + 1] * own[4 * k + 1]
+            three += row[4 * k + 2] * own[4 * k + 2]
+            four += row[4 * k + 3] * own[4 * k + 3]
         value = (value + two) + (three + four)
         first = size - size % 4
     for k in range(first, size):
-        value += rows[j, k] * x[k]
+        value += row[k] * own[k]
     return value
 
 

@@ -184,19 +184,19 @@ def has_weights_of_one(qp: QPViews) -> bool:
     for j in range(qp.h.size):
         if not has_weight_of_one(qp.G, j):
             return False
+    is_felt = True
     for i in range(qp.q.size):
-        if not (abs(qp.q[i]) >= SLIGHT or has_weight_of_one(qp.P, i)):
-            return False
-    return True
+        is_felt = is_felt and (abs(qp.q[i]) >= SLIGHT or has_weight_of_one(qp.P, i))
+    return is_felt
 
 
 @compiled
 def has_weight_of_one(rows: Matrix, j: int) -> bool:
     """Check that row j of a matrix (k, n) has an entry of at least `SLIGHT`."""
-    for k in range(rows.shape[1]):
-        if abs(rows[j, k]) >= SLIGHT:
-            return True
-    return False
+    k = 0
+    while k < rows.shape[1] and not abs(rows[j, k]) >= SLIGHT:
+        k += 1
+    return k < rows.shape[1]
 
 
 @compiled
