@@ -23,6 +23,9 @@ extending the available precision", Numer. Math. 18, 1971), so that a residual t
 rounding, underflow included, is counted against the certificate throughout.
 """
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -67,24 +70,32 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
     limited = np.isfinite(np.concatenate([qp.b, qp.h]))
     multipliers = _scaled(np.where(limited, point[n : n + p + m], 0.0))
     polished = _polished_multipliers(qp, multipliers)
-    multipliers = max(
-        (multipliers, polished, _whole(polished)),
-        key=lambda vector: infeasibility_radius(qp, vector),
-    )
+    multipliers = _best(qp, multipliers, _polished_multipliers, infeasibility_radius)
     w = np.vstack([qp.A, qp.G]).T @ multipliers
-    carried = _is_carried(qp, w)
-    direction = _scaled(point[:n])
-    direction = np.where(_towards_bound(qp, direction), 0.0, direction)
-    polished = _polished_direction(qp, direction)
-    direction = max(
-        (direction, polished, _whole(polished)),
-        key=lambda vector: unboundedness_radius(qp, vector),
-    )
-    for certificate in (np.concatenate([multipliers, np.where(carried, 0.0 - w, 0.0)]), direction):
+    certificate = np.concatenate([multipliers, np.where(_is_carried(qp, w), 0.0 - w, 0.0)])
+    status = certified(qp, certificate)
+    if status is Status.NOT_SETTLED:
+        direction = _scaled(point[:n])
+        direction = np.where(_towards_bound(qp, direction), 0.0, direction)
+        certificate = _best(qp, direction, _polished_direction, unboundedness_radius)
         status = certified(qp, certificate)
-        if status is not Status.NOT_SETTLED:
-            return status, certificate
-    return Status.NOT_SETTLED, None
+    return status, None if status is Status.NOT_SETTLED else certificate
+
+
+def _best(
+    qp: QP,
+    vector: Vector,
+    polish: Callable[[QP, Vector], Vector],
+    radius: Callable[[QP, Vector], float],
+) -> Vector:
+    """Return a vector, or the polished one, or that in whole numbers: that of the largest radius.
+
+    If the first one is a proof, no other is computed.
+    """
+    if radius(qp, vector) == np.inf:
+        return vector
+    polished = polish(qp, vector)
+    return max((vector, polished, _whole(polished)), key=partial(radius, qp))
 
 
 def certified(qp: QP, certificate: Vector) -> Status:
