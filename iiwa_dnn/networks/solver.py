@@ -217,9 +217,9 @@ class DNNSolver:
     def sharpen(self, qp: QP, solution: Solution) -> Solution:
         """Go on from the state that the last call left, for a few linear systems.
 
-        If the cost has small eigenvalues, x is known to the residuals over these only. So each round
-        begins with those of a steeper cost (`iiwa_dnn.networks.integrators.scaling`). A solution to
-        rounding stays as it is.
+        If the cost has small eigenvalues, x is known to the residuals over these only. So a round
+        begins with those of a steeper cost (`iiwa_dnn.networks.integrators.scaling`). A solution
+        to rounding stays as it is.
 
         Args:
             qp: The program of the last call.

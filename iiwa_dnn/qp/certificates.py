@@ -69,7 +69,6 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
     n, m, p = qp.sizes
     limited = np.isfinite(np.concatenate([qp.b, qp.h]))
     multipliers = _scaled(np.where(limited, point[n : n + p + m], 0.0))
-    polished = _polished_multipliers(qp, multipliers)
     multipliers = _best(qp, multipliers, _polished_multipliers, infeasibility_radius)
     w = np.vstack([qp.A, qp.G]).T @ multipliers
     certificate = np.concatenate([multipliers, np.where(_is_carried(qp, w), 0.0 - w, 0.0)])
