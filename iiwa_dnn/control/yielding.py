@@ -432,8 +432,8 @@ def _brake(
     ub = limits.ub.copy()
     # Where periods vary, the motion in hand is fitted anew: bounds that any period keeps go first.
     for i in range(dq.size if periods < np.inf and rest == 0.0 else 0):
-        lb[i] = min(lb[i], 0.0)
-        ub[i] = max(ub[i], 0.0)
+        lb[i] = min(lb[i], max(dq[i], 0.0))
+        ub[i] = max(ub[i], min(dq[i], 0.0))
     # Joints that follow others go on to, as they brake.
     rates = np.zeros(limits.b.size)
     idle = np.empty(limits.h.size)

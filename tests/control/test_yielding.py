@@ -159,3 +159,24 @@ def test_a_stopped_arm_goes_on_where_the_task_has_a_solution_again(limits) -> No
         assert command.ok
         velocity = start.jacobian[:3] @ command.dq
         np.testing.assert_allclose(velocity, [10.2e-5, 0.0, 0.0], atol=1e-8)
+
+
+@pytest.mark.filterwarnings("ignore:.*off their JointCouplingTask")
+def test_joints_that_follow_others_brake_within_their_acceleration() -> None:
+    """The nearest command that keeps the relation passed the limit by the network's tolerance."""
+    robot = d.load_robot("xarm7").with_limits(acceleration=3.0, jerk=np.inf)
+    q = np.array(robot.start_posture())
+    fifth, sixth = robot.joint_names[4:6]
+    relation = d.JointCouplingTask({sixth: 1.0, fifth: -0.5}, offset=q[5] - 0.5 * q[4] + 1e-5)
+    tasks = [d.PositionTask(weight=1.0), relation]
+    scheme = d.Scheme([d.KineticEnergy()], tasks, [d.JointLimits(), d.AccelerationLimits()])
+    far = d.Target(np.array([1.0, -1.0, 2.0]))
+    for policy in ("slow", "relax"):
+        made = d.Controller(robot, scheme, dt=1e-3, policy=policy)
+        path = [q]
+        for k in range(150):
+            if k == 50:
+                made.halt()
+            path.append(made.step(path[-1], k * 1e-3, far).next_q)
+        assert np.abs(np.diff(path, axis=0)).max() > 4e-5
+        assert breaches(np.array(path), 1e-3, *robot.limits) == []
