@@ -565,9 +565,7 @@ class LimitNames:
         """Take the limits of a step program and its control period [s]."""
         self.settings = program.settings()
         self.periods = constant_periods(dt)
-        self._robot = program.robot
-        self._couplings = [task for task in program.tasks if isinstance(task, JointCouplingTask)]
-        self._pairs = program.pairs
+        self._program = program
         numbers = (program.rate_limits or MotionLimits()).numbers(program.robot)
         self._limits = numbers.reshape(NUMBERS, -1)
 
@@ -581,10 +579,14 @@ class LimitNames:
             f"{names} meet, and no direction leads apart"
             if kept == MEET
             else f"{names} began nearer than {promised:g} m, and keep {kept:.3g} m"
-            for (names, promised), kept in zip(self._pairs, least, strict=True)
+            for (names, promised), kept in zip(self._program.pairs, least, strict=True)
             if kept != promised
         ]
-        found = [(task.coefficients, task.missing(self._robot, q)) for task in self._couplings]
+        found = [
+            (task.coefficients, task.missing(self._program.robot, q))
+            for task in self._program.tasks
+            if isinstance(task, JointCouplingTask)
+        ]
         off = [
             f"{' and '.join(joints)}: {missing:.3g} rad off their JointCouplingTask"
             for joints, missing in found
