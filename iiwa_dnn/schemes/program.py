@@ -272,7 +272,6 @@ class StepProgram:
             ``n, m, p``, the number of joints, that of parts, and the first target's frame.
         constants: Numbers that compiled code reads, (k,).
         pairs: Names in words and least distance [m] of each watched pair.
-        least: These distances, (pairs,).
     """
 
     def __init__(self, robot: Robot, scheme: Scheme) -> None:
@@ -303,7 +302,6 @@ class StepProgram:
             if isinstance(block.part, CollisionAvoidance):
                 self.constants[block.start + FIRST_PAIR] = len(self.pairs)
                 self.pairs += block.part.pairs(robot)
-        self.least: Vector = np.array([distance for _, distance in self.pairs])
         tip = robot.frame_id(self.target_frames[0])
         head = (*self.sizes, robot.dof, len(self.blocks), tip, 0)
         self.table: IntMatrix = np.array(
@@ -347,6 +345,11 @@ class StepProgram:
     def constants_of(self, kind: type[Part]) -> list[tuple[int, int]]:
         """Return beginning and end in `constants` of those of each part of a kind."""
         return [(block.start, block.stop) for block in self.blocks if isinstance(block.part, kind)]
+
+    @property
+    def least(self) -> Vector:
+        """Least distance of each watched pair [m], (pairs,), a copy."""
+        return np.array([distance for _, distance in self.pairs])
 
     @property
     def reads_targets(self) -> bool:
@@ -442,7 +445,7 @@ class StepProgram:
             InvalidInputError: The answer of a part written in numpy is wrong; the part is named.
         """
         self.refresh(past[0], past[1], targets, t, dt)
-        kept = self.least.copy() if least is None else least
+        kept = self.least if least is None else least
         assemble(data, self.arrays(dt), past, kept, targets, float(t))
 
     def qp_at(

@@ -193,21 +193,18 @@ def make_scene(
     pairs = [*collision_model(robot).pairs(robot)] if self_collision else []
     carried = [k for k in range(links) if robot.moves[bodies[k].frame].any()]
     pairs += itertools.product(range(links, len(bodies)), carried)
-    names = [(bodies[i].name, bodies[k].name) for i, k in pairs]
     frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
-    unknown = np.zeros(len(pairs))
-    moved = _moved_ends(robot, frames, _constants(robot, distances, bodies, pairs, unknown))
-    watched = moved.any(axis=1) & ~np.array(
-        _are_given(names, left_out, [body.name for body in bodies]), dtype=bool
-    )
+    rows, motions = _layout(robot, bodies, pairs)
+    moved = _moved_ends(robot, frames, _constants(robot, distances, bodies, rows, motions))
+    names = [(bodies[i].name, bodies[k].name) for i, k in pairs]
+    watched = moved.any(axis=1) & ~_are_given(names, left_out, bodies)
     if not watched.any():
         bare = unwatched_links(robot)
         reason = f"; {unwatched(bare)}" if bare else ""
         problem = f"there is no pair that could meet{reason}"
         raise InvalidInputError("obstacles", problem, obstacles)
-    still = np.where(moved.all(axis=1), 0.0, 1.0 + moved[:, 0])[watched]
-    pairs = [*itertools.compress(pairs, watched)]
-    constants = _constants(robot, distances, bodies, pairs, still)
+    rows[:, STILL] = np.where(moved.all(axis=1), 0.0, 1.0 + moved[:, 0])
+    constants = _constants(robot, distances, bodies, rows[watched], motions[watched])
     # The last three numbers of a body are its centre.
     ends = HEAD + robot.dof + PER_BODY * np.arange(links + 1, len(bodies) + 1)
     centers = [slice(end - 3, end) for end in ends]
@@ -230,13 +227,14 @@ def _bodies(robot: Robot, obstacles: Sequence[Obstacle]) -> list[_Body]:
 
 
 def _are_given(
-    names: list[tuple[str, str]], left_out: Sequence[tuple[str, str]], bodies: list[str]
-) -> list[bool]:
+    names: list[tuple[str, str]], left_out: Sequence[tuple[str, str]], bodies: list[_Body]
+) -> NDArray[np.bool_]:
     """Test which pairs of names are left out; raises NotFoundError if no body has a name."""
+    known = [body.name for body in bodies]
     for name in itertools.chain(*left_out):
-        if name not in bodies:
-            raise NotFoundError("link or obstacle", name, bodies)
-    return [pair in left_out or pair[::-1] in left_out for pair in names]
+        if name not in known:
+            raise NotFoundError("link or obstacle", name, known)
+    return np.array([pair in left_out or pair[::-1] in left_out for pair in names], dtype=bool)
 
 
 def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArray[np.bool_]:
@@ -258,24 +256,26 @@ def _constants(
     robot: Robot,
     distances: tuple[float, float],
     bodies: list[_Body],
-    pairs: list[tuple[int, int]],
-    still: Vector,
+    rows: Matrix,
+    motions: Matrix,
 ) -> Vector:
-    """Return `Scene.constants`, (k,), for pairs of bodies by their indices and `STILL` of each."""
+    """Return `Scene.constants`, (k,), for bodies and the pairs of `_layout`."""
     placed = [
         np.concatenate([[frame], box.half_extents, box.rotation.T.ravel(), box.center])
         for _, frame, box, *_ in bodies
     ]
-    rows = [
-        (bodies[i].speed, k, i, bodies[i].radius + bodies[k].radius, end)
-        for (i, k), end in zip(pairs, still, strict=True)
-    ]
+    head = (*distances, len(bodies), len(rows), 0.0)
+    parts = (head, robot.dq_max, placed, rows, motions[:, 0], motions[:, 1])
+    return np.concatenate([np.ravel(part) for part in parts])
+
+
+def _layout(
+    robot: Robot, bodies: list[_Body], pairs: list[tuple[int, int]]
+) -> tuple[Matrix, Matrix]:
+    """Return `SceneViews.pairs`, (k, 5), and `moves` and `radii`, (k, 2, n), of pairs of bodies."""
+    rows = [(bodies[i].speed, k, i, bodies[i].radius + bodies[k].radius, 0.0) for i, k in pairs]
     motions = [_motion(robot, bodies[i], bodies[k]) for i, k in pairs]
-    moves, radii = np.reshape(motions, (-1, 2, robot.dof)).transpose(1, 0, 2)
-    head = (*distances, len(bodies), len(pairs), 0.0)
-    return np.concatenate(
-        [np.ravel(part) for part in (head, robot.dq_max, placed, rows, moves, radii)]
-    )
+    return np.reshape(rows, (-1, PER_PAIR)), np.reshape(motions, (-1, 2, robot.dof))
 
 
 def _motion(robot: Robot, first: _Body, second: _Body) -> Matrix:
