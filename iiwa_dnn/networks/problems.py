@@ -51,8 +51,7 @@ def solve_problem(
         qp = QP.from_qpsolvers(problem)
     qp.check_values()
     if solver is None:
-        settler = ImplicitEuler(max_steps=max_iter)
-        solver = DNNSolver(tol=tol, eps_rel=eps_rel, settler=settler)
+        solver = DNNSolver(tol=tol, eps_rel=eps_rel, settler=ImplicitEuler(max_steps=max_iter))
     checks.instance("solver", solver, DNNSolver).reset()
     solution = solver.solve(qp)
     if sharpen:

@@ -172,16 +172,15 @@ def is_symmetric(P: Matrix, largest: float) -> bool:
 def symmetrize(P: Matrix) -> None:
     """Replace P (n, n) by its symmetric part if it is symmetric to `ASYMMETRY` and `ROUNDING`."""
     largest = 0.0
-    apart = 0.0
     for i in range(P.shape[0]):
         for k in range(P.shape[0]):
             largest = larger(largest, abs(P[i, k]))
-            apart = larger(apart, abs(P[i, k] - P[k, i]))
-    if apart != 0.0 and is_symmetric(P, largest):
+    if is_symmetric(P, largest):
         for i in range(P.shape[0]):
             for k in range(i):
-                P[i, k] = 0.5 * P[i, k] + 0.5 * P[k, i]
-                P[k, i] = P[i, k]
+                if P[i, k] != P[k, i]:
+                    P[i, k] = 0.5 * P[i, k] + 0.5 * P[k, i]
+                    P[k, i] = P[i, k]
 
 
 @compiled

@@ -128,16 +128,8 @@ def cost_size(qp: QPViews) -> float:
     """Compute the largest absolute entry of P and q; NaN if one is NaN."""
     largest = 0.0
     for i in range(qp.q.size):
-        largest = larger(largest, larger(row_size(qp.P, i), abs(qp.q[i])))
-    return largest
-
-
-@compiled
-def row_size(rows: Matrix, j: int) -> float:
-    """Compute the largest absolute entry of row j of a matrix (k, n); NaN if one is NaN."""
-    largest = 0.0
-    for k in range(rows.shape[1]):
-        largest = larger(largest, abs(rows[j, k]))
+        _, _, of_row = terms(qp.P, i, qp.q, False)
+        largest = larger(largest, larger(of_row, abs(qp.q[i])))
     return largest
 
 
@@ -178,11 +170,9 @@ def has_weights_of_one(qp: QPViews) -> bool:
 
     All weights are 1 then: a point whose residuals are within `eps_abs` keeps the rule.
     """
-    for j in range(qp.b.size):
-        if not has_weight_of_one(qp.A, j):
-            return False
-    for j in range(qp.h.size):
-        if not has_weight_of_one(qp.G, j):
+    p = qp.b.size
+    for j in range(p + qp.h.size):
+        if not has_weight_of_one(qp.A if j < p else qp.G, j if j < p else j - p):
             return False
     is_felt = True
     for i in range(qp.q.size):

@@ -7,7 +7,7 @@ from qpsolvers import problems
 
 import iiwa_dnn as d
 from helpers_qp import known_qp
-from iiwa_dnn.networks.integrators.base import BUDGET, SUBSTEPS, TOLERANCE, answer_program
+from iiwa_dnn.networks.integrators.base import BUDGET, SUBSTEPS, TOLERANCE, enter_answer
 
 DENSE = [name for name in dir(problems) if name.startswith("get_") and "sparse" not in name]
 
@@ -72,8 +72,9 @@ def test_settings_are_frozen_and_reach_the_compiled_answer() -> None:
     assert d.DNNSolver(d.DualNetwork()).compiled_answer((7, 0, 3)) is None
     compiled = d.DNNSolver().compiled_answer((1, 0, 0), 1e-3)
     for curvature, steps in ((1e2, 585), (1e9, 0)):  # 0: more than a million
-        data = d.QP([[curvature]], [1.0]).data
-        assert answer_program(data, (1, 0, 0), *compiled, np.zeros(3), np.empty(2))[0] == steps
+        address, *own = compiled
+        views = d.QP([[curvature]], [1.0]).views
+        assert enter_answer(address, views, *own, np.zeros(3), np.empty(2))[0] == steps
 
 
 def test_sharpened_answers_are_daqps_where_the_cost_is_nearly_flat() -> None:

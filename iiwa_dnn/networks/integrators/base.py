@@ -2,9 +2,9 @@
 
 from typing import Any, NamedTuple, Protocol
 
-from iiwa_dnn.compiling.library import entry, released
+from iiwa_dnn.compiling.library import entry
 from iiwa_dnn.networks.base import Network, settings_of
-from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, qp_views
+from iiwa_dnn.qp.layout import QPViews, Vector
 from iiwa_dnn.qp.program import QP
 
 Settled = tuple[int, float, float, float, float]
@@ -49,28 +49,6 @@ class CompiledAnswer(NamedTuple):
     address: int
     rates: int
     constants: Vector
-
-
-@released
-def answer_program(
-    data: Vector,
-    sizes: Sizes,
-    address: int,
-    rates: int,
-    constants: Vector,
-    state: Vector,
-    point: Vector,
-) -> Answered:
-    """Enter the compiled answer at an address.
-
-    The program is `QP.data` with its sizes (n, m, p); constants (k,), state (size,) and point
-    (2n + m + p,) are those of `enter_answer`, and so is the address `rates`, which is 0 for an
-    answer that does not use the network's function.
-    """
-    n, m, p = sizes
-    qp = qp_views(data, n, m, p)
-    settled: Answered = enter_answer(address, qp, rates, constants, state, point)
-    return settled
 
 
 class Integrator(Protocol):

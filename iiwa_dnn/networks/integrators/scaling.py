@@ -18,7 +18,7 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp.certificates import certified, find_certificate
 from iiwa_dnn.qp.layout import Matrix, Vector, qp_views
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import SLIGHT, cost_size, has_weight_of_one, row_size
+from iiwa_dnn.qp.residuals import SLIGHT, cost_size, has_weight_of_one
 from iiwa_dnn.qp.solution import Status
 
 LARGE = 1e3
@@ -45,11 +45,9 @@ def is_ordinary(data: Vector, n: int, m: int, p: int) -> bool:
         for k in range(n):
             if not abs(qp.P[i, k]) <= LARGE or qp.P[i, k] != qp.P[k, i]:
                 return False
-    for j in range(p):
-        if not _is_ordinary_row(qp.A, j, qp.b[j] == 0.0):
-            return False
-    for j in range(m):
-        if not _is_ordinary_row(qp.G, j, qp.h[j] >= 0.0):
+    for j in range(p + m):
+        holds = qp.b[j] == 0.0 if j < p else qp.h[j - p] >= 0.0
+        if not _is_ordinary_row(qp.A if j < p else qp.G, j if j < p else j - p, holds):
             return False
     for i in range(n):
         if abs(qp.q[i]) >= SLIGHT or has_weight_of_one(qp.P, i):
@@ -63,7 +61,8 @@ def _is_ordinary_row(rows: Matrix, j: int, holds: bool) -> bool:
     for k in range(rows.shape[1]):
         if not abs(rows[j, k]) <= LARGE:
             return False
-    return has_weight_of_one(rows, j) or (holds and row_size(rows, j) == 0.0)
+        holds = holds and rows[j, k] == 0.0
+    return holds or has_weight_of_one(rows, j)
 
 
 class Scaling(NamedTuple):
