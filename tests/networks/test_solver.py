@@ -101,6 +101,8 @@ def test_a_sharpened_answer_is_never_worse() -> None:
     second = solver.sharpen(qp, first)
     assert second.residuals.largest <= first.residuals.largest
     assert solver.sharpen(qp, second).residuals.largest <= second.residuals.largest
+    assert second.residuals.largest <= 1e-14
+    assert solver.sharpen(qp, second) is second  # nothing but rounding is left
     answer = d.DNNSolver(d.DualNetwork()).solve(qp)
     assert d.DNNSolver().sharpen(qp, answer) is answer  # it has no state yet
 

@@ -1,5 +1,7 @@
 """Compiled linear algebra and residuals, against numpy's and qpsolvers'."""
 
+from fractions import Fraction
+
 import numpy as np
 
 from iiwa_dnn.qp import dense
@@ -20,6 +22,31 @@ def test_cholesky_is_numpys_and_refuses_what_is_not_definite() -> None:
         matrix[-1, -1] = -1.0
         assert not dense.cholesky_factor(matrix.copy())
         assert not dense.is_convex(matrix, np.full((n, n), np.nan))
+
+
+def test_products_are_the_exact_ones_to_the_rounding_of_a_sum_in_four_parts() -> None:
+    rng = np.random.default_rng(2)
+    for n in range(1, 70):
+        rows, x = rng.standard_normal((2, n)), rng.standard_normal(n)
+        exact = sum(Fraction(a) * Fraction(b) for a, b in zip(rows[1], x, strict=True))
+        in_turn = 0.0
+        for a, b in zip(rows[1], x, strict=True):
+            in_turn += a * b
+        product = dense.row_dot(rows, 1, x)
+        roundings = n if n < dense.LONG else n // 4 + 6
+        assert abs(product - exact) <= roundings * 2.0**-53 * np.abs(rows[1]) @ np.abs(x)
+        assert n >= dense.LONG or product == in_turn  # an arm's programs keep their bits
+
+
+def test_a_cost_becomes_its_symmetric_part_where_that_is_what_it_means() -> None:
+    rng = np.random.default_rng(4)
+    root, skew = rng.standard_normal((2, 6, 6))
+    P, skew = root @ root.T, skew - skew.T
+    for size, is_meant in ((0.0, True), (1e-7, True), (1e-2, False)):
+        given = P + size * skew
+        found = given.copy()
+        dense.symmetrize(found)
+        assert (found == (0.5 * given + 0.5 * given.T if is_meant else given)).all()
 
 
 def test_extreme_eigenvalues_are_numpys() -> None:
