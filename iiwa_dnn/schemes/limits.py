@@ -493,36 +493,39 @@ def _acceleration_bounds(
     last: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where no jerk is limited."""
-    fastest, accel, _, _, _, _ = rates
+    fastest, accel, _, deceleration, _, lag = rates
     first = last - accel * periods.dt
     final = last + accel * periods.dt
     above -= min(max(above, 0.0), ROUNDING)
     below -= min(max(below, 0.0), ROUNDING)
     # Outside of the range the way back is no quicker than the velocity limit.
-    upper = min(max(_speed_within(above, rates, periods), -fastest), fastest)
-    lower = min(max(-_speed_within(below, rates, periods), -fastest), fastest)
+    if lag > 0.0:
+        upper = _speed_below_ramp(above, rates, periods.hold)
+        lower = -_speed_below_ramp(below, rates, periods.hold)
+    else:
+        unit = deceleration * periods.hold
+        upper = unit * approach(above / (unit * periods.hold), periods.vary)
+        lower = -unit * approach(below / (unit * periods.hold), periods.vary)
+    upper = min(max(upper, -fastest), fastest)
+    lower = min(max(lower, -fastest), fastest)
     return min(max(lower, first), final), min(max(upper, first), final)
 
 
 @compiled
-def _speed_within(room: float, rates: Rates, periods: Periods) -> float:
+def _speed_below_ramp(room: float, rates: Rates, hold: float) -> float:
     """Compute the largest velocity [rad/s] from which a joint can brake within `room` [rad].
 
     A position-dependent velocity limit is zero at its end, and bounds the velocity on the way.
     """
-    _, accel, _, deceleration, ramp, lag = rates
-    hold = periods.hold
-    if lag > 0.0:
-        unit = ramp * (hold + lag)
-        speed = unit * approach(room / (unit * (hold + lag)), True)
-        # Where the limit shrinks by more than the joint can brake, it has to have braked before.
-        turn = accel * lag * ramp / (ramp - accel) if ramp > accel else np.inf
-        if speed > turn:
-            unit = accel * hold
-            speed = unit * approach((room - 0.5 * turn * lag) / (unit * hold), True)
-        return speed
-    unit = deceleration * hold
-    return unit * approach(room / (unit * hold), periods.vary)
+    _, accel, _, _, ramp, lag = rates
+    unit = ramp * (hold + lag)
+    speed = unit * approach(room / (unit * (hold + lag)), True)
+    # Where the limit shrinks by more than the joint can brake, it has to have braked before.
+    turn = accel * lag * ramp / (ramp - accel) if ramp > accel else np.inf
+    if speed > turn:
+        unit = accel * hold
+        speed = unit * approach((room - 0.5 * turn * lag) / (unit * hold), True)
+    return speed
 
 
 @compiled
@@ -530,7 +533,7 @@ def _jerk_bounds(
     last: float, before: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where the jerk is limited."""
-    fastest, accel, jerk, deceleration, _, _ = rates
+    fastest, accel, jerk, deceleration, _, lag = rates
     dt = periods.dt
     longest = periods.longest
     slowest = last - accel * dt
@@ -550,8 +553,14 @@ def _jerk_bounds(
     if lb > ub:
         lb = 0.5 * (lb + ub)
         ub = lb
-    upper = _ceiling(lb, ub, above, last, rates, periods)
-    lower = -_ceiling(-ub, -lb, below, -last, rates, periods)
+    way = (jerk, min(deceleration, accel - jerk * longest), np.inf)
+    margin = 0.0 if periods.vary else MARGIN * unit * dt
+    if lag > 0.0:
+        upper = _ceiling_below_ramp(lb, ub, above, last, rates, periods)
+        lower = -_ceiling_below_ramp(-ub, -lb, below, -last, rates, periods)
+    else:
+        upper = _ceiling(lb, ub, above - margin, last, periods, way)
+        lower = -_ceiling(-ub, -lb, below - margin, -last, periods, way)
     if lower < upper and max(abs(last), abs(last - before)) < unit:
         # Held at that bound, a joint at its margin would swing by it, 2 + sqrt(3) times as far in
         # each period (the zeros of a sampled triple integrator): all but at rest, it comes to rest.
@@ -667,6 +676,30 @@ def _usable_jerk(jerk: float, deceleration: float, fastest: float, period: float
 
 @compiled
 def _ceiling(
+    lb: float,
+    ub: float,
+    end: float,
+    last: float,
+    periods: Periods,
+    way: tuple[float, float, float],
+) -> float:
+    """Compute the largest command in [lb, ub] whose highest position is within `end`, else lb.
+
+    The way to rest is that of `highest`.
+    """
+    if highest(ub, last, periods, way) <= end:
+        return ub
+    for _ in range(HALVINGS):
+        middle = 0.5 * (lb + ub)
+        if highest(middle, last, periods, way) <= end:
+            lb = middle
+        else:
+            ub = middle
+    return lb
+
+
+@compiled
+def _ceiling_below_ramp(
     lb: float, ub: float, room: float, last: float, rates: Rates, periods: Periods
 ) -> float:
     """Compute the largest command in [lb, ub] whose way to rest is within `room`, else lb.
@@ -676,26 +709,15 @@ def _ceiling(
     """
     fastest, accel, jerk, deceleration, ramp, lag = rates
     dt = periods.dt
-    most = np.inf
-    for level in range(LEVELS if lag > 0.0 else 1):
+    for level in range(LEVELS):
         J = _usable_jerk(jerk, deceleration, fastest, periods.longest)
         A = min(deceleration, accel - J * periods.longest)
         end = room if periods.vary else room - MARGIN * (J * dt * dt) * dt
-        if lag > 0.0:
-            # One that brakes by more is behind on its way.
-            most = A
-            end -= 0.5 * lag * lag * ramp * A / (ramp - A)
-        way = (J, A, most)
-        if highest(ub, last, periods, way) <= end:
-            return ub
+        end -= 0.5 * lag * lag * ramp * A / (ramp - A)
+        # One that brakes by more is behind on its way.
+        way = (J, A, A)
         if level == 0 or highest(lb, last, periods, way) <= end:
-            beyond = ub
-            for _ in range(HALVINGS):
-                middle = 0.5 * (lb + beyond)
-                if highest(middle, last, periods, way) <= end:
-                    lb = middle
-                else:
-                    beyond = middle
+            lb = _ceiling(lb, ub, end, last, periods, way)
         deceleration *= LOWER
     return lb
 
