@@ -276,9 +276,7 @@ class Controller:
             reasons = self._take_periods(step, dt, elapsed)
         layout = step.layout
         program = step.program
-        # Of bytes in another order Pinocchio makes other numbers, without a word.
-        plain = type(q) is np.ndarray and q.dtype is _FLOAT and q.flags.c_contiguous
-        if not plain or q.shape != layout.shape:
+        if not _is_plain(q, layout.shape):
             q = checks.finite_array("q", q, layout.shape)
         program.kinematics.update(q)
         row = np.empty(layout.width)
@@ -478,6 +476,13 @@ class Controller:
             past[Q] = q
             least = kept_distances(self._state.next).copy()
             return program.qp_at(past, targets, self.dt, t, least)
+
+
+def _is_plain(q: Any, shape: tuple[int, ...]) -> bool:
+    """Tell whether joint positions (n,) are an array as compiled code takes it."""
+    # Of bytes in another order Pinocchio makes other numbers, without a word.
+    plain: bool = type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == shape
+    return plain and (q.base is None or q.flags.c_contiguous)  # own data have no gaps
 
 
 # A change of one of them is checked, and what is derived from them is made anew.
