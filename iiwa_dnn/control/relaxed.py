@@ -302,9 +302,7 @@ def note_blocking(point: Vector, n: int, m: int, extra: int, blocking: Vector) -
     least = BLOCKING * largest_entry(multipliers)
     for i in range(n + m):
         value = multipliers[m + i if i < n else i - n]
-        blocking[i] = 0.0
-        if abs(value) > least:
-            blocking[i] = math.copysign(1.0, value)
+        blocking[i] = math.copysign(1.0, value) if abs(value) > least else 0.0
 
 
 @compiled

@@ -249,9 +249,8 @@ def keeps_distances(
         most = 0.0
         for i in range(n):
             most += abs(scene.radii[k, i]) * travel[i]
-        kept = scene.least
-        if least[scene.first + k] != 0.0:
-            kept = least[scene.first + k]
+        own = least[scene.first + k]
+        kept = own if own != 0.0 else scene.least
         if left - most >= kept:
             continue
         change = np.inf
@@ -316,12 +315,10 @@ def stopping_time(
     ratio = dt / yielding.periods.dt
     before = past[LAST].copy()
     bend = np.zeros(dq.size)
-    periods = 1.0
     if yielding.periods.vary:
         for i in range(dq.size):
             before[i] = dq[i] - ratio * (dq[i] - before[i])
-    if limits.size:
-        periods = least_periods(dq, before, limits, dt, yielding.cubic)
+    periods = least_periods(dq, before, limits, dt, yielding.cubic) if limits.size else 1.0
     if periods == np.inf:
         return -1.0
     if yielding.cubic and periods > 0.0:
