@@ -208,9 +208,10 @@ class DNNSolver:
 
     def _status(self, qp: QP, point: Vector, residuals: Triple) -> Status:
         """Judge a point by its residuals, and the cost by a Cholesky factor."""
-        if is_accepted(qp.data, *qp.sizes, point, self.tol, self.eps_rel):
+        total = sum(residuals)
+        if is_accepted(qp.data, *qp.sizes, point, total, self.tol, self.eps_rel):
             return Status.SOLVED
-        if not math.isfinite(sum(residuals)):
+        if not math.isfinite(total):
             return Status.NOT_FINITE
         return Status.NOT_SETTLED if is_convex(qp.P, np.empty_like(qp.P)) else Status.NOT_CONVEX
 

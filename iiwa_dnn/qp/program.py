@@ -214,7 +214,8 @@ class QP:
         """
         n, m, p = self.sizes
         check_size("point", point, 2 * n + m + p)
-        return is_accepted(self.data, n, m, p, point, eps_abs, eps_rel)
+        total = sum(residuals_of(self.data, n, m, p, point))
+        return is_accepted(self.data, n, m, p, point, total, eps_abs, eps_rel)
 
     def check_values(self) -> None:
         """Check for values that no convex solver could make sense of.
