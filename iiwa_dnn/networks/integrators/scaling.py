@@ -16,7 +16,7 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp.certificates import certified, find_certificate
-from iiwa_dnn.qp.layout import Matrix, Vector, qp_views
+from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, qp_views
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import SLIGHT, cost_size, has_weight_of_one
 from iiwa_dnn.qp.solution import Status
@@ -39,20 +39,25 @@ def is_ordinary(data: Vector, n: int, m: int, p: int) -> bool:
     A cost of zeros is ordinary, and so is a row of zeros that holds. P is symmetric to the bit.
     """
     qp = qp_views(data, n, m, p)
-    for i in range(n):
-        if not abs(qp.q[i]) <= LARGE:
-            return False
-        for k in range(n):
-            if not abs(qp.P[i, k]) <= LARGE or qp.P[i, k] != qp.P[k, i]:
-                return False
     for j in range(p + m):
         holds = qp.b[j] == 0.0 if j < p else qp.h[j - p] >= 0.0
         if not _is_ordinary_row(qp.A if j < p else qp.G, j if j < p else j - p, holds):
             return False
-    for i in range(n):
-        if abs(qp.q[i]) >= SLIGHT or has_weight_of_one(qp.P, i):
-            return True
-    return cost_size(qp) == 0.0
+    return _is_ordinary_cost(qp)
+
+
+@compiled
+def _is_ordinary_cost(qp: QPViews) -> bool:
+    """Check that P is symmetric, and its and q's largest entry from `SLIGHT` to `LARGE`, or 0."""
+    is_felt = False
+    for i in range(qp.q.size):
+        if not abs(qp.q[i]) <= LARGE:
+            return False
+        for k in range(qp.q.size):
+            if not abs(qp.P[i, k]) <= LARGE or qp.P[i, k] != qp.P[k, i]:
+                return False
+        is_felt = is_felt or abs(qp.q[i]) >= SLIGHT or has_weight_of_one(qp.P, i)
+    return is_felt or cost_size(qp) == 0.0
 
 
 @compiled
