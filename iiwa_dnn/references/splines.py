@@ -39,6 +39,9 @@ _ROUNDING = 1e-9
 _BESIDE = 1e-10
 """Least time between the two equal rows at which a turn rests [s]."""
 
+_MISSES = 1e-9
+"""Distance of a piece's end from its next pose above which scipy's iterations diverged [rad]."""
+
 _ROUNDS = 6
 """Rounds before and after a closed path of turns, whose ends are then without effect."""
 
@@ -53,7 +56,8 @@ class Spline(NamedTuple):
     Attributes:
         pieces: Coefficients of x^3, x^2, x, (p, 3, 3), and of a spline of positions 1, (p, 4, 3).
         jumps: Whether the acceleration jumps where a piece begins, (p,).
-        excursion: Largest one of the cubic spline beyond the rows of a piece that offends [m, rad].
+        excursion: Largest one of the cubic spline beyond the rows of a piece that offends [m, rad];
+            inf if the iterations for its turns diverge.
     """
 
     pieces: Array
@@ -150,7 +154,8 @@ def _limited(
         excursion = excursion or float(excursions.max(initial=0.0, where=found))
         offending = found
     if not np.isfinite(pieces).all():
-        raise ValueError("scipy finds no spline through rows of times as uneven as these")
+        problem = "scipy finds no spline through rows of times as uneven as these"
+        raise InvalidInputError("times", problem, times)
     jumps = exchanged[:-1].any(axis=1) & ~(pauses & np.roll(pauses, 1))[:, 0]  # none in a pause
     jumps[0] &= closed
     return Spline(pieces.swapaxes(0, 1).reshape(len(steps), -1, 3), jumps, excursion)
@@ -186,7 +191,9 @@ def _excursions(pieces: Array, lengths: Array) -> Array:
 
 @np.errstate(all="ignore")
 def _turning(knots: Array, turns: Any) -> Array:
-    """Fit scipy's spline of turns; NaN if its iterations diverge.
+    """Fit scipy's spline of turns; NaN where its iterations diverge.
+
+    Diverged pieces may be finite, and so large that rounding leads them past their next pose.
 
     Returns:
         Coefficients of x^3, x^2, x, (3, p, 3), about the axes of each piece's first pose.
@@ -194,9 +201,14 @@ def _turning(knots: Array, turns: Any) -> Array:
     from scipy.spatial.transform import RotationSpline
 
     try:
-        return np.asarray(RotationSpline(knots, turns).interpolator.c[:3])
+        pieces = np.array(RotationSpline(knots, turns).interpolator.c[:3])
     except ValueError:
         return np.full((3, len(knots) - 1, 3), np.nan)
+    lengths = np.diff(knots)[:, np.newaxis]
+    ends = lengths * (pieces[2] + lengths * (pieces[1] + lengths * pieces[0]))
+    misses = np.abs(ends - (turns[:-1].inv() * turns[1:]).as_rotvec()).max(axis=1)
+    pieces[:, ~(misses <= _MISSES)] = np.nan
+    return pieces
 
 
 def smoothed(times: Array, rows: Array, noise: float, closed: bool) -> Array:

@@ -141,7 +141,8 @@ class Waypoints(Reference):
         turned: Angles that smoothing has turned the orientations by [rad], shape (m,).
 
     Raises:
-        InvalidInputError: If a parameter is not as said above.
+        InvalidInputError: If a parameter is not as said above, or scipy's iterations for the turns
+            diverge ("limited" rests at such rows).
         ValueError: If scipy fits no spline; the message says why.
     """
 
@@ -229,10 +230,13 @@ class Waypoints(Reference):
         for unit, spline in splines.items():
             if count := np.count_nonzero(spline.jumps):
                 first = ", ".join(f"{t:.4g}" for t in self.times[:-1][spline.jumps][:5])
+                leads = f"would leave the rows by up to {spline.excursion:.2g} {unit}"
+                if np.isinf(spline.excursion):
+                    leads = "diverges; a turn rests at these rows"
                 yield (
                     f"the acceleration jumps at {count} of {len(self.times)} rows (at {first}"
-                    f"{', ...' * (count > 5)} s): the cubic spline would leave the rows by up to "
-                    f"{spline.excursion:.2g} {unit}{'; noise= smooths a recording' * (count > 5)}"
+                    f"{', ...' * (count > 5)} s): the cubic spline {leads}"
+                    f"{'; noise= smooths a recording' * (count > 5)}"
                 )
 
     @classmethod
@@ -343,8 +347,9 @@ def _read(path: str | os.PathLike[str]) -> tuple[Array, list[str]]:
 def _header(lines: Iterator[tuple[int, str]]) -> tuple[list[str], str]:
     """Go to the header; return the names of the columns and what is between them."""
     for _, line in lines:
-        delimiter = ";" if ";" in line else ","
-        names = [name.lower() for name in _cells(line.lstrip("# "), delimiter)]
+        header = line.lstrip("# ").partition("#")[0]
+        delimiter = ";" if ";" in header else ","
+        names = [name.lower() for name in _cells(header, delimiter)]
         known = sorted(name for name in names if name in _COLUMNS)
         if known in (sorted(_COLUMNS[:4]), sorted(_COLUMNS)):
             return names, delimiter

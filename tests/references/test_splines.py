@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.spatial.transform import Rotation, RotationSpline
 
-from iiwa_dnn import Waypoints
+from iiwa_dnn import InvalidInputError, Waypoints
 
 Array = NDArray[np.float64]
 
@@ -237,6 +237,72 @@ def test_turns_for_which_scipy_finds_no_spline_rest_at_their_rows() -> None:
     np.testing.assert_allclose(targets.rotation, turns.as_matrix(), rtol=0, atol=1e-9)
     with pytest.raises(ValueError, match="scipy finds no spline"):
         Waypoints(times, np.zeros((16, 3)), "clamped", quaternions, "cubic")
+
+
+def turning_evenly_or_not(seed: int) -> tuple[Array, Rotation]:
+    """Times whose steps differ up to 5,000 times, and orientations."""
+    rng = np.random.default_rng([seed, 5])
+    count = int(rng.integers(3, 9))
+    times = np.append(0.0, np.cumsum(10.0 ** rng.uniform(-2.7, 1.0, count - 1)))
+    vectors = 0.5 * rng.standard_normal((count, 3))
+    vectors[-1] = vectors[0]
+    return times, Rotation.from_rotvec(vectors)
+
+
+def is_a_smooth_turn(path: Waypoints, turns: Rotation) -> None:
+    """Rotations everywhere, which meet their rows and are continuous there in angle and rate."""
+    knots = path.times - path.times[0]
+    inner = [np.linspace(*ends, 200, endpoint=False) for ends in pairwise(knots)]
+    targets = path.sample(np.concatenate(inner))
+    products = targets.rotation @ targets.rotation.swapaxes(1, 2)
+    np.testing.assert_allclose(
+        products, np.tile(np.eye(3), (len(products), 1, 1)), rtol=0, atol=1e-9
+    )
+    quickest = np.abs(targets.angular_velocity).max()
+    h = 1e-9 * np.diff(knots).min()
+    rows = knots[:-1] + (path.duration if path.ends == "closed" else 0.0)
+    before, after = (path.sample(rows + side * h) for side in (-1, 1))
+    for side in (before, after):
+        np.testing.assert_allclose(
+            side.rotation, turns.as_matrix()[:-1], rtol=0, atol=1e-8 + 2.0 * h * quickest
+        )
+    np.testing.assert_allclose(
+        before.angular_velocity, after.angular_velocity, rtol=0, atol=1e-6 * quickest
+    )
+
+
+@pytest.mark.parametrize("ends", ["clamped", "closed"])
+def test_uneven_turns_are_continuous_or_refused(ends: str) -> None:
+    refused = 0
+    for seed in range(75):
+        times, turns = turning_evenly_or_not(seed)
+        arguments = (times, np.zeros((len(times), 3)), ends, turns.as_quat()[:, [3, 0, 1, 2]])
+        is_a_smooth_turn(quiet(*arguments), turns)
+        try:
+            is_a_smooth_turn(quiet(*arguments, interpolation="cubic"), turns)
+        except InvalidInputError:
+            refused += 1
+    assert 0 < refused < 50
+
+
+def test_diverged_turns_are_told_or_refused() -> None:
+    """Of the first rows scipy's pieces are finite, about 1e171; of the others they end far off."""
+    degrees = [[12, -22, -10], [27, 42, -8], [-69, -24, -55], [-36, -21, 50], [-31, 15, 19]]
+    others = [[0, 0, 0], [20, 10, 0], [0, 30, 10], [10, 0, 30], [0, 20, 0]]
+    cases = ([0, 0.112, 0.135, 1.222, 5.312], degrees), ([0, 1, 2, 3, 3.002], others)
+    for times, vectors in cases:
+        turns = Rotation.from_rotvec(np.radians(vectors))
+        arguments = (times, np.zeros((5, 3)), "clamped", turns.as_quat()[:, [3, 0, 1, 2]])
+        with pytest.warns(
+            UserWarning, match=r"\(at .* s\): the cubic spline diverges; a turn rests"
+        ):
+            path = Waypoints(*arguments)
+        is_a_smooth_turn(path, turns)
+        np.testing.assert_allclose(
+            path.sample(path.times[path.jumps]).angular_velocity, 0.0, rtol=0, atol=1e-4
+        )
+        with pytest.raises(InvalidInputError, match="scipy finds no spline"):
+            Waypoints(*arguments, interpolation="cubic")
 
 
 def test_the_file_that_is_warned_of_is_named(tmp_path) -> None:

@@ -110,6 +110,7 @@ def test_rows_that_begin_or_end_at_speed_are_told(said: list[str], tmp_path: Pat
         "\ufeff" + GOOD,
         GOOD.replace("\n", "\r\n").replace(",", " , "),
         "\n T,X,Y,Z\n\n" + GOOD[8:],
+        "t,x,y,z # m; base\n" + GOOD[8:],
     ],
 )
 def test_csv_dialects(tmp_path: Path, text: str) -> None:
