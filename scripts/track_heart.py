@@ -1,6 +1,6 @@
 """Draw the paper's heart with the KUKA LBR iiwa 7 R800, every step checked; see --help.
 
-As in the paper, accelerations and jerks are not limited.
+As in the paper, all joints have position limits of 2.5 rad, accelerations and jerks none.
 """
 
 import sys
@@ -8,5 +8,5 @@ import sys
 from iiwa_dnn.app.main import main
 
 if __name__ == "__main__":
-    paper = ("--acceleration-limit", "none", "--jerk-limit", "none")
-    sys.exit(main(["track", *paper, *sys.argv[1:]]))
+    limits = ("--joint-limit", "2.5", "--acceleration-limit", "none", "--jerk-limit", "none")
+    sys.exit(main(["track", *limits, *sys.argv[1:]]))

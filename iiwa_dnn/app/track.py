@@ -49,9 +49,10 @@ from iiwa_dnn.results.pictures import save_pictures
 from iiwa_dnn.results.plots import CAPTIONS
 from iiwa_dnn.results.report import save_run, summary
 from iiwa_dnn.robot.mujoco_model import prepare_renderer
+from iiwa_dnn.robot.robot import model_limits
 from iiwa_dnn.schemes.limits import RateLimits, own_rate_limits
 from iiwa_dnn.simulation import Disturbances, IdealPlant, Push, count_steps
-from iiwa_dnn.studies.paper import JOINT_LIMIT, published
+from iiwa_dnn.studies.paper import published
 
 Tables = dict[str, Any]
 Choices = Mapping[str, Callable[..., Any]]
@@ -162,7 +163,7 @@ WORDS: dict[str, tuple[str, Any, str, str]] = {
         "limits.position",
         float | Literal["datasheet"] | None,
         "X",
-        "position limit of all joints [rad], or datasheet (iiwa7: 2.5)",
+        "position limit of all joints [rad], or datasheet (datasheet)",
     ),
     "speed": (
         "limits.speed",
@@ -326,8 +327,10 @@ def export(options: Words) -> int:
     folder = claim_folder(options.out or Path("controller"), tables, options.overwrite)
     write_settings(folder, tables)
     exports.c99(controller, folder, arguments["q0"])
-    if controller.robot.name == "iiwa7" and "position" not in tables["limits"]:
-        line = "position limits of 2.5 rad are the paper's, wider than those of joints 2, 4 and 6"
+    robot = controller.robot
+    lower, upper, _ = model_limits(robot.model)
+    if (robot.q_lower < lower).any() or (robot.q_upper > upper).any():
+        line = "position limits lie beyond the robot's own"
         print(f"{line}; for a real arm take --joint-limit datasheet", file=sys.stderr)
     if tables["limits"].get("acceleration") == "none":
         line = "accelerations are not limited; for a real arm take --acceleration-limit robot"
@@ -476,15 +479,15 @@ def load(table: Tables) -> Any:
 
 
 def bounded(sheet: Robot, table: Tables) -> tuple[Robot, list[Any]]:
-    """Return a robot with the bounds of a table [limits], by default the paper's, and its parts.
+    """Return a robot with the bounds of a table [limits], and its parts.
 
-    Where the table gives no acceleration or jerk limit, the robot's own holds.
+    Where the table gives no limit, the robot's own holds.
     """
     parts = [key.removeprefix("limits.") for key in PARTS if key.startswith("limits.")]
     own = {limit.quantity: "robot" for limit in own_rate_limits(sheet)}
     values = objects((*BOUNDS, *parts), "limits", own | table)
     bounds = {key: values[key] for key in ("lower", "upper", "velocity") if key in values}
-    angle = values.get("position", JOINT_LIMIT if sheet.name == "iiwa7" else "datasheet")
+    angle = values.get("position", "datasheet")
     if angle != "datasheet":
         upper = checks.positive("joint-limit", angle)
         bounds = {"lower": -upper, "upper": upper, **bounds}

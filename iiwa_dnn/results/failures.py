@@ -44,20 +44,21 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
 
 
 def unlimited(metrics: Mapping[str, Any], named: bool) -> Iterator[str]:
-    """Name the accelerations and jerks that went beyond the robot's own limits, unlimited.
+    """Name what went beyond the robot's own limits, not limited or to a larger number.
 
     Args:
         metrics: The metrics.
-        named: Whether the scheme names a limit of that kind, none or a larger one (True), or
-            nobody gave one (False).
+        named: Whether somebody gave a limit of that kind, none or a larger one (True), or nobody
+            did (False); positions and velocities are always given.
     """
     units = dict(JOINT_LIMITS.values())
     for quantity, found in metrics["beyond_robot"].items():
         if found["named"] == named:
             most = found["limited"]
             was = "not limited" if most is None else f"limited to {_show(most)}"
+            unit = units[quantity.split()[-1]]
             yield (
-                f"{quantity} was {was}: up to {_show(found['largest'])} {units[quantity]} at "
+                f"{quantity} was {was}: up to {_show(found['largest'])} {unit} at "
                 f"{found['joint']}, the robot's limit is {_show(found['limit'])}; {_at(found)}"
             )
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from iiwa_dnn.checks import Array, instance
 from iiwa_dnn.files import plain
 from iiwa_dnn.naming import ACTIONS, in_the_way
-from iiwa_dnn.results.record import RATES, Record
+from iiwa_dnn.results.record import OWN_LIMITS, RATES, Record
 
 PROGRAMS = ("own", "scaled", "softened", "held", "stopped")
 """Kinds of a step by their codes in `Record.kind`."""
@@ -124,23 +124,30 @@ def _excesses(record: Record) -> dict[str, Array]:
     return found
 
 
+@np.errstate(invalid="ignore")
 def beyond_robot(record: Record) -> dict[str, dict[str, Any]]:
-    """State how far accelerations and jerks went beyond the robot's own limits, by quantity.
+    """State how far the joints went beyond the robot's own limits, by `OWN_LIMITS`.
 
-    What the scheme kept within them, and what the robot does not limit, is left out. ``limited`` is
-    the scheme's limit, None for none; ``named`` tells whether the scheme names one, or none.
+    What the run kept within them, and what the robot does not limit, is left out. ``limited`` is
+    the run's limit, None for none; ``named`` tells whether somebody gave one, or none.
     """
     found = {}
-    for quantity, setting in RATES.items():
-        own = limits(record, f"robot_{setting}")
-        kept = limits(record, setting)
-        excess = _rate_excess(record, quantity, np.where(own < kept, own, np.inf))
+    for quantity, setting in OWN_LIMITS.items():
+        sign = -1.0 if setting == "q_lower" else 1.0
+        own = sign * limits(record, f"robot_{setting}", sign * np.inf)
+        kept = sign * limits(record, setting, sign * np.inf)
+        limit = np.where(own < kept, own, np.inf)
+        if quantity in RATES:
+            excess = _rate_excess(record, quantity, limit)
+        else:
+            reached = np.abs(record.dq) if quantity == "velocity" else sign * record.q
+            excess = reached - limit
         if worst := _worst(record, excess):
             joint = record.settings["joints"].index(worst["joint"])
             found[quantity] = worst | {
-                "largest": own[joint] + excess[worst["step"], joint],
-                "limit": own[joint],
-                "limited": kept[joint],
+                "largest": sign * (own[joint] + excess[worst["step"], joint]),
+                "limit": sign * own[joint],
+                "limited": sign * kept[joint],
                 "named": setting in record.settings,
             }
     return found
@@ -155,8 +162,8 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     ``mse_position_error_m2`` is the mean over the N+1 samples *and* the three axes, which is most
     likely the paper's MSE: a third of the mean squared distance. ``duration_s`` is the time
     simulated; ``settings["duration"]`` was asked for. ``violations`` says of each broken limit
-    where its excess is largest, ``beyond_robot`` how far a rate went that nothing kept within the
-    robot's own limit, ``unsolved`` of the answers above the tolerance which is the first,
+    where its excess is largest, ``beyond_robot`` how far joints went that nothing kept within the
+    robot's own limits, ``unsolved`` of the answers above the tolerance which is the first,
     ``incidents`` which bounds, inequality rows and policies acted, and for how many steps. A run in
     physics also has ``physics`` (torques, settled error), one that tracks several frames ``frames``
     (largest errors of those beside the first), one that avoids collisions ``collisions`` (the

@@ -132,7 +132,7 @@ def overview_figure(record: Record) -> Figure:
         draw_error,
         draw_orientation_error,
         draw_kinetic_index,
-        *(partial(draw_joints, name=quantity) for quantity in beyond_robot(record)),
+        *(partial(draw_joints, name=rate) for rate in RATES if rate in beyond_robot(record)),
         *(draw for draw, column in further.items() if len(column)),
     ]
     return _draw_panels(record, panels, 2, 2.7)

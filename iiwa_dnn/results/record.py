@@ -17,8 +17,15 @@ IntArray = NDArray[np.int64]
 CodeArray = NDArray[np.int8]
 
 RATES = {"acceleration": "ddq_max", "jerk": "dddq_max"}
-"""Setting of the limits that a scheme names, by what is limited: None where it names none. The
-robot's own are there under the same name after ``robot_``."""
+"""Setting of the limits that a scheme names, by what is limited: None where it names none."""
+
+OWN_LIMITS = {
+    "lower position": "q_lower",
+    "upper position": "q_upper",
+    "velocity": "dq_max",
+    **RATES,
+}
+"""Setting of a run's limit by what is limited; the robot's own has ``robot_`` before its name."""
 
 
 class Column(NamedTuple):

@@ -16,11 +16,8 @@ from iiwa_dnn import checks
 from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.robot.arms import ARMS, RATES, TIPS
-from iiwa_dnn.robot.robot import Robot, frame_id
+from iiwa_dnn.robot.robot import Robot, frame_id, model_limits
 from iiwa_dnn.robot.urdf import build_model, number_of, read_urdf
-
-_NO_LIMIT = 1e300
-"""Limit from which on Pinocchio means none [rad, rad/s]."""
 
 _LARGE = 40.0
 """Position or velocity limit beyond which a file looks as if it were in degrees, or in mm."""
@@ -211,9 +208,7 @@ def _limits(
     joints = {joint.get("name"): joint for joint in root.findall("joint")}
     limits = np.full((5, model.nv), np.inf)
     ramps = np.array([[0.0], [np.inf]]) * np.ones(model.nv)
-    limits[:3] = [model.lowerPositionLimit, model.upperPositionLimit, model.velocityLimit]
-    limits[np.abs(limits) > _NO_LIMIT] *= np.inf
-    limits[2, limits[2] == 0.0] = np.inf
+    limits[:3] = model_limits(model)
     jacobian = pin.computeJointJacobians(model, model.createData(), pin.neutral(model))
     twists = jacobian.reshape(6, -1)  # (6,) for a single joint
     for i, name in enumerate(tuple(model.names)[1:]):

@@ -15,6 +15,9 @@ from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.robot.arms import STARTS
 from iiwa_dnn.robot.start import best_start
 
+_NO_LIMIT = 1e300
+"""Limit from which on Pinocchio means none [rad, rad/s]."""
+
 _LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
 """Rows of `Robot.limits`, and the arguments of `Robot.with_limits`."""
 
@@ -258,6 +261,17 @@ class Robot:
     def __repr__(self) -> str:
         locked = f", locked: {', '.join(self.locked)}" if self.locked else ""
         return f"<Robot {self.name}: {self.dof} joints, tip {self.tip}{locked}>"
+
+
+def model_limits(model: pin.Model) -> checks.Array:
+    """Return a model's lower and upper positions [rad] and velocities [rad/s], (3, n).
+
+    Where there is no limit, or a number too large to be one, it is infinite.
+    """
+    limits = np.array([model.lowerPositionLimit, model.upperPositionLimit, model.velocityLimit])
+    limits[np.abs(limits) > _NO_LIMIT] *= np.inf
+    limits[2, limits[2] == 0.0] = np.inf
+    return limits
 
 
 def frame_names(model: pin.Model) -> tuple[str, ...]:

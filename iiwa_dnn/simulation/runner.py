@@ -18,8 +18,9 @@ from iiwa_dnn.control.policies import Policy
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CheckPool, CrossCheck
-from iiwa_dnn.results.record import RATES, Record
+from iiwa_dnn.results.record import OWN_LIMITS, RATES, Record
 from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot.robot import model_limits
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.limits import NUMBERS, MotionLimits, RateLimits
@@ -192,6 +193,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     paths = by_frame(controller.reference, "").values()
     of_rates = (program.rate_limits or MotionLimits()).numbers(robot).reshape(NUMBERS, -1)[3:5]
     kept = dict(zip(RATES, of_rates, strict=True))
+    own = [*model_limits(robot.model), *robot.limits[3:]]
     limits: dict[str, Any] = {
         RATES[named.quantity]: kept[named.quantity]
         for named in controller.scheme.limits
@@ -214,9 +216,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         "q_lower": robot.q_lower,
         "q_upper": robot.q_upper,
         "dq_max": robot.dq_max,
-        **{
-            f"robot_{name}": own for name, own in zip(RATES.values(), robot.limits[3:], strict=True)
-        },
+        **{f"robot_{name}": limit for name, limit in zip(OWN_LIMITS.values(), own, strict=True)},
         **limits,
         "beyond_reach": beyond_reach(controller.reference, robot),
         "start_speed": max((abs(path.at(0.0).data[12:]).max() for path in paths), default=0.0),

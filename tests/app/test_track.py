@@ -96,8 +96,9 @@ def test_defaults_are_the_papers_experiment(words, dt, tmp_path, monkeypatch) ->
     assert call("track", *words) == 2
     assert asked["dt"] == dt
     assert asked["folders"] == [tmp_path / "runs" / ("circle" if words else "heart")]
-    np.testing.assert_array_equal(asked["robot"].q_lower, np.full(7, -2.5))
-    np.testing.assert_array_equal(asked["robot"].q_upper, np.full(7, 2.5))
+    degrees = [170, 120, 170, 120, 170, 120, 175]  # of the data sheet, not the paper's 2.5 rad
+    np.testing.assert_allclose(asked["robot"].q_upper, np.deg2rad(degrees), rtol=1e-8)
+    np.testing.assert_array_equal(asked["robot"].q_lower, -asked["robot"].q_upper)
     np.testing.assert_array_equal(asked["q0"], PAPER_Q0)
     scheme = asked["scheme"]
     gains = (scheme.drift_gain, scheme.position_gain, scheme.orientation_gain, scheme.limit_gain)
@@ -115,7 +116,16 @@ def test_a_robots_own_limits(tmp_path: Path) -> None:
     _, metrics = track(tmp_path, *words)
     assert metrics["settings"]["q_upper"][1] == np.deg2rad(120)
     assert metrics["settings"]["scheme"]["extra_limits"][0]["limit"] is None
-    words = ("--set", "limits.lower=-2.4", "--set", "limits.velocity=1.2", "--speed", "0.5")
+    words = (
+        "--joint-limit",
+        "2.5",
+        "--set",
+        "limits.lower=-2.4",
+        "--set",
+        "limits.velocity=1.2",
+        "--speed",
+        "0.5",
+    )
     _, metrics = track(tmp_path / "table", *words)
     assert metrics["settings"]["q_lower"] == [-2.4] * 7
     assert metrics["settings"]["q_upper"] == [2.5] * 7
@@ -224,6 +234,24 @@ def test_the_robots_own_rates_hold_unless_the_words_say_none(tmp_path, capsys) -
     assert re.match(f"verdict +{said}", verdict)
 
 
+def test_wider_positions_and_velocities_than_the_robots_are_said_first(tmp_path, capsys) -> None:
+    """A tip that comes 30 cm nearer bends the elbow beyond its 120 degrees, if it may."""
+    words = ("track", "line", "--set", "reference.offset=[-0.3, 0, -0.1]", "--no-plots")
+    words += ("--period", "3", "--check", "none")
+    found = {}
+    for name, more in {"kept": (), "beyond": ("--joint-limit", "2.5", "--speed", "2")}.items():
+        code = call(*words, *more, "--out", tmp_path / name)
+        elbow = results(tmp_path / name)[0]["q"][:, 3].max()
+        found[name] = (code, elbow, capsys.readouterr().out.splitlines()[0])
+    code, elbow, verdict = found["kept"]
+    assert elbow <= np.deg2rad(120) + 1e-9
+    code, elbow, verdict = found["beyond"]
+    assert code == 0
+    assert elbow > np.deg2rad(121)
+    said = f"upper position was limited to 2.5: up to {elbow:.3g} rad at iiwa7_joint_4, "
+    assert re.match(f"verdict +{said}the robot's limit is 2.09; ", verdict)
+
+
 BALL = """distance = 0.03
 [[obstacle]]
 shape = "sphere"
@@ -250,8 +278,9 @@ def test_the_script_from_anywhere_and_as_in_this_process(tmp_path: Path) -> None
     # No terminal, no progress bar; and any warning would be on standard error.
     assert (done.returncode, done.stderr) == (0, "")
     assert "\x1b" not in done.stdout  # piped, so without colour
-    # Its accelerations and jerks are not limited, as the paper's.
-    track(tmp_path / "there", "--acceleration-limit", "none", "--jerk-limit", "none", *words)
+    # Its limits are the paper's.
+    paper = ("--joint-limit", "2.5", "--acceleration-limit", "none", "--jerk-limit", "none")
+    track(tmp_path / "there", *paper, *words)
     # The same seed gives the same record, bit for bit, in another process too.
     here, there = (tmp_path / name / "record.npz" for name in ("here", "there"))
     assert here.read_bytes() == there.read_bytes()

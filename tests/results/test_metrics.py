@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from helpers_records import make_record
 from iiwa_dnn import Record
-from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.failures import failures, unlimited
 from iiwa_dnn.results.metrics import compute_metrics, orientation_error, position_error
 
 ROWS = [
@@ -152,6 +152,28 @@ def test_what_went_beyond_the_robots_own_limits_is_named_by_how_far():
     reasons, found = beyond(rates, ddq_max=1.0)  # one that is kept, or broken, is the scheme's
     assert reasons[0].startswith("joint acceleration limit broken by 4 rad/s²")
     assert found == {}
+
+
+def test_positions_and_velocities_beyond_the_robots_own_limits_are_named_and_no_failure():
+    own = {"robot_q_lower": [-2.0] * 7, "robot_q_upper": [2.1] * 7, "robot_dq_max": [1.0] * 7}
+    still = make_record(q=np.zeros((11, 7)), settings=own)
+    assert compute_metrics(still)["beyond_robot"] == {}
+    moved = sample(sample(sample(still, "q", (3, 5), 2.2), "q", (4, 1), -2.25), "dq", (2, 0), -1.2)
+    metrics = compute_metrics(moved)
+    assert failures(metrics) == []
+    assert [reason.split("; ")[0] for reason in unlimited(metrics, named=True)] == [
+        "lower position was limited to -2.5: up to -2.25 rad at joint 2, the robot's limit is -2",
+        "upper position was limited to 2.5: up to 2.2 rad at joint 6, the robot's limit is 2.1",
+        "velocity was limited to 1.5: up to 1.2 rad/s at joint 1, the robot's limit is 1",
+    ]
+    # Limits that are no wider than the robot's are the run's, kept or broken.
+    kept = {name.removeprefix("robot_"): limit for name, limit in own.items()}
+    broken = compute_metrics(make_record(q=moved.q, dq=moved.dq, settings=own | kept))
+    assert broken["beyond_robot"] == {}
+    assert [reason[:14] for reason in failures(broken)] == ["joint position", "joint velocity"]
+    none = {"q_lower": [None] * 7}
+    free = compute_metrics(make_record(q=moved.q, settings=own | none))
+    assert free["beyond_robot"]["lower position"]["limited"] is None
 
 
 def test_of_an_arm_with_masses_the_commands_are_judged():
