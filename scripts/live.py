@@ -23,6 +23,18 @@ RADIUS = 0.08  # of the ball [m]
 SLIDERS = {"weight": 1.0, "drift_gain": 30.0, "position_gain": 30.0, "orientation_gain": 30.0}
 
 
+def avoid(page):
+    """Return the limit that keeps the arm away from a ball that is dragged about."""
+    first = page.center.copy()
+
+    class Dragged(iiwa_dnn.Sphere):
+        def shift(self, t):
+            return page.center - first
+
+    ball = Dragged(first.tolist(), RADIUS, velocity=(SPEED, 0.0, 0.0))
+    return iiwa_dnn.CollisionAvoidance([ball], self_collision=False, distance=0.03)
+
+
 class Live:
     """A page on which an arm follows a target and keeps away from a ball."""
 
@@ -33,7 +45,7 @@ class Live:
         start = iiwa_dnn.Configuration(robot, self.q)
         self.goal = iiwa_dnn.MovingTarget(start, speed=SPEED, rate=1.0)
         self.center = start.position + [0.0, 0.0, 0.5]  # of the ball [m]
-        scheme = iiwa_dnn.DoubleIndicator(home=tuple(self.q), extra_limits=(self.avoid(),))
+        scheme = iiwa_dnn.DoubleIndicator(home=tuple(self.q), extra_limits=(avoid(self),))
         self.controller = iiwa_dnn.Controller(robot, scheme, self.goal, dt=DT)
         self.controller.warm_up(self.q)
         self.check = iiwa_dnn.CrossCheck()
@@ -59,11 +71,6 @@ class Live:
         ]
         self.shield = None
         self.state = gui.add_markdown("")
-
-    def avoid(self):
-        """Return the limit that keeps the arm away from the ball."""
-        ball = iiwa_dnn.Sphere(self.center.tolist(), RADIUS)
-        return iiwa_dnn.CollisionAvoidance([ball], self_collision=False, distance=0.03)
 
     def tick(self):
         """Take the steps of a picture, and show the last one."""
@@ -97,7 +104,7 @@ class Live:
         most = SPEED * STEPS * DT  # of the ball's way in a tick
         self.center = self.center + way * min(1.0, most / max(np.linalg.norm(way), 1e-9))
         chosen = {name: slider.value for name, slider in self.sliders.items()}
-        scheme = replace(self.controller.scheme, **chosen, extra_limits=(self.avoid(),))
+        scheme = replace(self.controller.scheme, **chosen)
         if scheme != self.controller.scheme:
             self.controller.scheme = scheme
         w, x, y, z = map(float, self.target.wxyz)

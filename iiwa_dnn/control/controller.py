@@ -149,7 +149,6 @@ class Controller:
         # A braking motion in hand keeps the limits of before.
         if name in ("robot", "scheme") and value is not before:
             self._state.past[REST] = 0.0
-            kept_distances(self._state.past)[:] = 0.0
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
@@ -363,7 +362,7 @@ class Controller:
             paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
             longest = self.longest_period
             step = ControlStep(program, paths, self.solver, self.dt, policy, longest)
-            self._state.watch(step.shape)
+            self._state.watch(step.shape, [names for names, _ in program.pairs])
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
             return step

@@ -1,6 +1,7 @@
 """The state of a controller: all that one step leaves behind for the next."""
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -40,9 +41,10 @@ class ControllerState:
         halted: Whether the arm brakes from now on; each step writes it into the row `HALTED`.
         begun: Whether the start was looked at, and warned of.
         exceeded: Whether a period above the longest was warned of.
+        pairs: The watched pairs, each with its names.
     """
 
-    __slots__ = ("begun", "booked", "dt", "exceeded", "halted", "next", "past", "slowed")
+    __slots__ = ("begun", "booked", "dt", "exceeded", "halted", "next", "pairs", "past", "slowed")
 
     past: Matrix
     next: Matrix
@@ -51,16 +53,21 @@ class ControllerState:
         """Begin with an arm of n joints that has had no command."""
         self.begun = False
         self.exceeded = False
+        self.pairs: Any = []
         self.past = np.zeros((LEAST, dof))
         self.rest()
 
-    def watch(self, shape: tuple[int, int]) -> None:
-        """Make room for the distances of all pairs, which begin at the next step, (8 + k, n)."""
-        if self.past.shape != shape:
+    def watch(self, shape: tuple[int, int], pairs: Any) -> None:
+        """Make room for the distances of all pairs, (8 + k, n); other pairs begin at the next step.
+
+        The same pairs keep theirs: an obstacle that is elsewhere in a new scheme has moved.
+        """
+        if pairs != self.pairs:
             past = np.zeros(shape)
             past[:LEAST] = self.past[:LEAST]
             self.past = past
             self.next = past
+            self.pairs = pairs
 
     def rest(self) -> None:
         """Forget all commands."""

@@ -175,3 +175,28 @@ def test_a_link_that_a_ball_sits_in_is_stopped_and_says_why() -> None:
     for command in commands:
         assert command.kind is ProgramKind.STOPPED
         assert "iiwa7_link_7 and Sphere 1 meet, and no direction leads apart" in command.against
+
+
+def test_an_obstacle_that_a_new_scheme_has_elsewhere_pushes_the_arm_back() -> None:
+    """It has moved: only where a loop begins does a pair keep a distance of its own."""
+    robot = d.load_robot("iiwa7")
+    q = np.array(robot.start_posture())
+    start = d.Configuration(robot, q)
+    at = start.frame("iiwa7_link_4").position + [0.3, 0.0, 0.0]
+
+    def scheme(center: np.ndarray) -> d.Scheme:
+        ball = d.CollisionAvoidance([d.Sphere(center, 0.05)], self_collision=False, distance=0.03)
+        return d.DoubleIndicator(home=tuple(q), extra_limits=(ball,))
+
+    made = d.Controller(robot, scheme(at), d.MovingTarget(start), dt=5e-3)
+    path = [q]
+    for k in range(400):
+        if k % 20 == 0 and 0 < k < 240:
+            at = at - [0.02, 0.0, 0.0]
+            made.scheme = scheme(at)
+        path.append(made.step(path[-1], 5e-3 * k).next_q)
+    scene = made.scheme.limits[-1].scene(robot)
+    left, _ = scene.nearest(np.array(path[-1:]), np.zeros(1))
+    assert left[0] > 0.03 - 1e-6
+    begun, _ = scene.nearest(np.array(path[:1]), np.zeros(1))
+    assert begun[0] < 0.0
