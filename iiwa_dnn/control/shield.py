@@ -389,7 +389,7 @@ class ShieldCommand(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """What a step leaves behind, beside the state that kernels overwrite.
+    """Keep what one step leaves for the next, beside the state that kernels overwrite.
 
     Attributes:
         kind: Kind of the last request.
