@@ -79,9 +79,9 @@ def test_two_workers_bring_the_bytes_of_one(tmp_path: Path) -> None:
 
 
 def test_after_kill_9_the_sweep_goes_on_where_it_was(tmp_path: Path, log: Path) -> None:
-    count, folder = 8, tmp_path / "cells"
+    count, folder, gate = 8, tmp_path / "cells", tmp_path / "gate"
     main = "import helpers_sweeps; helpers_sweeps.main()"
-    command = [sys.executable, "-c", main, *map(str, (folder, log, count, 0.2, 2))]
+    command = [sys.executable, "-c", main, *map(str, (folder, log, count, gate, 2))]
     mark = f"IIWA_DNN_TEST={tmp_path}"
     process = subprocess.Popen(command, env=os.environ | dict([mark.split("=")]))
     deadline = time.monotonic() + 60.0
@@ -94,13 +94,16 @@ def test_after_kill_9_the_sweep_goes_on_where_it_was(tmp_path: Path, log: Path) 
     kept = finished(folder)
     assert 3 <= len(kept) < count
     log.write_text("", encoding="utf-8")
+    gate.touch()
 
-    assert sweep(draw, cells(log, count, sleep=0.2), folder, workers=1, quiet=True) == expected(8)
+    assert sweep(
+        draw, cells(log, count, gate=str(gate)), folder, workers=1, quiet=True
+    ) == expected(8)
     assert len(computed(log)) == count - len(kept)
     assert finished(folder).items() >= kept.items()
 
     # An uninterrupted sweep leaves the same bytes.
-    sweep(draw, cells(log, count, sleep=0.2), tmp_path / "whole", workers=1)
+    sweep(draw, cells(log, count, gate=str(gate)), tmp_path / "whole", workers=1)
     assert finished(tmp_path / "whole") == finished(folder)
 
 
