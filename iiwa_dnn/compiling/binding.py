@@ -25,8 +25,13 @@ def prelude(name: str) -> str:
 def extension(translator: Translator) -> str:
     """Write the extension module of all kernels that a translator has translated."""
     functions = list(translator.functions.values())
-    # Arrays are no results for Python: they are given back.
-    called = [own for own in functions if not (own.result.axes or own.result.is_named)]
+    # Arrays are no results for Python: they are given back. A record of several sizes is viewed.
+    called = [
+        own
+        for own in functions
+        if not (own.result.axes or own.result.is_named)
+        and all(kind.is_sized for kind in own.parameters.values())
+    ]
     parts = [
         *map(prelude, ("binding.h", "kernels.h", "arena.h")),
         prelude("checked.h") * translator.is_checked,
@@ -96,10 +101,12 @@ def _read(kind: Kind, place: str, source: str, written: set[str]) -> list[str]:
     if kind.sizes:
         numbers = f"a_{place}.numbers"
         writes = str(any(each.startswith(f"{place}.") for each in written)).lower()
+        fixed, *shared = kind.sizes.values()
+        size = [f"({numbers}.size0 - {fixed}) / {own}" for own in shared]
         return [
             f"!(({numbers}.data = read_doubles({source}, 1, &{numbers}.size0, {writes})))",
-            f'!has_size("{kind.tag}", {numbers}.size0, {kind.sizes[0]}, {kind.sizes[1]})',
-            f"((a_{place} = {kind.tag}_of({numbers})), false)",
+            f'!has_size("{kind.tag}", {numbers}.size0, {fixed}, {sum(shared)})',
+            f"((a_{place} = {kind.tag}_of({', '.join([numbers, *size])})), false)",
         ]
     if not kind.members:
         return [f"!{_READERS[kind.tag]}({source}, &a_{place})"]

@@ -45,7 +45,8 @@ _FUNCTIONS = {
 """Type of the result and name in C of Python's functions. Numpy's others may differ in the last
 digit."""
 
-_NUMBERS: dict[Kind, type] = {BOOL: bool, INT: int, FLOAT: float}
+NUMBERS: dict[Kind, type] = {BOOL: bool, INT: int, FLOAT: float}
+_OF_FLOAT = {INT: ("(int64_t){}", Rank.UNARY), BOOL: ("{} != 0.0", Rank.EQUALITY)}
 
 
 class Value(NamedTuple):
@@ -130,7 +131,7 @@ def number(value: float) -> Value:
     Raises:
         TypeError: It is none.
     """
-    for kind, own in _NUMBERS.items():
+    for kind, own in NUMBERS.items():
         if isinstance(value, own):
             text = repr(own(value)).replace("inf", "INFINITY").replace("nan", "NAN")
             text = text.lower() if own is bool else text
@@ -319,12 +320,16 @@ class Expressions:
             return owner.size
         known = self.translator.plan.get(owner.kind.tag, {}) if owner.is_plan else {}
         own = owner.member(node.attr, owner.kind.members[node.attr])
-        if owner.kind.sizes and own.kind is FLOAT:
-            numbers = owner.member("at", owner.kind)._replace(
-                pointer=owner.member("at", FLOAT).text
-            )
-            own = numbers.member(node.attr, FLOAT)._replace(places=own.places)
+        if owner.kind.sizes and own.kind in NUMBERS:
+            return self._number(owner, node.attr, own)
         return known.get(node.attr, own)
+
+    def _number(self, owner: Value, name: str, own: Value) -> Value:
+        """Translate a number of a record, which holds whole numbers and truths as floats."""
+        pointer = owner.member("at", FLOAT).text
+        found = owner._replace(pointer=pointer).member(name, FLOAT)
+        text, rank = _OF_FLOAT.get(own.kind, ("{}", Rank.PRIMARY))
+        return Value(own.kind, text.format(found.text), rank, places=own.places)
 
     def _comparison(self, values: list[Value], signs: list[str]) -> Value:
         """Translate comparisons, all of which hold."""
@@ -403,7 +408,7 @@ class Expressions:
                 return array(own.kind.element, own.data, shape)._replace(places=own.places)
             case ast.Attribute(value=record, attr="of"):
                 kind = self.translator.kinds.of(self.module, record)
-                return self._record(kind, self.value(node.args[0]))
+                return self._record(kind, *map(self.value, node.args))
             case ast.Attribute(value=ast.Name(id="np"), attr="empty" | "zeros" as word):
                 shape = [*map(self._once, getattr(node.args[0], "elts", node.args))]
                 return self._taken(FLOAT, word, [joined("*", shape)], shape)
@@ -419,17 +424,22 @@ class Expressions:
             return self._named(kind, literal(kind, texts), views)
         return self._standard(name, values)
 
-    def _record(self, kind: Kind, numbers: Value) -> Value:
-        """View an array as a record."""
-        assert kind.sizes
+    def _record(self, kind: Kind, numbers: Value, *given: Value) -> Value:
+        """View an array as a record; one size follows from that of the array."""
+        fixed, *shared = kind.sizes.values()
+        own = numbers.size.text
+        sizes = [each.text for each in given]
+        if shared and not sizes:
+            sizes = [f"int_max(0, ({own} - {fixed}) / {shared[0]})"]
+        pairs = zip(sizes, shared, strict=True)
         if self.translator.is_checked:
-            size = numbers.size.text
-            fixed, shared = kind.sizes
-            asked = f"{fixed} + {shared} * int_max(0, ({size} - {fixed}) / {max(1, shared)})"
-            text = f"shaped({size}, {asked}, {size})"
-            numbers = array(FLOAT, numbers.data, [Value(INT, text)])._replace(places=numbers.places)
+            asked = " + ".join([str(fixed), *(f"{count} * ({size})" for size, count in pairs)])
+            text = Value(INT, f"shaped({own}, {asked}, {own})")
+            numbers = array(FLOAT, numbers.data, [text])._replace(places=numbers.places)
         views = {f".{name}": numbers.places for name in kind.members}
-        return self._named(kind, f"{kind.tag}_of({numbers.text})", views)
+        for name, own_kind in kind.members.items():
+            views |= {f".{name}.{each}": numbers.places for each in own_kind.members}
+        return self._named(kind, f"{kind.tag}_of({', '.join([numbers.text, *sizes])})", views)
 
     def _taken(
         self, element: Kind | None, word: str, given: list[Value], sizes: list[Value]

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import math
 from dataclasses import dataclass, field
+from typing import Any
 
 from .sources import Module, Package, c_word, fail
 
@@ -18,7 +20,7 @@ class Kind:
         element: Type of the elements of an array without gaps, or of a plain tuple.
         axes: Number of axes of an array.
         members: Type of each member of a tuple, plain or named, or of a record.
-        sizes: Of a record: the number of its own numbers, and of parts of a shared size.
+        sizes: Of a record: how many numbers it has for each of its sizes, by none in any case.
     """
 
     tag: str
@@ -26,12 +28,18 @@ class Kind:
     element: Kind | None = None
     axes: int = 0
     members: dict[str, Kind] = field(default_factory=dict)
-    sizes: tuple[int, int] | None = None
+    sizes: dict[str, int] = field(default_factory=dict)
 
     @property
     def is_named(self) -> bool:
         """Test whether it is a named tuple or a record, which is handed on by its address."""
         return bool(self.members) and self.element is None
+
+    @property
+    def is_sized(self) -> bool:
+        """Test whether an array tells the sizes of all records in it."""
+        inner = (own.is_sized for own in self.members.values())
+        return len(self.sizes) <= 2 and all(inner)
 
     @property
     def word(self) -> str:
@@ -115,32 +123,48 @@ class Kinds:
         """Write a record: its array, a pointer to its numbers, and its parts, which follow them."""
         tag = module.c_name(node.name)
         rows = [own for own in node.body if isinstance(own, ast.AnnAssign)]
-        names = [ast.unparse(own.target) for own in rows if own.value is None]
-        parts = {ast.unparse(own.target): module.value(own.value) for own in rows if own.value}
-        fixed = len(names) + sum(filter(None, parts.values()))
-        shared = [*parts.values()].count(None)
+        annotations = {ast.unparse(row.target): row.annotation for row in rows if not row.value}
+        names = {name: self.of(module, own) for name, own in annotations.items()}
+        members = {"numbers": _KINDS["Vector"], **names}
+        values = ["numbers", *[f"({tag}_numbers *)numbers.data"] * bool(names)]
+        end = {"": len(names)}
+        for row in rows:
+            if isinstance(row.value, ast.Call):
+                kind = members[ast.unparse(row.target)] = self.of(module, row.annotation)
+                place = f"numbers.data + {_counted(end)}"
+                values.append(
+                    _part(kind, [module.value(own) for own in row.value.args], place, end)
+                )
         inner = "\n".join(f"    double {c_word(name)};" for name in names)
         if names:
             self.structs[f"{tag}_numbers"] = f"typedef struct {{\n{inner}\n}} {tag}_numbers;"
         pointer = [f"    {tag}_numbers *at;"] * bool(names)
-        lines = ["    Vector numbers;", *pointer, *(f"    Vector {c_word(own)};" for own in parts)]
-        inner = "\n".join(lines)
+        parts = [f"    {k.tag} {c_word(own)};" for own, k in members.items() if own not in names]
+        inner = "\n".join([parts[0], *pointer, *parts[1:]])
         self.structs[tag] = f"/* {_about(node)} */\ntypedef struct {{\n{inner}\n}} {tag};"
-        values = ["numbers", *[f"({tag}_numbers *)numbers.data"] * bool(names)]
-        start = (len(names), 0)
-        for count in parts.values():
-            size = "n" if count is None else str(count)
-            values.append(f"{{numbers.data + {start[0]} + {start[1]} * n, {size}}}")
-            start = (start[0], start[1] + 1) if count is None else (start[0] + count, start[1])
+        given = "".join(f", int64_t {size}" for size in end if size)
         inner = ",\n        ".join(values)
-        n = f"    const int64_t n = (numbers.size0 - {fixed}) / {max(1, shared)};\n" * bool(parts)
         self.structs[f"{tag}_of"] = (
-            f"static inline {tag} {tag}_of(Vector numbers)\n{{\n{n}"
+            f"static inline {tag} {tag}_of(Vector numbers{given})\n{{\n"
             f"    const {tag} own = {{\n        {inner}\n    }};\n    return own;\n}}"
         )
-        members = {"numbers": _KINDS["Vector"], **dict.fromkeys(names, FLOAT)}
-        members |= dict.fromkeys(parts, _KINDS["Vector"])
-        return Kind(tag, f"{{{tag}}}", members=members, sizes=(fixed, shared))
+        return Kind(tag, f"{{{tag}}}", members=members, sizes=end)
+
+
+def _part(kind: Kind, shape: list[Any], place: str, end: dict[str, int]) -> str:
+    """Return the value of a record's part at a place in C; the end of the parts moves on."""
+    if kind.sizes:
+        shape = [kind.sizes[""]]
+    size = next((own for own in shape if isinstance(own, str)), "" if shape else "n")
+    end[size] = end.get(size, 0) + math.prod(own for own in shape if own != size)
+    inner = f"{{{', '.join([place, *map(str, shape or ['n'])])}}}"
+    return f"{kind.tag}_of((Vector){inner})" if kind.sizes else inner
+
+
+def _counted(sizes: dict[str, int]) -> str:
+    """Return the number of numbers as a sum of sizes in C."""
+    counts = [f"{count} * {size}" if size else str(count) for size, count in sizes.items()]
+    return " + ".join(counts)
 
 
 def _about(node: ast.ClassDef) -> str:

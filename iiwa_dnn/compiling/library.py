@@ -181,7 +181,7 @@ def _rebuilt(hint: Any, codes: Iterator[str], values: Iterator[Any]) -> Any:
     kind = ctypes.c_double if code in "vm" else ctypes.c_int64
     memory: Any = (kind * math.prod(shape)).from_address(first)
     array = np.ctypeslib.as_array(memory).reshape(shape)
-    return array.view(hint) if isinstance(hint, type) and issubclass(hint, Record) else array
+    return hint.of(array) if isinstance(hint, type) and issubclass(hint, Record) else array
 
 
 @cache

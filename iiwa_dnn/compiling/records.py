@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from functools import cache
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
@@ -9,20 +11,20 @@ import numpy as np
 Own = TypeVar("Own", bound="Record")
 
 
-def part(count: int | None = None) -> Any:
-    """State that a member of a record is an array of so many numbers.
+def part(*shape: Any) -> Any:
+    """State that a member of a record is an array of one axis or two, or another record.
 
     Args:
-        count: Its size; None: the one that all such parts of the record share, such as the joints,
-            which follows from the size of the whole.
+        shape: Its sizes: numbers, or names of those that are stated where an array is viewed; none
+            stands for ``"n"``. Or the other record.
     """
-    return count
+    return shape or ("n",)
 
 
 class Record(np.ndarray[Any, np.dtype[np.float64]]):
     """Numbers of one flat array by the names that a subclass annotates.
 
-    A member is a number, or an array where its value is a `part`. In the array all numbers come
+    A member is a number, held as a float, or what its `part` says. In the array all numbers come
     first, then the parts::
 
         class JointState(Record):
@@ -31,73 +33,106 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
             axis: Vector = part(3)
 
     A kernel takes one as a parameter, within a named tuple too, or views an array as one by `of`.
+    Where parts have sizes of several names, only `of` makes one. In Python an array of several
+    axes holds a record in each of its last axis.
 
     Attributes:
-        counts: Size of each part; None: the shared one.
-        fixed: Number of all others.
+        members: Shape of each member; of a number ``()``.
+        names: Names of the sizes.
+        sizes: Sizes of these names.
     """
 
-    __slots__ = ()
-    counts: ClassVar[dict[str, int | None]]
-    fixed: ClassVar[int]
+    members: ClassVar[dict[str, tuple[Any, ...]]]
+    names: ClassVar[tuple[str, ...]]
+    sizes: tuple[int, ...]
 
     def __init_subclass__(cls) -> None:
         """Lay the members out."""
-        names = [*cls.__annotations__]
-        cls.counts = {name: vars(cls)[name] for name in names if name in vars(cls)}
-        numbers = [name for name in names if name not in cls.counts]
-        cls.fixed = len(numbers) + sum(filter(None, cls.counts.values()))
-        for i, name in enumerate(numbers):
-            setattr(cls, name, property(_number(i), _writer(i)))
-        start = (len(numbers), 0)
-        for name, count in cls.counts.items():
-            size = (0, 1) if count is None else (count, 0)
-            end = (start[0] + size[0], start[1] + size[1])
-            setattr(cls, name, property(_slice(start, end)))
-            start = end
+        own = {name: vars(cls).get(name, ()) for name in cls.__annotations__}
+        cls.members = dict(sorted(own.items(), key=lambda item: len(item[1]) > 0))
+        sizes = [size for shape in own.values() for size in shape]
+        cls.names = tuple(dict.fromkeys(size for size in sizes if isinstance(size, str)))
+        for i, (name, shape) in enumerate(cls.members.items()):
+            kind = _KINDS.get(cls.__annotations__[name], float)
+            made = _part(name, shape) if shape else property(_number(i, kind), _writer(i))
+            setattr(cls, name, made)
+
+    def __array_finalize__(self, other: Any) -> None:
+        """Keep the sizes of the array that this one is a copy or a view of."""
+        self.sizes = getattr(other, "sizes", ())
 
     @classmethod
-    def of(cls: type[Own], numbers: np.ndarray[Any, Any]) -> Own:
-        """View an array's numbers by their names.
+    @cache
+    def columns(cls, *sizes: int) -> dict[str, slice]:
+        """Return where each member lies."""
+        known = dict(zip(cls.names, sizes, strict=True))
+        found = {}
+        start = 0
+        for name, shape in cls.members.items():
+            end = start + math.prod(known[own] if own in known else _size(own) for own in shape)
+            found[name] = slice(start, end)
+            start = end
+        return found
+
+    @classmethod
+    def width(cls, *sizes: int) -> int:
+        """Count the numbers of a record."""
+        return max((own.stop for own in cls.columns(*sizes).values()), default=0)
+
+    @classmethod
+    def of(cls: type[Own], numbers: np.ndarray[Any, Any], *sizes: int) -> Own:
+        """View an array's numbers by their names; one size follows from that of the array.
 
         Raises:
             ValueError: The array has not the size of such a record.
         """
-        shared = [*cls.counts.values()].count(None)
-        rest = numbers.size - cls.fixed
-        if numbers.ndim != 1 or rest < 0 or (rest % shared if shared else rest):
+        count = numbers.shape[-1]
+        if not sizes and len(cls.names) == 1:
+            fixed = cls.width(0)
+            sizes = ((count - fixed) // (cls.width(1) - fixed),)
+        if min(sizes, default=0) < 0 or count != cls.width(*sizes):
             raise ValueError(f"an array of shape {numbers.shape} is no {cls.__name__}")
-        return numbers.view(cls)
+        own = numbers.view(cls)
+        own.sizes = sizes
+        return own
 
     @classmethod
-    def zeros(cls: type[Own], shared: int = 0) -> Own:
-        """Make a record of zeros whose parts without a size of their own have this one."""
-        return cls.of(np.zeros(cls.fixed + shared * [*cls.counts.values()].count(None)))
+    def zeros(cls: type[Own], *sizes: int) -> Own:
+        """Make a record of zeros."""
+        return cls.of(np.zeros(cls.width(*sizes)), *sizes)
 
     @property
     def numbers(self) -> np.ndarray[Any, np.dtype[np.float64]]:
         """All numbers as a plain array, a view."""
         return self.view(np.ndarray)
 
-    @property
-    def shared(self) -> int:
-        """Size of the parts without a size of their own."""
-        return (self.size - self.fixed) // max(1, [*self.counts.values()].count(None))
+
+def _size(own: Any) -> int:
+    """Return the size of a part of a record that is a number, or another record."""
+    return own if isinstance(own, int) else int(own.width())
 
 
-def _number(i: int) -> Any:
-    return lambda own: own.item(i)
+_KINDS: dict[Any, type] = {"int": int, int: int, "bool": bool, bool: bool}
+
+
+def _number(i: int, kind: type) -> Any:
+    return lambda own: kind(own.item(i)) if own.ndim == 1 else own.numbers[..., i].astype(kind)
 
 
 def _writer(i: int) -> Any:
-    return lambda own, value: own.__setitem__(i, value)
+    def write(own: Any, value: Any) -> None:
+        own[..., i] = value
+
+    return write
 
 
-def _slice(start: tuple[int, int], end: tuple[int, int]) -> Any:
-    """Return the property of a part; an offset is a number and a count of shared sizes."""
+def _part(name: str, shape: tuple[Any, ...]) -> Any:
+    """Return the property of a part."""
 
     def view(own: Any) -> Any:
-        shared = own.shared
-        return own.numbers[start[0] + start[1] * shared : end[0] + end[1] * shared]
+        found = own.numbers[..., own.columns(*own.sizes)[name]]
+        if len(shape) == 1:
+            return shape[0].of(found) if hasattr(shape[0], "of") else found
+        return found.reshape(*own.shape[:-1], -1, shape[-1])
 
-    return view
+    return property(view)

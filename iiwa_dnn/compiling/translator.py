@@ -17,7 +17,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from .expressions import SIGNS, Expressions, Rank, Value, array, number
+from .expressions import NUMBERS, SIGNS, Expressions, Rank, Value, array, number
 from .kinds import FLOAT, INT, VOID, Kind, Kinds
 from .sources import (
     ENTRY,
@@ -349,9 +349,11 @@ class Function(Expressions):
                     self.lines.append(f"{whole.text} {sign} {text};")
             case ast.Attribute():
                 number = self.value(target)
-                self.require(number.kind is FLOAT, target, "is no number of a record")
+                is_number = self.value(target.value).kind.sizes and number.kind in NUMBERS
+                self.require(bool(is_number), target, "is no number of a record")
                 self.written |= number.places
-                self.lines.append(f"{number.text} {sign} {value.converted(FLOAT).text};")
+                place = re.sub(r"^\(int64_t\)| != 0\.0$", "", number.text)
+                self.lines.append(f"{place} {sign} {value.converted(FLOAT).text};")
             case _:
                 fail(self.module, target, "has no translation")
 

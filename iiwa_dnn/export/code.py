@@ -257,7 +257,8 @@ class _Code:
             numbers = (own if own.size else np.zeros(1, own.dtype)).ravel().tolist()
             table = self._translator.constant(path.replace(".", "_"), numbers, own.shape)
             is_record = isinstance(own, Record)
-            return f"{_tag(own)}_of({table.text})" if is_record else table
+            sizes = map(str, getattr(own, "sizes", ()))
+            return f"{_tag(own)}_of({', '.join([table.text, *sizes])})" if is_record else table
         if not isinstance(own, tuple):
             return self._translator.constant(path.replace(".", "_"), own)
         items: dict[str, Any] = own._asdict()  # type: ignore[attr-defined]

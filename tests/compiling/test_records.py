@@ -21,6 +21,7 @@ import numpy as np
 from iiwa_dnn.compiling.records import Record, part
 
 Vector = np.ndarray
+Matrix = np.ndarray
 
 
 def compiled(function):
@@ -108,6 +109,44 @@ def any_of(values: Vector) -> float:
     return Stats.of(values).size
 
 
+class Log(Record):
+    """Log of a step."""
+
+    action: int
+    is_late: bool
+    fraction: float
+    command: Vector = part("joints")
+    stats: Stats = part(Stats)
+    rows: Vector = part("rows")
+    targets: Matrix = part("frames", 3)
+    limits: Vector = part("joints")
+
+
+@compiled
+def log_of(numbers: Vector, joints: int, rows: int, frames: int) -> Log:
+    return Log.of(numbers, joints, rows, frames)
+
+
+@compiled
+def fill(numbers: Vector, joints: int, rows: int, frames: int) -> float:
+    log = log_of(numbers, joints, rows, frames)
+    log.action = Mode.FAST
+    log.is_late = log.action == Mode.FAST and not log.is_late
+    log.fraction += log.action // 2
+    log.stats.size = 4.0
+    count_in(log.stats)
+    for i in range(joints):
+        log.limits[i] = log.command[i] + i
+    log.rows[:] = log.stats.size
+    log.targets[frames - 1, 1] = -1.0
+    return log.rows[log.action - 5] if log.is_late else 0.0
+
+
+@compiled
+def count_in(stats: Stats) -> None:
+    stats.count += 1
+
+
 @entry
 def enter(address: int, plan: Plan, stats: Stats) -> float:
     """Enter a kernel with records."""
@@ -143,7 +182,7 @@ def _motion(python: Any, n: int = 2) -> Any:
 def test_members_lie_in_the_array_one_after_another(both: tuple[Any, Any]) -> None:
     python, _ = both
     motion = python.Motion.of(np.arange(9.0))
-    assert (motion.time, motion.new, motion.shared) == (0.0, 1.0, 2)
+    assert (motion.time, motion.new, motion.sizes) == (0.0, 1.0, (2,))
     parts = [motion.position.tolist(), motion.axis.tolist(), motion.velocity.tolist()]
     assert parts == [[2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0]]
     motion.velocity[1] = -1.0
@@ -171,6 +210,40 @@ def test_a_kernel_views_a_part_of_an_array_as_a_record(both: tuple[Any, Any]) ->
         assert values.tolist() == [9.0, 2.0, 4.0, 9.0]
 
 
+def test_sizes_of_several_names_are_stated(both: tuple[Any, Any]) -> None:
+    python, library = both
+    sizes = (4, 2, 3)
+    width = python.Log.width(*sizes)
+    assert width == 3 + 2 + 2 * 4 + 2 + 3 * 3
+    arrays = [np.arange(float(width)), np.arange(float(width))]
+    for kernel, numbers in zip((python.fill, library.own_fill), arrays, strict=True):
+        numbers[1] = 0.0
+        assert kernel(numbers, *sizes) == 4.0
+    assert arrays[0].tobytes() == arrays[1].tobytes()
+    log = python.Log.of(arrays[1], *sizes)
+    assert (log.action, log.is_late, log.fraction) == (5, True, 4.0)
+    assert (log.stats.count, log.stats.size, log.sizes) == (8.0, 4.0, sizes)
+    assert log.command.tolist() == [3.0, 4.0, 5.0, 6.0]
+    assert log.limits.tolist() == [3.0, 5.0, 7.0, 9.0]
+    assert log.targets.shape == (3, 3)
+    assert log.targets[2, 1] == -1.0
+    assert log.copy().targets.tolist() == log.targets.tolist()
+    with pytest.raises(ValueError, match="is no Log"):
+        python.Log.of(arrays[0], 4, 2, 2)
+
+
+def test_rows_are_records_along_their_last_axis(both: tuple[Any, Any]) -> None:
+    python, _ = both
+    sizes = (1, 2, 1)
+    rows = np.arange(2.0 * python.Log.width(*sizes)).reshape(2, -1)
+    logs = python.Log.of(rows, *sizes)
+    assert logs.action.tolist() == [0, 12]
+    assert logs.stats.size.tolist() == [5.0, 17.0]
+    assert logs.targets.shape == (2, 1, 3)
+    for row, log in zip(rows, logs.targets, strict=True):
+        assert python.Log.of(row, *sizes).targets.tolist() == log.tolist()
+
+
 @pytest.mark.parametrize("size", [0, 4, 6, 8])
 def test_an_array_of_another_size_is_no_such_record(both: tuple[Any, Any], size: int) -> None:
     python, library = both
@@ -193,6 +266,8 @@ def test_a_checked_build_refuses_a_view_of_another_size(
     for size in (0, 1, 3):
         with pytest.raises(ValueError, match=rf"own\.py:\d+: {size} elements are reshaped to 2"):
             library.own_any_of(np.zeros(size))
+    with pytest.raises(ValueError, match=r"own\.py:\d+: 23 elements are reshaped to 24"):
+        library.own_fill(np.zeros(23), 4, 2, 3)
 
 
 def test_a_closed_record_is_read_and_never_written(both: tuple[Any, Any]) -> None:
