@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.errors import InvalidInputError
 
 Array = NDArray[np.float64]
@@ -114,6 +115,17 @@ def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Arr
     if not np.isfinite(numbers).all():
         raise InvalidInputError(argument, "must be finite", value)
     return numbers
+
+
+def joint_positions(argument: str, value: ArrayLike, dof: int) -> Array:
+    """Return a read-only copy of joint positions (dof,) below 2^20 rad; refuse any other value.
+
+    Kernels take their sines to the last digits up to there.
+    """
+    q = finite_array(argument, value, (dof,))
+    if np.abs(q).max(initial=0.0) > LARGEST:
+        raise InvalidInputError(argument, f"must be within ±{LARGEST:.0f} rad", value)
+    return q
 
 
 def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:

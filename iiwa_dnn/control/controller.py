@@ -276,7 +276,7 @@ class Controller:
         layout = step.layout
         program = step.program
         if not _is_plain(q, layout.shape):
-            q = checks.finite_array("q", q, layout.shape)
+            q = checks.joint_positions("q", q, self.robot.dof)
         program.kinematics.update(q)
         row = np.empty(layout.width)
         past = state.past
@@ -293,7 +293,7 @@ class Controller:
         action = take_step(row, step.plan, q, past, following, network, t, samples)
         if action == INVALID:
             checks.finite("t", t)
-            checks.finite_array("q", q, layout.shape)
+            checks.joint_positions("q", q, self.robot.dof)
             checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
         state.next = following
         return Command(row, layout, _ACTIONS[action], reasons)
@@ -344,7 +344,7 @@ class Controller:
         `own` says that the targets are the reference's.
         """
         checks.finite("t", t)
-        start = Configuration(self.robot, checks.finite_array("q", q, (self.robot.dof,)))
+        start = Configuration(self.robot, checks.joint_positions("q", q, self.robot.dof))
         self.anchor(start)
         if not self._state.begun:
             self.warn_of_start(start, t, own, stacklevel=5)

@@ -576,7 +576,7 @@ class Shield:
         elapsed: float | None,
     ) -> ShieldCommand:
         """Take a step with a request, or none."""
-        measured = checks.finite_array("q", q, (self.robot.dof,)).copy()
+        measured = checks.joint_positions("q", q, self.robot.dof).copy()
         periods = self._periods
         settings = self.settings
         if self.longest_period is not None or dt is not None or elapsed is not None:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.command import (
     ADVANCED,
     NOT_FINITE,
@@ -74,7 +75,7 @@ FEASIBLE_BUDGET = 60.0
 """Linear systems after which a program with acceleration or jerk limits counts as infeasible."""
 
 INVALID = -1
-"""Action at joint positions or targets that are not finite: nothing is changed."""
+"""Action at targets that are not finite, or joint positions that are none: nothing is changed."""
 
 
 class StepPlan(NamedTuple):
@@ -245,8 +246,8 @@ def take_step(
 ) -> int:
     """Take a control step: its own program, or what the policy asks for.
 
-    The network is not asked if the task yielded at the last step, or the arm brakes. If joint
-    positions, targets or the time are not finite, nothing but the row is written.
+    The network is not asked if the task yielded at the last step, or the arm brakes. If targets
+    or the time are not finite, or joint positions beyond 2^20 rad, nothing but the row is written.
 
     Args:
         row: The row, (width,), with the targets unless they are sampled.
@@ -267,7 +268,9 @@ def take_step(
     if samples:
         sample_targets(arrays, t - past[DELAY, 0], views.targets)
     first = row.size - views.targets.size
-    finite = math.isfinite(t) and all_finite(q, 0, q.size)
+    finite = math.isfinite(t)
+    for i in range(q.size):
+        finite = finite and abs(q[i]) <= LARGEST
     if not finite or not all_finite(row, first, row.size):
         return INVALID
     copied(past[Q], q)

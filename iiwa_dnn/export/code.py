@@ -32,6 +32,7 @@ WIDTH = 120
 """Letters of a line of C at most."""
 
 _SECTIONS = {
+    "compiling": "Sine and cosine",
     "robot": "Kinematics of the arm",
     "references": "Targets of the tracked frames",
     "qp": "Quadratic programs",

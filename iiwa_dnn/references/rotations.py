@@ -19,6 +19,7 @@ import numpy as np
 
 from iiwa_dnn.checks import Array, Matrix, Vector3
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.trigonometry import sin
 
 
 # Task rows call it too: without `fastmath` a function takes that of whichever calls it first.
@@ -27,9 +28,9 @@ def coefficients(square: float) -> tuple[float, float]:
     """Compute a and b at a squared angle."""
     if square > 1.0:
         angle = np.sqrt(square)
-        sine = math.sin(0.5 * angle)
+        sine = sin(0.5 * angle)
         versine = 2.0 * sine * sine
-        return versine / square, (angle - math.sin(angle)) / (square * angle)
+        return versine / square, (angle - sin(angle)) / (square * angle)
     a = 1.0
     b = 1.0
     for i in range(10):  # the series from its last term, after which all are below rounding

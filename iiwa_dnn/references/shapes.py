@@ -3,7 +3,6 @@
 The compiled function above each class is its `Reference.path`.
 """
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.trigonometry import sin, sin_cos
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Reference, SoftStart, soft_clock
 
@@ -21,12 +21,12 @@ def heart_path(t: float, constants: Array, target: Array) -> None:
     scale = constants[0]
     rate = constants[1]
     p = rate * t
-    s1 = math.sin(p)
-    c1 = math.cos(p)
-    y = 13.0 * c1 - 5.0 * math.cos(2.0 * p) - 2.0 * math.cos(3.0 * p) - math.cos(4.0 * p) - 5.0
-    slope = (
-        -13.0 * s1 + 10.0 * math.sin(2.0 * p) + 6.0 * math.sin(3.0 * p) + 4.0 * math.sin(4.0 * p)
-    )
+    s1, c1 = sin_cos(p)
+    s2, c2 = sin_cos(2.0 * p)
+    s3, c3 = sin_cos(3.0 * p)
+    s4, c4 = sin_cos(4.0 * p)
+    y = 13.0 * c1 - 5.0 * c2 - 2.0 * c3 - c4 - 5.0
+    slope = -13.0 * s1 + 10.0 * s2 + 6.0 * s3 + 4.0 * s4
     target[0] += scale * 16.0 * s1 * s1 * s1
     target[1] += scale * y
     target[12] += rate * scale * 48.0 * s1 * s1 * c1
@@ -73,14 +73,14 @@ def circle_path(t: float, constants: Array, target: Array) -> None:
     p = constants[2] * inner
     rate = constants[2] * pace
     # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
-    sine = math.sin(0.5 * p)
+    sine = sin(0.5 * p)
     along_u = -2.0 * sine * sine
-    along_v = math.sin(p)
+    along_v, cosine = sin_cos(p)
     for i in range(3):
         u = constants[3 + i]
         v = constants[6 + i]
         target[i] += radius * (along_u * u + along_v * v)
-        target[12 + i] += rate * radius * (math.cos(p) * v - along_v * u)
+        target[12 + i] += rate * radius * (cosine * v - along_v * u)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,9 +127,9 @@ def line_path(t: float, constants: Array, target: Array) -> None:
     rate = constants[0]
     p = rate * t
     # sin^2(p/2) is (1 - cos(p)) / 2 without the cancellation near the start.
-    sine = math.sin(0.5 * p)
+    sine = sin(0.5 * p)
     fraction = sine * sine
-    speed = 0.5 * rate * math.sin(p)
+    speed = 0.5 * rate * sin(p)
     for i in range(3):
         target[i] += fraction * constants[1 + i]
         target[12 + i] += speed * constants[1 + i]
@@ -169,8 +169,9 @@ def lissajous_path(t: float, constants: Array, target: Array) -> None:
         rate = constants[4 + i]
         phase = constants[7 + i]
         angle = rate * inner + phase
-        target[i] += amplitude * (math.sin(angle) - math.sin(phase))
-        target[12 + i] += amplitude * (rate * pace) * math.cos(angle)
+        sine, cosine = sin_cos(angle)
+        target[i] += amplitude * (sine - sin(phase))
+        target[12 + i] += amplitude * (rate * pace) * cosine
 
 
 @dataclass(frozen=True, eq=False)

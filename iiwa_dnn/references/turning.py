@@ -8,6 +8,7 @@ import numpy as np
 
 from iiwa_dnn.checks import Array, Vector3, direction, integer, positive, vector3
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.trigonometry import sin_cos
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Reference, SoftStart, soft_clock
 from iiwa_dnn.references.rotations import column_of, combined, scaled, turn_target
@@ -38,9 +39,10 @@ def cone_path(t: float, constants: Array, target: Array) -> None:
     # The tool's x and y axes where its z axis is the cone's; the tilt to the start is about x.
     u = column_of(target, 0)
     v = column_of(target, 1)
-    tilt = combined(angle * math.cos(p), u, angle * math.sin(p), v)
+    sine, cosine = sin_cos(p)
+    tilt = combined(angle * cosine, u, angle * sine, v)
     speed = angle * rate
-    turn_target(target, tilt, combined(speed * math.cos(p), v, -speed * math.sin(p), u))
+    turn_target(target, tilt, combined(speed * cosine, v, -speed * sine, u))
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,8 +97,9 @@ def tilting_path(t: float, constants: Array, target: Array) -> None:
         target[i] *= pace
     rate = constants[3]
     axis = (constants[4], constants[5], constants[6])
-    tilt = constants[2] * math.sin(rate * inner)
-    speed = constants[2] * (rate * pace) * math.cos(rate * inner)
+    sine, cosine = sin_cos(rate * inner)
+    tilt = constants[2] * sine
+    speed = constants[2] * (rate * pace) * cosine
     turn_target(target, scaled(tilt, axis), scaled(speed, axis))
 
 

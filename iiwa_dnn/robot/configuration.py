@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.checks import Array, finite_array, instance, read_only
+from iiwa_dnn.checks import Array, instance, joint_positions, read_only
 from iiwa_dnn.errors import NotFoundError
 from iiwa_dnn.robot.robot import Robot
 
@@ -54,7 +54,7 @@ class Configuration(FrameState):
     q: Array
 
     def __init__(self, robot: Robot, q: ArrayLike) -> None:
-        checked = finite_array("q", q, (instance("robot", robot, Robot).dof,))
+        checked = joint_positions("q", q, instance("robot", robot, Robot).dof)
         super().__init__(*_kinematics(robot, checked, robot.tip_id))
         object.__setattr__(self, "robot", robot)
         object.__setattr__(self, "q", checked)

@@ -4,7 +4,6 @@ At the desk Pinocchio computes the same (`iiwa_dnn.robot.kinematics`), and the t
 to it.
 """
 
-import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.checks import Array, Matrix
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.trigonometry import sin_cos
 from iiwa_dnn.robot.robot import Robot
 
 IntVector = NDArray[np.int64]
@@ -141,8 +141,7 @@ def compose(first: Array, second: Array, product: Array) -> None:
 @compiled
 def _move(start: Array, kind: Array, q: float, moved: Array) -> None:
     """Write the placement (12,) at position q of a joint of a kind (2,) from that at 0, (12,)."""
-    cosine = math.cos(kind[1] * q)
-    sine = math.sin(kind[1] * q)
+    sine, cosine = sin_cos(kind[1] * q)
     for i in range(3):
         moved[i] = start[i] * cosine + start[3 + i] * sine
         moved[3 + i] = start[3 + i] * cosine - start[i] * sine

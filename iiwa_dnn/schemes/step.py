@@ -99,7 +99,7 @@ class Step:
         self.robot = robot
         self.t = t
         self.dt = dt
-        self.q = checks.finite_array("q", q, shape)
+        self.q = checks.joint_positions("q", q, shape[0])
         self.dq = checks.finite_array("dq", np.zeros(shape) if dq is None else dq, shape)
         self._targets = {robot.tip: targets} if isinstance(targets, Target) else targets or {}
         if kinematics is None:
