@@ -132,9 +132,8 @@ class Kinds:
             if isinstance(row.value, ast.Call):
                 kind = members[ast.unparse(row.target)] = self.of(module, row.annotation)
                 place = f"numbers.data + {_counted(end)}"
-                values.append(
-                    _part(kind, [module.value(own) for own in row.value.args], place, end)
-                )
+                given = [] if kind.sizes else map(module.value, row.value.args)
+                values.append(_part(kind, [*given], place, end))
         inner = "\n".join(f"    double {c_word(name)};" for name in names)
         if names:
             self.structs[f"{tag}_numbers"] = f"typedef struct {{\n{inner}\n}} {tag}_numbers;"
