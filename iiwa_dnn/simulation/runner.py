@@ -17,7 +17,8 @@ from iiwa_dnn.control.paths import References, beyond_reach, by_frame
 from iiwa_dnn.control.policies import Policy
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.crosscheck import CheckPool, CrossCheck
+from iiwa_dnn.qp.check_pool import CheckPool
+from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.results.record import OWN_LIMITS, RATES, Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.robot import model_limits

@@ -1,9 +1,8 @@
 """The cross-check has to agree with right answers, see wrong ones, and distrust references."""
 
-import time
 import warnings
+from collections.abc import Callable
 
-import loky
 import numpy as np
 import pytest
 import qpsolvers
@@ -12,8 +11,8 @@ import iiwa_dnn as d
 from helpers_qp import known_qp
 from helpers_simulation import run
 from iiwa_dnn.qp import QP, Solution, crosscheck
-from iiwa_dnn.qp.agreement import Agreement
-from iiwa_dnn.qp.crosscheck import CheckPool, CrossCheck
+from iiwa_dnn.qp.crosscheck import CrossCheck
+from iiwa_dnn.qp.layout import Sizes
 
 SOLVERS = ("proxqp", "osqp")
 BOTH = CrossCheck(SOLVERS)
@@ -67,17 +66,22 @@ def test_an_infeasible_program_has_no_reference(check: CrossCheck) -> None:
 
 @pytest.mark.parametrize(("first", "second"), [SOLVERS, SOLVERS[::-1], ("daqp", "proxqp")])
 def test_a_second_solver_judges_where_the_first_has_no_answer(first, second, monkeypatch) -> None:
-    ask = crosscheck.ask
+    reference_solver = crosscheck.reference_solver
     finite = []
     known = [known_qp(np.random.default_rng([58, k]), 7, 3, k) for k in range(4)]
 
-    def fail(name: str, qp: QP) -> np.ndarray:
-        finite.append(np.isfinite(qp.data).all())
-        if name == first and not np.array_equal(qp.data, known[1][0].data):
-            raise qpsolvers.exceptions.SolverError("out of order")
-        return ask(name, qp)
+    def fail(name: str, sizes: Sizes) -> Callable[[QP], np.ndarray]:
+        solve = reference_solver(name, sizes)
 
-    monkeypatch.setattr(crosscheck, "ask", fail)
+        def solve_one(qp: QP) -> np.ndarray:
+            finite.append(np.isfinite(qp.data).all())
+            if name == first and not np.array_equal(qp.data, known[1][0].data):
+                raise qpsolvers.exceptions.SolverError("out of order")
+            return solve(qp)
+
+        return solve_one
+
+    monkeypatch.setattr(crosscheck, "reference_solver", fail)
     x = np.stack([best for _, best in known])
     programs = np.stack([qp.data for qp, _ in known])
     programs[3, 0] = np.nan
@@ -135,7 +139,7 @@ def test_a_reference_is_judged_by_its_own_residual(spoilt, residual, monkeypatch
     point = np.zeros(4)
     if spoilt is not None:
         point[spoilt] = np.nan
-    monkeypatch.setattr(crosscheck, "ask", lambda name, qp: point)
+    monkeypatch.setattr(crosscheck, "reference_solver", lambda *_: lambda qp: point)
     agreement = BOTH.check(qp, np.zeros(1))
     np.testing.assert_array_equal(agreement.reference_residual, [[residual, residual]])
     assert np.isnan(agreement.solution_gap).all()
@@ -147,12 +151,13 @@ def test_a_reference_is_not_blamed_for_rounding(monkeypatch) -> None:
     A = np.array([[0.1, 0.2, 0.3, 0.4, 0.5]])
     qp = QP(np.eye(5), -x, A=A, b=A @ x + 5e-7)  # a digit or two of 1e9
     point = np.concatenate([x, np.zeros(6)])
-    monkeypatch.setattr(crosscheck, "ask", lambda name, qp: point)
+    monkeypatch.setattr(crosscheck, "reference_solver", lambda *_: lambda qp: point)
     assert qp.residuals(point).largest > 1e-7
     agreement = CrossCheck().check(qp, x)
     assert (agreement.judge[0, 0], agreement.largest[0, 0] < 1e-6) == (0, True)
     assert agreement.reference_residual == CrossCheck().reference_tolerance
-    monkeypatch.setattr(crosscheck, "ask", lambda name, qp: point + np.arange(11) / 10.0)
+    wrong = point + np.arange(11) / 10.0
+    monkeypatch.setattr(crosscheck, "reference_solver", lambda *_: lambda qp: wrong)
     assert CrossCheck().check(qp, x).judge == -1
 
 
@@ -194,48 +199,3 @@ def test_verdicts_keep_their_step_over_the_blocks_of_a_long_run() -> None:
     record = run(solver=Liar(wrong_at=2 * 730 + 1), check=EACH[0], duration=1.1, motion="midpoint")
     assert np.flatnonzero(record.crosscheck_gap > 1e-6).tolist() == [730]
     assert (record.reference_residual <= 1e-8).all()
-
-
-def jobs(count: int, size: int = 20) -> list[tuple]:
-    """Blocks of programs; answer i of block j is off by about i + 100 j units of 1e-7."""
-    made = []
-    for number in range(count):
-        rng = np.random.default_rng(number)
-        qps = [known_qp(rng, 5, 2, 1)[0] for _ in range(size)]
-        x = np.stack([d.DNNSolver().solve(qp).x for qp in qps])
-        x[:, 0] += 1e-7 * (100 * number + np.arange(size))
-        made.append((np.stack([qp.data for qp in qps]), qps[0].sizes, x))
-    return made
-
-
-def judged(blocks: list[tuple], workers: int) -> Agreement:
-    pool = CheckPool(EACH[1], 1_000_000, workers)  # ProxQP does not repeat its last digits
-    for block in blocks:
-        pool.submit(*block)
-        time.sleep(0.01 * workers)
-    return pool.finish()
-
-
-def test_workers_change_nothing_and_keep_the_order() -> None:
-    blocks = jobs(6)
-    alone = judged(blocks, 0)
-    for left, right in zip(judged(blocks, 1), alone, strict=True):
-        np.testing.assert_array_equal(left, right)
-    # In order: the gap of program i of block j is the one that was put there.
-    expected = 1e-7 * (100 * np.arange(6)[:, None] + np.arange(20)).ravel()
-    np.testing.assert_allclose(alone.solution_gap[:, 0], expected, rtol=0, atol=1e-8)
-
-
-def test_a_fault_of_the_check_itself_is_not_swallowed() -> None:
-    programs, sizes, x = jobs(1)[0]
-    with pytest.raises(ValueError, match="shape"):
-        judged([(programs, sizes, np.hstack([x, x, x, x]))], 1)  # answers of a wrong shape
-
-
-def test_processes_are_started_where_solvers_are_asked_often() -> None:
-    assert CheckPool(EACH[1], 100).workers == 0
-    assert CheckPool(EACH[1], 100_000).workers == loky.cpu_count() - 1
-    nobody = CheckPool(CrossCheck(()), 1_000_000)
-    assert nobody.workers == 0
-    nobody.submit(*jobs(1)[0])
-    assert nobody.finish().solution_gap.shape == (20, 0)
