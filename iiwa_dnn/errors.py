@@ -52,6 +52,18 @@ class NotFoundError(IiwaDnnError, LookupError):
         super().__init__(f"no {kind} {name!r}{listed if shown else ''}{more}")
 
 
+class RunInterrupted(KeyboardInterrupt):
+    """A run is ended by Ctrl-C, or by a signal that counts as it.
+
+    Attributes:
+        record: `Record` of the steps that were taken, at least one.
+    """
+
+    def __init__(self, *args: object, record: Any = None) -> None:
+        super().__init__(*args)
+        self.record = record
+
+
 class FileError(IiwaDnnError, OSError):
     """A file cannot be read, written or understood.
 

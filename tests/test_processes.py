@@ -35,6 +35,7 @@ def test_a_run_that_is_killed_leaves_no_process(words: str, workers: int, tmp_pa
     assert len(marked(mark)) > 1 + workers  # trackers of their resources too
     process.kill()
     process.wait()
+    assert (tmp_path / "run").exists() == ("paper" in words)  # nothing, in place of an empty folder
     started = time.monotonic()
     wait(lambda: not marked(mark))
     assert time.monotonic() - started < 30.0  # idle workers of loky end after 60 s

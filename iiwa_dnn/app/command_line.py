@@ -39,13 +39,13 @@ def guard(prog: str, run: Callable[[], int | None]) -> int:
         run: The command; it returns its exit code, None for 0.
 
     Returns:
-        The exit code; after an error 2, or 1 if a step had no solution, 130 after Ctrl-C, and 141
-        if a reader such as ``head`` has closed standard output.
+        The exit code; after an error 2, or 1 if a step had no solution, 130 after Ctrl-C, 143 after
+        SIGTERM, and 141 if a reader such as ``head`` has closed standard output.
 
     Raises:
-        SystemExit: After ``--help`` or a wrong word, and after SIGTERM, with code 143.
+        SystemExit: After ``--help`` or a wrong word.
     """
-    signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
+    signal.signal(signal.SIGTERM, _interrupt)
     with warnings.catch_warnings():
         warnings.simplefilter("always", UserWarning)
         warnings.showwarning = lambda message, *_: print(f"{prog}: {message}", file=sys.stderr)
@@ -57,12 +57,17 @@ def guard(prog: str, run: Callable[[], int | None]) -> int:
         except BrokenPipeError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 128 + signal.SIGPIPE
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as interrupt:
             print("interrupted", file=sys.stderr)
-            return 128 + signal.SIGINT
+            return 128 + int(*interrupt.args or (signal.SIGINT,))
         except (IiwaDnnError, OSError) as error:
             print(f"{prog}: error: {one_line(error)}", file=sys.stderr)
             return 1 if isinstance(error, NoSolutionError) else 2
+
+
+def _interrupt(number: int, _: object) -> None:
+    """Let a signal end the command as Ctrl-C does."""
+    raise KeyboardInterrupt(number)
 
 
 def run_script(main: Callable[..., int | None]) -> int:
@@ -74,8 +79,8 @@ def run_script(main: Callable[..., int | None]) -> int:
     return guard(Path(sys.argv[0]).stem, lambda: tyro.cli(main))
 
 
-def claim_folder(folder: Path, settings: Mapping[str, Any], overwrite: bool) -> Path:
-    """Make the folder of a run with these settings, which `write_settings` writes.
+def check_folder(folder: Path, settings: Mapping[str, Any], overwrite: bool) -> None:
+    """Check that a run with these settings may be written into a folder; nothing is left there.
 
     Raises:
         FileError: The folder holds other files, or another run and `overwrite` is not set, or
@@ -86,9 +91,12 @@ def claim_folder(folder: Path, settings: Mapping[str, Any], overwrite: bool) -> 
     if any(folder.glob("[!.]*")) and not (is_same or overwrite):
         problem = "holds another run or other files: choose another --out, or --overwrite"
         raise FileError(folder, problem)
-    return prepare_folder(folder)
+    made = [each for each in (folder, *folder.parents) if not each.exists()]
+    prepare_folder(folder)
+    for each in made:
+        each.rmdir()
 
 
 def write_settings(folder: Path, settings: Mapping[str, Any]) -> None:
     """Write the settings of a run into its folder; raises FileError if it cannot be written."""
-    write_text(folder / SETTINGS_FILE, tomli_w.dumps(settings))
+    write_text(prepare_folder(folder) / SETTINGS_FILE, tomli_w.dumps(settings))

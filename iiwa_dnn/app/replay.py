@@ -88,7 +88,9 @@ def serve(title: str, host: str, port: int) -> Any:
     """
     viser = import_extra("viser", "pip install 'iiwa-dnn[view]'")
     try:
-        socket.create_server((host, port)).close()  # viser would take another one silently
+        with socket.socket() as probe:  # viser would take another one silently
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind((host, port))
     except (OSError, OverflowError) as error:
         problem = f"cannot listen on {host}:{port}: {one_line(error)}"
         raise InvalidInputError("--host, --port", problem, (host, port)) from error

@@ -20,7 +20,7 @@ from iiwa_dnn.app.command_line import (
     Folder,
     Number,
     Quiet,
-    claim_folder,
+    check_folder,
     shown,
     write_settings,
 )
@@ -55,7 +55,8 @@ def start_sweep(words: SweepWords, name: str) -> tuple[Path, Callable[..., list[
 
     checks.integer("workers", 1 if words.workers is None else words.workers, 1)
     settings = {"command": name}
-    folder = claim_folder(words.out or Path("runs") / name, settings, words.overwrite)
+    folder = words.out or Path("runs") / name
+    check_folder(folder, settings, words.overwrite)
     write_settings(folder, settings)
     compute = partial(sweep, workers=words.workers, dask=words.dask, quiet=words.quiet)
     return folder, partial(compute, folder=folder / "cells")

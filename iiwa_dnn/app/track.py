@@ -42,8 +42,9 @@ from iiwa_dnn import (
     load_robot,
     simulate,
 )
-from iiwa_dnn.app.command_line import Flag, Folder, Quiet, claim_folder, shown, write_settings
+from iiwa_dnn.app.command_line import Flag, Folder, Quiet, check_folder, shown, write_settings
 from iiwa_dnn.control.estimation import NoiseModel
+from iiwa_dnn.errors import RunInterrupted
 from iiwa_dnn.files import one_line, parse_toml, read_toml
 from iiwa_dnn.results.pictures import save_pictures
 from iiwa_dnn.results.plots import CAPTIONS
@@ -292,21 +293,29 @@ def track(options: Words) -> int:
     with tqdm(total=steps, unit="step", disable=options.quiet or None) as bar:
 
         def proceed(done: int) -> None:
-            """Claim the folder once all arguments are found to be right; move the bar."""
+            """Check the folder once all arguments are found to be right; move the bar."""
             if done == 0:
-                claim_folder(folder, tables, options.overwrite)
+                check_folder(folder, tables, options.overwrite)
             bar.update(done)
 
-        record = simulate(**arguments, progress=proceed)
+        interrupt = None
+        try:
+            record = simulate(**arguments, progress=proceed)
+        except RunInterrupted as ended:
+            interrupt = ended
+            record = ended.record
     for name in OUTPUTS:  # those of an earlier run
         (folder / name).unlink(missing_ok=True)
     write_settings(folder, tables)
-    metrics = save_run(record, folder, options.plots, draw_more, published(record.settings))
+    plots = options.plots and interrupt is None
+    metrics = save_run(record, folder, plots, draw_more, published(record.settings))
     reasons = failures(metrics)
     if not options.quiet:
         print(summary(metrics), f"written to {folder}", sep="\n")
     elif reasons:
         print(*reasons, sep="\n", file=sys.stderr)
+    if interrupt is not None:
+        raise interrupt
     return 1 if reasons else 0
 
 
@@ -324,7 +333,8 @@ def export(options: Words) -> int:
         raise InvalidInputError("filter_window", "is no part of a controller and is not exported")
     known = signature(Controller).parameters
     controller = Controller(**{key: arguments[key] for key in arguments if key in known})
-    folder = claim_folder(options.out or Path("controller"), tables, options.overwrite)
+    folder = options.out or Path("controller")
+    check_folder(folder, tables, options.overwrite)
     write_settings(folder, tables)
     exports.c99(controller, folder, arguments["q0"])
     robot = controller.robot

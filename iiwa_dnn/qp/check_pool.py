@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 from concurrent.futures import Future
+from multiprocessing import resource_tracker
 
 import numpy as np
 
@@ -54,7 +55,9 @@ class CheckPool:
             self._executor = loky.get_reusable_executor(
                 workers, timeout=60, initializer=end_with, initargs=(os.getpid(),)
             )
-            # Ctrl-C in a terminal goes to all processes; the workers leave it to this one.
+            # Ctrl-C in a terminal goes to all processes; the workers leave it to this one. The
+            # tracker comes first: its start takes the mask away.
+            resource_tracker.ensure_running()
             mask = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
             self._executor.submit(os.getpid)  # starts them
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)

@@ -63,6 +63,11 @@ class Recorder:
         if outcome.ends:
             self.last_step = k
 
+    @property
+    def waiting(self) -> int:
+        """Number of outcomes that are not in the arrays yet."""
+        return len(self._outcomes)
+
     def flush(self) -> Matrix:
         """Put the collected outcomes into the arrays.
 
@@ -126,16 +131,15 @@ class Recorder:
         qp = QP.from_data(self.layout.view(row, "program"), self.layout.sizes)
         return DNNSolver().solve(qp).status is Status.PRIMAL_INFEASIBLE
 
-    def finish(self) -> dict[str, NDArray[Any]]:
-        """Return the columns, cut to the steps that were taken."""
+    def finish(self, steps: int) -> dict[str, NDArray[Any]]:
+        """Return the columns, cut to so many steps of those that are in the arrays."""
         controller = self._controller
-        self.arrays["t"] = controller.dt * np.arange(self._done + 1, dtype=np.float64)
-        q = self.arrays["q"][self._done]
-        placement = controller.placement(q)
-        targets = controller.targets(self.arrays["t"][self._done] - controller.delay)
-        self._add_samples(self._done, placement[np.newaxis], targets.reshape(1, -1))
+        self.arrays["t"] = controller.dt * np.arange(steps + 1, dtype=np.float64)
+        placement = controller.placement(self.arrays["q"][steps])
+        targets = controller.targets(self.arrays["t"][steps] - controller.delay)
+        self._add_samples(steps, placement[np.newaxis], targets.reshape(1, -1))
         return {
-            name: array[: self._done + (COLUMNS[name].shape[0] == "N+1")]
+            name: array[: steps + (COLUMNS[name].shape[0] == "N+1")]
             for name, array in self.arrays.items()
         }
 

@@ -15,7 +15,7 @@ from iiwa_dnn.control.controller import Controller, Mode
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.paths import References, beyond_reach, by_frame
 from iiwa_dnn.control.policies import Policy
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError, RunInterrupted
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.check_pool import CheckPool
 from iiwa_dnn.qp.crosscheck import CrossCheck
@@ -68,7 +68,7 @@ def simulate(
     """Let a robot follow a reference, each step's program solved by the network and checked.
 
     The same seed gives the same record, bit for bit, but for the last digits of the gap to ProxQP,
-    which does not repeat itself. At Ctrl-C the run is given up: there is no record.
+    which does not repeat itself.
 
     Args:
         robot: The robot, n joints, with the limits that the scheme keeps.
@@ -100,6 +100,7 @@ def simulate(
 
     Raises:
         InvalidInputError: An argument is out of range; the message names it.
+        RunInterrupted: Ctrl-C was pressed; it has the record of the steps that were taken.
     """
     began = time.perf_counter()
     start = Configuration(robot, q0)
@@ -137,29 +138,43 @@ def simulate(
     stages = MOTIONS[motion].stages
     pool = CheckPool(check, steps * stages)
     layout = controller.control_step.layout
-    for first in range(0, steps, BLOCK):
-        taken = loop.run(first, min(BLOCK, steps - first), recorder.observe)
+
+    def hand_over() -> None:
+        """Pass the steps that were taken on to the record and to the check."""
         rows = recorder.flush()
         pool.submit(layout.view(rows, "program"), layout.sizes, layout.view(rows, "point"))
-        progress(taken)
-        if recorder.last_step is not None:
-            break
+
+    interrupt = None
+    try:
+        for first in range(0, steps, BLOCK):
+            taken = loop.run(first, min(BLOCK, steps - first), recorder.observe)
+            hand_over()
+            progress(taken)
+            if recorder.last_step is not None:
+                break
+    except KeyboardInterrupt as stop:
+        interrupt = stop
+        if recorder.waiting:
+            hand_over()
     agreement = pool.finish().worst_of(stages)
-    columns = recorder.finish()
+    columns = recorder.finish(len(agreement.judge))  # without what was on its way to the check
     avoidance = avoidance_of(controller.scheme)
     if avoidance is not None:
         nearest = avoidance.scene(robot).nearest(columns["q"], columns["t"])
         columns |= dict(zip(("distance", "nearest"), nearest, strict=True))
-    return Record(
+    record = Record(
         **columns,
         **agreement._asdict(),
         settings={
             **settings,
-            "status": _status(recorder, controller, loop.fault),
+            "status": "interrupted" if interrupt else _status(recorder, controller, loop.fault),
             "infeasible_step": recorder.infeasible,
         },
         wall_time_s=time.perf_counter() - began,
     )
+    if interrupt is None:
+        return record
+    raise RunInterrupted(*interrupt.args, record=record) if record.steps else interrupt
 
 
 def count_steps(reference: References | None, dt: float, duration: float | None = None) -> int:

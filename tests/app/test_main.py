@@ -8,12 +8,14 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import iiwa_dnn
-from helpers_commands import QUICK, call
+from helpers_commands import QUICK, call, results
 from iiwa_dnn.app.main import COMMANDS
+from iiwa_dnn.results.failures import completed
 
 ROOT = Path(__file__).parents[2]
 
@@ -118,9 +120,10 @@ def test_bad_input_is_one_clear_line_and_leaves_no_file(words, said, tmp_path, c
     assert {path.name for path in tmp_path.iterdir()} == {"bad.csv", "robot.urdf"}
 
 
-def start(folder: Path, *words: str, **options: object) -> subprocess.Popen[str]:
-    """A command in a process of its own."""
-    command = [sys.executable, "-m", "iiwa_dnn", *words]
+def start(folder: Path, *words: str, code: str = "", **options: object) -> Any:
+    """A command in a process of its own, after some code."""
+    code += "import sys; from iiwa_dnn.app.main import main; sys.exit(main())"
+    command = [sys.executable, "-c", code, *words]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     return subprocess.Popen(command, cwd=folder, text=True, env=environment, **pipes)
@@ -137,32 +140,67 @@ def test_a_reader_that_has_read_enough_ends_the_command_quietly(words, tmp_path)
     assert (tmp_path / "runs" / "heart" / "metrics.json").exists() == (words[1] != "--help")
 
 
+def own_lines(err: str) -> list[str]:
+    """Lines that are not of loky's resource tracker, which now and then misses a lock."""
+    lines = [line for line in err.splitlines() if "resource_tracker" not in line]
+    return [line for line in lines if not line.startswith("  warnings.")]
+
+
+REPORTING = """
+from iiwa_dnn.simulation.loop import Loop
+run = Loop.run
+def report(*arguments):
+    print(arguments[1], flush=True)
+    return run(*arguments)
+Loop.run = report
+"""
+"""Prints the number of each block's first step."""
+
+
 @pytest.mark.parametrize(
-    ("words", "until", "number", "code", "message"),
+    ("words", "number", "code"),
     [
-        ("track --dt 1e-3 --duration 1000", "run", signal.SIGTERM, 143, ""),
-        ("track --check none --duration 1000", "run", signal.SIGINT, 130, "interrupted\n"),
-        ("paper --quick --workers 2", "run/cells/*", signal.SIGINT, 130, "interrupted\n"),
+        ("track --dt 1e-3 --duration 1000", signal.SIGTERM, 143),
+        ("track --dt 1e-3 --duration 1000", signal.SIGINT, 130),
+        ("track --check none --duration 1000", signal.SIGINT, 130),
     ],
-    ids=["checked by workers", "unchecked", "sweep"],
+    ids=["checked, ended", "checked", "unchecked"],
 )
-def test_a_command_that_is_ended_leaves_no_half_files(
-    words: str, until: str, number: signal.Signals, code: int, message: str, tmp_path: Path
+def test_a_run_that_is_ended_leaves_its_steps_and_says_so(
+    words: str, number: signal.Signals, code: int, tmp_path: Path
 ) -> None:
-    process = start(tmp_path, *words.split(), "-q", "--out", "run", start_new_session=True)
+    """As a terminal does it, the signal goes to the workers too, while they start."""
+    words += " -q --out run"
+    process = start(tmp_path, *words.split(), code=REPORTING, start_new_session=True)
+    while process.stdout.readline() != "3000\n":
+        assert process.poll() is None
+    os.killpg(process.pid, number)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == code
+    record, metrics = results(tmp_path / "run")
+    steps = metrics["steps"]
+    assert 2000 < steps < metrics["settings"]["duration"] / metrics["dt_s"]
+    ended = f"ended after {steps:,} of {1000 / metrics['dt_s']:,.0f} steps: interrupted"
+    assert own_lines(err) == [f"path completed {completed(metrics)}", ended, "interrupted"]
+    assert f"- {ended}" in (tmp_path / "run" / "report.md").read_text()
+    assert record["q"].shape == (steps + 1, 7)
+    assert (metrics["crosscheck"]["steps_checked"] == steps) == ("none" not in words)
+    names = {"settings.toml", "record.npz", "metrics.json", "report.md"}
+    assert {path.name for path in (tmp_path / "run").iterdir()} == names
+
+
+def test_a_sweep_that_is_ended_leaves_no_half_files(tmp_path: Path) -> None:
+    words = ("paper", "--quick", "--workers", "2", "-q", "--out", "run")
+    process = start(tmp_path, *words, start_new_session=True)
     for _ in range(6000):
-        if any(tmp_path.glob(until)):
+        if any(tmp_path.glob("run/cells/*")):
             break
         assert process.poll() is None, process.communicate()
         time.sleep(0.01)
     time.sleep(0.3)
-    process.send_signal(number)
+    process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=60)
-    # loky's resource tracker, a process of its own, now and then says that a lock is gone already.
-    own = [line for line in err.splitlines(True) if "resource_tracker" not in line]
-    assert "".join(line for line in own if not line.startswith("  warnings.")) == message
-    assert process.returncode == code
-    left = {"settings.toml", "cells"} if "paper" in words else set()  # a run leaves nothing
-    assert {path.name for path in (tmp_path / "run").iterdir()} == left
+    assert (process.returncode, own_lines(err)) == (130, ["interrupted"])
+    assert {path.name for path in (tmp_path / "run").iterdir()} == {"settings.toml", "cells"}
     for path in (tmp_path / "run" / "cells").rglob("*.json"):
         assert json.loads(path.read_text())  # finished cells are whole

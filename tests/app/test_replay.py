@@ -184,18 +184,18 @@ def test_the_command_opens_the_page_of_a_folder_until_ctrl_c(tmp_path: Path) -> 
     heart_without_physics(100).save(tmp_path / "record.npz")
     command = [sys.executable, "-m", "iiwa_dnn", "view", str(tmp_path), "--port", "0"]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
-    assert process.stdout is not None
-    line = next(line for line in process.stdout if line.startswith("open "))
-    opened = re.search(r"http://127\.0\.0\.1:\d+", line)
-    assert opened is not None
-    with urllib.request.urlopen(opened[0], timeout=10) as answer:
-        assert b"<html" in answer.read()
-    # Another address of this same machine: nobody listens there.
-    with pytest.raises(OSError, match="refused"):
-        socket.create_connection(("127.0.0.2", urlsplit(opened[0]).port or 0), timeout=5)
-    process.send_signal(signal.SIGINT)
-    assert process.wait(timeout=60) == -signal.SIGINT  # a shell says 130
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as process:
+        assert process.stdout is not None
+        line = next(line for line in process.stdout if line.startswith("open "))
+        opened = re.search(r"http://127\.0\.0\.1:\d+", line)
+        assert opened is not None
+        with urllib.request.urlopen(opened[0], timeout=10) as answer:
+            assert b"<html" in answer.read()
+        # Another address of this same machine: nobody listens there.
+        with pytest.raises(OSError, match="refused"):
+            socket.create_connection(("127.0.0.2", urlsplit(opened[0]).port or 0), timeout=5)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=60) == -signal.SIGINT  # a shell says 130
 
 
 def test_the_robot_is_the_one_of_the_settings_or_the_record(tmp_path: Path) -> None:

@@ -88,14 +88,16 @@ def test_defaults_are_the_papers_experiment(words, dt, tmp_path, monkeypatch) ->
 
     def take(**arguments: Any) -> None:
         arguments["progress"](0)
-        asked.update(arguments, folders=list(tmp_path.glob("runs/*")))
+        asked.update(arguments)
         raise IiwaDnnError("seen enough")
 
     monkeypatch.setattr(command, "simulate", wraps(command.simulate)(take))
+    monkeypatch.setattr(command, "check_folder", lambda folder, *_: asked.update(folder=folder))
     monkeypatch.chdir(tmp_path)
     assert call("track", *words) == 2
     assert asked["dt"] == dt
-    assert asked["folders"] == [tmp_path / "runs" / ("circle" if words else "heart")]
+    assert asked["folder"] == Path("runs") / ("circle" if words else "heart")
+    assert not list(tmp_path.iterdir())
     degrees = [170, 120, 170, 120, 170, 120, 175]  # of the data sheet, not the paper's 2.5 rad
     np.testing.assert_allclose(asked["robot"].q_upper, np.deg2rad(degrees), rtol=1e-8)
     np.testing.assert_array_equal(asked["robot"].q_lower, -asked["robot"].q_upper)
