@@ -409,6 +409,9 @@ class Expressions:
             case ast.Attribute(value=record, attr="of"):
                 kind = self.translator.kinds.of(self.module, record)
                 return self._record(kind, *map(self.value, node.args))
+            case ast.Attribute(value=record, attr="width"):
+                kind = self.translator.kinds.of(self.module, record)
+                return number(kind.sizes[""])
             case ast.Attribute(value=ast.Name(id="np"), attr="empty" | "zeros" as word):
                 shape = [*map(self._once, getattr(node.args[0], "elts", node.args))]
                 return self._taken(FLOAT, word, [joined("*", shape)], shape)

@@ -101,6 +101,27 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
         """Make a record of zeros."""
         return cls.of(np.zeros(cls.width(*sizes)), *sizes)
 
+    @classmethod
+    def make(cls: type[Own], **values: Any) -> Own:
+        """Make a record of the values of its members, by their names.
+
+        Raises:
+            TypeError: A member has no value, or a value no member.
+            ValueError: The array for a part has another shape.
+        """
+        if values.keys() != cls.members.keys():
+            members = ", ".join(cls.members)
+            raise TypeError(f"{cls.__name__} has the members {members}, not {', '.join(values)}")
+        sizes = {
+            name: size
+            for member, shape in cls.members.items()
+            for name, size in zip(shape, np.shape(values[member]), strict=True)
+        }
+        own = cls.zeros(*(sizes[name] for name in cls.names))
+        for name, value in values.items():
+            setattr(own, name, value)
+        return own
+
     @property
     def numbers(self) -> np.ndarray[Any, np.dtype[np.float64]]:
         """All numbers as a plain array, a view."""
@@ -135,4 +156,7 @@ def _part(name: str, shape: tuple[Any, ...]) -> Any:
             return shape[0].of(found) if hasattr(shape[0], "of") else found
         return found.reshape(*own.shape[:-1], -1, shape[-1])
 
-    return property(view)
+    def fill(own: Any, value: Any) -> None:
+        view(own)[...] = value
+
+    return property(view, fill)

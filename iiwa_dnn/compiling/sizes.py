@@ -40,7 +40,9 @@ def known_of(kind: Kind, place: str) -> Known:
     if kind.axes:
         return [f"{place}.size{axis}" for axis in range(kind.axes)]
     if kind.is_named:
-        return {name: known_of(own, f"{place}.{name}") for name, own in kind.members.items()}
+        # A record's numbers lie in its array.
+        lasting = {k: own for k, own in kind.members.items() if own is not INT or not kind.sizes}
+        return {name: known_of(own, f"{place}.{name}") for name, own in lasting.items()}
     return Extent(place, place) if kind is INT else None
 
 

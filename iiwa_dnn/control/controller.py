@@ -41,6 +41,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Reference, Target
+from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.limits import stated_periods
@@ -452,7 +453,7 @@ class Controller:
         paths = self._seen(given, dt or self.dt).values()
         found = np.array([path.base for path in paths])
         for path, row in zip(paths, found, strict=True):
-            path.move(t, row)
+            path.move(t, TargetData.of(row))
         return found
 
     def _seen(self, paths: Mapping[str, Reference], dt: float) -> Mapping[str, Reference]:

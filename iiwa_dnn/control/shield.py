@@ -41,6 +41,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite
 from iiwa_dnn.qp.layout import copied
 from iiwa_dnn.references import Target
+from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import (
     CollisionAvoidance,
@@ -107,13 +108,13 @@ AGE, REASON, BEGUN, TAKEN, CUTS, FLAGS = range(6)
 
 @compiled
 def wished_velocity(
-    step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
+    step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write A = I and b = w for some joints; the target (18,) begins with their velocities w."""
     first = int(constants[0])
     for i in range(b.size):
         A[i, first + i] = 1.0
-        b[i] = target[i]
+        b[i] = target.numbers[i]
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,9 @@ class JointVelocityTask(Task):
 
 
 @compiled
-def twist_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+def twist_rows(
+    step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
+) -> None:
     """Write A = W J and b = W v = v; W leaves v as it is and weighs what is beside it."""
     pose_rows(step, constants, target, A, b)
     square = 0.0

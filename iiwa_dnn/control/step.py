@@ -59,6 +59,7 @@ from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.base import Ahead, enter_path
 from iiwa_dnn.references.rotations import set_mean_twist
+from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import MEET
 from iiwa_dnn.schemes.limits import (
     STATED,
@@ -356,12 +357,12 @@ def sample_targets(arrays: ProgramArrays, t: float, targets: Matrix) -> None:
     period = 1.0 / arrays.rate
     for k in range(first, table.shape[0]):
         own = arrays.constants[table[k, 4] : table[k, 5]]
-        target = targets[k - first]
-        base = own[: target.size]
-        move = own[target.size :]
-        copied(target, base)
+        target = TargetData.of(targets[k - first])
+        base = own[: TargetData.width()]
+        move = own[TargetData.width() :]
+        copied(target.numbers, base)
         enter_path(table[k, 1], t, move, target)
         if table[k, 2] != 0:
-            then = base.copy()
+            then = TargetData.of(base.copy())
             enter_path(table[k, 1], t + period, move, then)
             set_mean_twist(target, then, period)

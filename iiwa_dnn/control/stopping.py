@@ -39,11 +39,10 @@ from iiwa_dnn.control.relaxed import Yielding
 from iiwa_dnn.control.state import LAST, Q
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple
+from iiwa_dnn.robot.kinematics import Placement
 from iiwa_dnn.schemes.program import ProgramArrays
 from iiwa_dnn.schemes.scene import (
-    SECOND,
-    SPEED,
-    STILL,
+    Pair,
     contact_of,
     ends_of,
     height_of,
@@ -237,7 +236,7 @@ def keeps_distances(
     """
     n = motion.first.size
     scene = scene_views(constants, n)
-    placed = np.empty((len(scene.bodies), 12))
+    placed = np.empty((len(scene.bodies), Placement.width()))
     place_bodies(scene, arrays.placements, placed)
     M = motion.periods
     travel = np.empty(n)
@@ -245,20 +244,21 @@ def keeps_distances(
         travel[i] = way_along(motion, abs(motion.first[i]), abs(motion.bend[i]), M, dt)
     for k in range(len(scene.pairs)):
         contact = contact_of(scene, k, placed)
-        left = contact.distance - scene.pairs[k, SPEED] * dt * M
+        pair = Pair.of(scene.pairs[k])
+        left = contact.distance - pair.speed * dt * M
         most = 0.0
         for i in range(n):
             most += abs(scene.radii[k, i]) * travel[i]
-        own = least[scene.first + k]
-        kept = own if own != 0.0 else scene.least
+        own = least[scene.head.first + k]
+        kept = own if own != 0.0 else scene.head.least
         if left - most >= kept:
             continue
         change = np.inf
         lacking = 0.5 * second_order(scene.moves, scene.radii, k, travel)
-        ends = ends_of(scene, placed, int(scene.pairs[k, SECOND]))
+        ends = ends_of(scene, placed, pair.second)
         for at in range(2):
             end = ends[at]
-            if int(scene.pairs[k, STILL]) == at + 1:
+            if pair.still == at + 1:
                 continue
             x, bend = _along(motion, arrays.jacobian, scene.moves, k, end, contact.normal)
             way = way_along(motion, x, bend, M, dt)

@@ -387,7 +387,7 @@ def _is_near(arrays: ProgramArrays, yielding: Yielding, least: Vector) -> bool:
         own = arrays.constants[yielding.scenes[k, 0] : yielding.scenes[k, 1]]
         scene = scene_views(own, arrays.jacobian.shape[0])
         for i in range(len(scene.pairs)):
-            found = found or least[scene.first + i] < scene.least
+            found = found or least[scene.head.first + i] < scene.head.least
     return found
 
 

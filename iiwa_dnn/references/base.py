@@ -16,21 +16,21 @@ from iiwa_dnn.checks import Array, finite, finite_array, not_negative, offers, p
 from iiwa_dnn.compiling.library import compiled, entry
 from iiwa_dnn.files import plain
 from iiwa_dnn.references.rotations import set_mean_twist
-from iiwa_dnn.references.targets import Target
+from iiwa_dnn.references.targets import Target, TargetData
 from iiwa_dnn.robot import FrameState
 
 Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
 
 
 @entry
-def enter_path(address: int, t: float, constants: Array, target: Array) -> None:
-    """Enter a path's function at an address; it moves the target (18,) at time t [s]."""
+def enter_path(address: int, t: float, constants: Array, target: TargetData) -> None:
+    """Enter a path's function at an address; it moves the target to time t [s]."""
 
 
 SHORTEST = 1.0
 """Least length of a soft start that is not given [s]."""
 
-AT_REST = read_only(np.concatenate([np.zeros(3), np.eye(3).ravel(), np.zeros(6)]))
+AT_REST = read_only(Target(np.zeros(3)).data)
 """Target at position 0 with orientation identity, at rest, `Target.data` (18,)."""
 
 
@@ -47,7 +47,7 @@ class Reference(ABC):
     Until :meth:`anchored` the origin is at position 0 with orientation identity.
 
     Attributes:
-        path: Kernel or other function ``path(t, constants, target)``, on `Target.data` (18,).
+        path: Kernel or other function ``path(t, constants, target)``, on a `TargetData`.
         constants: Constants of `path`, shape (c,).
         base: Target at the origin, at rest, `Target.data` (18,), read-only.
     """
@@ -99,12 +99,12 @@ class Reference(ABC):
         clone._set(base=read_only(Target(pose.position, pose.rotation).data))
         return clone
 
-    def move(self, t: float, target: Array) -> None:
+    def move(self, t: float, target: TargetData) -> None:
         """Take a target at the path's origin, at rest, to time t [s] in place.
 
         Args:
             t: Time [s].
-            target: The target, `Target.data` (18,); a copy of :attr:`base`, for example.
+            target: The target; a copy of :attr:`base`, for example.
         """
         enter_path(enter_path.address(self.path), t, self.constants, target)
 
@@ -125,7 +125,7 @@ class Reference(ABC):
         checked = finite_array("times", times, (-1,))
         targets = np.tile(self.base, (checked.size, 1))
         for t, target in zip(checked.tolist(), targets, strict=True):
-            self.move(t, target)
+            self.move(t, TargetData.of(target))
         return Target.from_data(targets)
 
     def ahead(self, dt: float) -> Reference:
@@ -211,7 +211,7 @@ class Ahead(Reference):
         """Time after which the path repeats [s]."""
         return self.along.period
 
-    def move(self, t: float, target: Array) -> None:
+    def move(self, t: float, target: TargetData) -> None:
         """Take a target to time t [s]; see `Reference.move`."""
         then = target.copy()
         self.along.move(t, target)

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 from iiwa_dnn.checks import Array, not_negative, offers
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.references.base import Pose, Reference
-from iiwa_dnn.references.rotations import set_mean_twist, turn_target
-from iiwa_dnn.references.targets import Target
+from iiwa_dnn.references.rotations import dot, scaled, set_mean_twist, triple, turn_target
+from iiwa_dnn.references.targets import Target, TargetData
 
 ARRIVED = 1e-12
 """Distance [m] and angle [rad] below which a target is at its goal: rounding has no direction."""
@@ -61,14 +61,14 @@ class MovingTarget(Reference):
         if not np.array_equal(goal.data, self._goal.data):
             self._goal = goal
 
-    def move(self, t: float, target: Array) -> None:
+    def move(self, t: float, target: TargetData) -> None:
         """Set a target to the pose and the velocity at time t [s]; see `Reference.move`."""
         goal = self._goal  # one reading: it may be set in another thread meanwhile
         began, start = self._start if goal is self._end else self._shown
         self._end = goal
         self._start = (min(t, began), start)
         target[:] = start
-        approach(target, goal.data, t - self._start[0], self.speed, self.rate)
+        approach(target, TargetData.of(goal.data), t - self._start[0], self.speed, self.rate)
         self._shown = (t, target.copy())
 
     def settings(self) -> dict[str, Any]:
@@ -77,31 +77,34 @@ class MovingTarget(Reference):
 
 
 @compiled
-def approach(target: Array, goal: Array, elapsed: float, speed: float, rate: float) -> None:
-    """Move a target (18,) towards a goal (18,) as far as it comes in a time, and set its twist.
+def approach(
+    target: TargetData, goal: TargetData, elapsed: float, speed: float, rate: float
+) -> None:
+    """Move a target towards a goal as far as it comes in a time, and set its twist.
 
     Args:
-        target: The target, `Target.data`, overwritten.
+        target: The target, overwritten.
         goal: The goal.
         elapsed: The time [s].
         speed: Largest linear speed [m/s].
         rate: Largest angular speed [rad/s].
     """
     set_mean_twist(target, goal, 1.0)
-    way = target[12:].copy()
-    moved = _paced(target[12:15], speed, elapsed)
-    turned = _paced(target[15:], rate, elapsed)
+    path = triple(target.linear_velocity)
+    turn = triple(target.angular_velocity)
+    moved = _paced(target.linear_velocity, speed, elapsed)
+    turned = _paced(target.angular_velocity, rate, elapsed)
     for i in range(3):
-        target[i] += moved * way[i]
-    turn_target(target, (turned * way[3], turned * way[4], turned * way[5]), (0.0, 0.0, 0.0))
+        target.position[i] += moved * path[i]
+    turn_target(target, scaled(turned, turn), (0.0, 0.0, 0.0))
 
 
 @compiled
-def _paced(way: Array, fastest: float, elapsed: float) -> float:
-    """Turn a way (3,) into the velocity along it; return the share covered after a time [s]."""
-    length = np.sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])
+def _paced(path: Array, fastest: float, elapsed: float) -> float:
+    """Turn a path (3,) into the velocity along it; return the ratio covered after a time [s]."""
+    length = np.sqrt(dot(triple(path), triple(path)))
     arrived = length <= max(fastest * elapsed, ARRIVED)
     velocity = 0.0 if arrived else fastest / length
     for i in range(3):
-        way[i] *= velocity
+        path[i] *= velocity
     return 1.0 if arrived else elapsed * velocity

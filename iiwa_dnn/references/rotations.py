@@ -20,9 +20,9 @@ import numpy as np
 from iiwa_dnn.checks import Array, Matrix, Vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.trigonometry import sin
+from iiwa_dnn.references.targets import TargetData
 
 
-# Task rows call it too: without `fastmath` a function takes that of whichever calls it first.
 @compiled
 def coefficients(square: float) -> tuple[float, float]:
     """Compute a and b at a squared angle."""
@@ -88,28 +88,28 @@ def left_jacobian(vector: Vector3, v: Vector3) -> Vector3:
 
 
 @compiled
-def column_of(target: Array, j: int) -> Vector3:
-    """Return the j-th axis of a target's frame, of `Target.data` (18,)."""
-    return target[3 + j], target[6 + j], target[9 + j]
+def triple(v: Array) -> Vector3:
+    """Return the components of a vector (3,)."""
+    return v[0], v[1], v[2]
 
 
 @compiled
-def row_of(target: Array, i: int) -> Vector3:
-    """Return the i-th row of the rotation of `Target.data` (18,)."""
-    return target[3 + 3 * i], target[4 + 3 * i], target[5 + 3 * i]
+def column_of(R: Matrix, j: int) -> Vector3:
+    """Return the j-th column of a matrix (3, 3)."""
+    return R[0, j], R[1, j], R[2, j]
 
 
 @compiled
-def turn_target(target: Array, vector: Vector3, rate: Vector3) -> None:
-    """Turn a target, `Target.data` (18,), by a rotation vector with a rate; its position stays."""
+def turn_target(target: TargetData, vector: Vector3, rate: Vector3) -> None:
+    """Turn a target by a rotation vector with a rate; its position stays."""
     for j in range(3):
-        column = rotated(vector, column_of(target, j))
+        column = rotated(vector, column_of(target.rotation, j))
         for i in range(3):
-            target[3 + 3 * i + j] = column[i]
-    before = rotated(vector, (target[15], target[16], target[17]))
+            target.rotation[i, j] = column[i]
+    before = rotated(vector, triple(target.angular_velocity))
     after = added(left_jacobian(vector, rate), before)
     for i in range(3):
-        target[15 + i] = after[i]
+        target.angular_velocity[i] = after[i]
 
 
 @compiled
@@ -118,18 +118,19 @@ def rotation_log(R: Matrix, out: Array) -> None:
 
     Through the unit quaternion's largest component, so that it is accurate near 0 and near pi.
     """
-    trace = R[0, 0] + R[1, 1] + R[2, 2]
+    trace = 0.0
+    i = 0
+    for axis in range(3):
+        trace += R[axis, axis]
+        if R[axis, axis] > R[i, i]:
+            i = axis
     if trace > 0.0:
         w = 0.5 * np.sqrt(1.0 + trace)
-        out[0] = (R[2, 1] - R[1, 2]) / (4.0 * w)
-        out[1] = (R[0, 2] - R[2, 0]) / (4.0 * w)
-        out[2] = (R[1, 0] - R[0, 1]) / (4.0 * w)
+        for axis in range(3):
+            j = (axis + 1) % 3
+            k = (axis + 2) % 3
+            out[axis] = (R[k, j] - R[j, k]) / (4.0 * w)
     else:
-        i = 0
-        if R[1, 1] > R[0, 0]:
-            i = 1
-        if R[2, 2] > R[i, i]:
-            i = 2
         j = (i + 1) % 3
         k = (i + 2) % 3
         largest = 0.5 * np.sqrt(max(1.0 + R[i, i] - R[j, j] - R[k, k], 0.0))
@@ -139,7 +140,7 @@ def rotation_log(R: Matrix, out: Array) -> None:
         out[i] = sign * largest
         out[j] = sign * (R[i, j] + R[j, i]) / (4.0 * largest)
         out[k] = sign * (R[i, k] + R[k, i]) / (4.0 * largest)
-    sine = np.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2])
+    sine = np.sqrt(dot(triple(out), triple(out)))
     # angle / sin(angle / 2), whose limit at 0 is 2
     scale = 2.0 * math.atan2(sine, w) / sine if sine > 1e-12 else 2.0
     for axis in range(3):
@@ -147,14 +148,14 @@ def rotation_log(R: Matrix, out: Array) -> None:
 
 
 @compiled
-def set_mean_twist(now: Array, then: Array, dt: float) -> None:
-    """Set the twist of a target (18,) to the mean one towards another, a period dt [s] later."""
+def set_mean_twist(now: TargetData, then: TargetData, dt: float) -> None:
+    """Set the twist of a target to the mean one towards another, a period dt [s] later."""
     relative = np.empty((3, 3))
     for i in range(3):
         for j in range(3):
-            relative[i, j] = dot(row_of(then, i), row_of(now, j))
+            relative[i, j] = dot(triple(then.rotation[i]), triple(now.rotation[j]))
     turn = np.empty(3)
     rotation_log(relative, turn)
     for i in range(3):
-        now[12 + i] = (then[i] - now[i]) / dt
-        now[15 + i] = turn[i] / dt
+        now.linear_velocity[i] = (then.position[i] - now.position[i]) / dt
+        now.angular_velocity[i] = turn[i] / dt

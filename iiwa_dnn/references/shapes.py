@@ -10,16 +10,26 @@ import numpy as np
 
 from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import sin, sin_cos
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Reference, SoftStart, soft_clock
+from iiwa_dnn.references.targets import TargetData
+
+
+class HeartConstants(Record):
+    """Scale [m] and angular rate [rad/s] of a heart."""
+
+    scale: float
+    rate: float
 
 
 @compiled
-def heart_path(t: float, constants: Array, target: Array) -> None:
-    """Move a target along `Heart`; constants: scale [m], rate [rad/s]."""
-    scale = constants[0]
-    rate = constants[1]
+def heart_path(t: float, constants: Array, target: TargetData) -> None:
+    """Move a target along `Heart`."""
+    own = HeartConstants.of(constants)
+    scale = own.scale
+    rate = own.rate
     p = rate * t
     s1, c1 = sin_cos(p)
     s2, c2 = sin_cos(2.0 * p)
@@ -27,10 +37,10 @@ def heart_path(t: float, constants: Array, target: Array) -> None:
     s4, c4 = sin_cos(4.0 * p)
     y = 13.0 * c1 - 5.0 * c2 - 2.0 * c3 - c4 - 5.0
     slope = -13.0 * s1 + 10.0 * s2 + 6.0 * s3 + 4.0 * s4
-    target[0] += scale * 16.0 * s1 * s1 * s1
-    target[1] += scale * y
-    target[12] += rate * scale * 48.0 * s1 * s1 * c1
-    target[13] += rate * scale * slope
+    target.position[0] += scale * 16.0 * s1 * s1 * s1
+    target.position[1] += scale * y
+    target.linear_velocity[0] += rate * scale * 48.0 * s1 * s1 * c1
+    target.linear_velocity[1] += rate * scale * slope
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,25 +72,36 @@ class Heart(Reference):
 
     def __post_init__(self) -> None:
         self._check(scale=positive, period=positive)
-        self._set(constants=np.array([self.scale, 2.0 * np.pi / self.period]))
+        rate = 2.0 * np.pi / self.period
+        self._set(constants=HeartConstants.make(scale=self.scale, rate=rate).numbers)
+
+
+class CircleConstants(Record):
+    """Soft start [s], radius [m], angular rate [rad/s] and both axes of a circle."""
+
+    begin: float
+    radius: float
+    rate: float
+    u: Array = part(3)
+    v: Array = part(3)
 
 
 @compiled
-def circle_path(t: float, constants: Array, target: Array) -> None:
-    """Move a target along `Circle`; constants: begin [s], radius [m], rate [rad/s], axes (2, 3)."""
-    inner, pace = soft_clock(t, constants[0])
-    radius = constants[1]
-    p = constants[2] * inner
-    rate = constants[2] * pace
+def circle_path(t: float, constants: Array, target: TargetData) -> None:
+    """Move a target along `Circle`."""
+    own = CircleConstants.of(constants)
+    inner, pace = soft_clock(t, own.begin)
+    p = own.rate * inner
+    rate = own.rate * pace
     # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
     sine = sin(0.5 * p)
     along_u = -2.0 * sine * sine
     along_v, cosine = sin_cos(p)
     for i in range(3):
-        u = constants[3 + i]
-        v = constants[6 + i]
-        target[i] += radius * (along_u * u + along_v * v)
-        target[12 + i] += rate * radius * (cosine * v - along_v * u)
+        u = own.u[i]
+        v = own.v[i]
+        target.position[i] += own.radius * (along_u * u + along_v * v)
+        target.linear_velocity[i] += rate * own.radius * (cosine * v - along_v * u)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,22 +138,32 @@ class Circle(SoftStart):
         axis = np.eye(3)[0 if abs(normal[0]) < 0.9 else 1]
         u = axis - (axis @ normal) * normal
         u /= np.linalg.norm(u)
-        head = [self._set_begin(), self.radius, 2.0 * np.pi / self.period]
-        self._set(constants=np.concatenate([head, u, np.cross(normal, u)]))
+        rate = 2.0 * np.pi / self.period
+        own = CircleConstants.make(
+            begin=self._set_begin(), radius=self.radius, rate=rate, u=u, v=np.cross(normal, u)
+        )
+        self._set(constants=own.numbers)
+
+
+class LineConstants(Record):
+    """Angular rate [rad/s] of the motion along a line, and its far end [m]."""
+
+    rate: float
+    offset: Array = part(3)
 
 
 @compiled
-def line_path(t: float, constants: Array, target: Array) -> None:
-    """Move a target along `Line`; constants: rate [rad/s], offset (3,) [m]."""
-    rate = constants[0]
-    p = rate * t
+def line_path(t: float, constants: Array, target: TargetData) -> None:
+    """Move a target along `Line`."""
+    own = LineConstants.of(constants)
+    p = own.rate * t
     # sin^2(p/2) is (1 - cos(p)) / 2 without the cancellation near the start.
     sine = sin(0.5 * p)
     fraction = sine * sine
-    speed = 0.5 * rate * sin(p)
+    speed = 0.5 * own.rate * sin(p)
     for i in range(3):
-        target[i] += fraction * constants[1 + i]
-        target[12 + i] += speed * constants[1 + i]
+        target.position[i] += fraction * own.offset[i]
+        target.linear_velocity[i] += speed * own.offset[i]
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,21 +188,32 @@ class Line(Reference):
 
     def __post_init__(self) -> None:
         self._check(offset=vector3, period=positive)
-        self._set(constants=np.array([2.0 * np.pi / self.period, *self.offset]))
+        rate = 2.0 * np.pi / self.period
+        self._set(constants=LineConstants.make(rate=rate, offset=self.offset).numbers)
+
+
+class LissajousConstants(Record):
+    """Soft start [s], amplitudes [m], angular rates [rad/s] and phases [rad] of a figure."""
+
+    begin: float
+    amplitudes: Array = part(3)
+    rates: Array = part(3)
+    phases: Array = part(3)
 
 
 @compiled
-def lissajous_path(t: float, constants: Array, target: Array) -> None:
-    """Move a target along `Lissajous`; constants: begin, amplitudes, rates and phases (3,)."""
-    inner, pace = soft_clock(t, constants[0])
+def lissajous_path(t: float, constants: Array, target: TargetData) -> None:
+    """Move a target along `Lissajous`."""
+    own = LissajousConstants.of(constants)
+    inner, pace = soft_clock(t, own.begin)
     for i in range(3):
-        amplitude = constants[1 + i]
-        rate = constants[4 + i]
-        phase = constants[7 + i]
+        amplitude = own.amplitudes[i]
+        rate = own.rates[i]
+        phase = own.phases[i]
         angle = rate * inner + phase
         sine, cosine = sin_cos(angle)
-        target[i] += amplitude * (sine - sin(phase))
-        target[12 + i] += amplitude * (rate * pace) * cosine
+        target.position[i] += amplitude * (sine - sin(phase))
+        target.linear_velocity[i] += amplitude * (rate * pace) * cosine
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,12 +249,14 @@ class Lissajous(SoftStart):
         if not all(turns.is_integer() for turns in self.turns):
             raise InvalidInputError("turns", "must be whole numbers", self.turns)
         rates = (2.0 * np.pi / self.period) * np.array(self.turns)
-        begin = [self._set_begin()]
-        self._set(constants=np.concatenate([begin, self.amplitudes, rates, self.phases]))
+        own = LissajousConstants.make(
+            begin=self._set_begin(), amplitudes=self.amplitudes, rates=rates, phases=self.phases
+        )
+        self._set(constants=own.numbers)
 
 
 @compiled
-def still_path(t: float, constants: Array, target: Array) -> None:
+def still_path(t: float, constants: Array, target: TargetData) -> None:
     """Leave the target as it is."""
 
 

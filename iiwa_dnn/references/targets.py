@@ -7,8 +7,19 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
+from iiwa_dnn.checks import Array, Matrix
+from iiwa_dnn.compiling.records import Record, part
 
 _IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+class TargetData(Record):
+    """Desired pose and twist of a frame along the world's axes, as compiled code reads them."""
+
+    position: Array = part(3)
+    rotation: Matrix = part(3, 3)
+    linear_velocity: Array = part(3)
+    angular_velocity: Array = part(3)
 
 
 class Target:
@@ -18,9 +29,9 @@ class Target:
     first axis: `data` (k, 18), `position` (k, 3) and so on; ``targets[i]`` is that of the i-th.
 
     Attributes:
-        data: All numbers, [position | rotation row by row | linear | angular velocity], (18,). One
-            array, so that a control step hands it to compiled code in one piece; do not write
-            into it (it is not protected, as `Configuration.arrays` are not).
+        data: All numbers, those of a `TargetData`, (18,). One array, so that a control step hands
+            it to compiled code in one piece; do not write into it (it is not protected, as
+            `Configuration.arrays` are not).
     """
 
     __slots__ = ("data",)

@@ -2,16 +2,18 @@
 
 import math
 from dataclasses import dataclass, field, replace
+from enum import IntEnum
 from typing import Any, ClassVar
 
 import numpy as np
 
 from iiwa_dnn.checks import Array, Vector3, direction, integer, positive, vector3
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import sin_cos
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Reference, SoftStart, soft_clock
-from iiwa_dnn.references.rotations import column_of, combined, scaled, turn_target
+from iiwa_dnn.references.rotations import column_of, combined, scaled, triple, turn_target
 from iiwa_dnn.references.shapes import (
     Circle,
     Heart,
@@ -23,22 +25,32 @@ from iiwa_dnn.references.shapes import (
     line_path,
     lissajous_path,
 )
+from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.references.waypoints import Waypoints, waypoints_path
 
 TILT = math.radians(20.0)
 
 
+class ConeConstants(Record):
+    """Soft start [s], angle [rad] and angular rate [rad/s] of a cone."""
+
+    begin: float
+    angle: float
+    rate: float
+
+
 @compiled
-def cone_path(t: float, constants: Array, target: Array) -> None:
-    """Turn a target along `Cone`; constants: begin [s], angle [rad], rate [rad/s]."""
-    inner, pace = soft_clock(t, constants[0])
-    angle = constants[1]
-    rate = constants[2] * pace
-    p = constants[2] * inner
-    turn_target(target, scaled(-angle, column_of(target, 0)), (0.0, 0.0, 0.0))
+def cone_path(t: float, constants: Array, target: TargetData) -> None:
+    """Turn a target along `Cone`."""
+    own = ConeConstants.of(constants)
+    inner, pace = soft_clock(t, own.begin)
+    angle = own.angle
+    rate = own.rate * pace
+    p = own.rate * inner
+    turn_target(target, scaled(-angle, column_of(target.rotation, 0)), (0.0, 0.0, 0.0))
     # The tool's x and y axes where its z axis is the cone's; the tilt to the start is about x.
-    u = column_of(target, 0)
-    v = column_of(target, 1)
+    u = column_of(target.rotation, 0)
+    v = column_of(target.rotation, 1)
     sine, cosine = sin_cos(p)
     tilt = combined(angle * cosine, u, angle * sine, v)
     speed = angle * rate
@@ -71,40 +83,61 @@ class Cone(SoftStart):
 
     def __post_init__(self) -> None:
         self._check(angle=_acute, period=positive)
-        self._set(constants=np.array([self._set_begin(), self.angle, 2.0 * np.pi / self.period]))
+        rate = 2.0 * np.pi / self.period
+        own = ConeConstants.make(begin=self._set_begin(), angle=self.angle, rate=rate)
+        self._set(constants=own.numbers)
 
 
-@compiled
-def tilting_path(t: float, constants: Array, target: Array) -> None:
-    """Move a target along `Tilting`; constants: number of the path, begin, angle, rate, axis (3,).
+class Along(IntEnum):
+    """Paths that a tool can tilt along."""
 
-    Those of the path follow.
-    """
-    kind = int(constants[0])
-    inner, pace = soft_clock(t, constants[1])
-    along = constants[7:]
-    if kind == 1:
-        heart_path(inner, along, target)
-    elif kind == 2:
-        circle_path(inner, along, target)
-    elif kind == 3:
-        line_path(inner, along, target)
-    elif kind == 4:
-        lissajous_path(inner, along, target)
-    elif kind == 5:
-        waypoints_path(inner, along, target)
-    for i in range(12, 18):
-        target[i] *= pace
-    rate = constants[3]
-    axis = (constants[4], constants[5], constants[6])
-    sine, cosine = sin_cos(rate * inner)
-    tilt = constants[2] * sine
-    speed = constants[2] * (rate * pace) * cosine
-    turn_target(target, scaled(tilt, axis), scaled(speed, axis))
+    STILL = 0
+    HEART = 1
+    CIRCLE = 2
+    LINE = 3
+    LISSAJOUS = 4
+    WAYPOINTS = 5
 
 
 _ALONG = (Still, Heart, Circle, Line, Lissajous, Waypoints)
-"""Paths that a tool can tilt along, by their numbers in `tilting_path`."""
+"""Classes of these paths, in the order of `Along`."""
+
+
+class TiltingConstants(Record):
+    """Path (`Along`), soft start [s], and angle [rad], rate [rad/s] and axis of the tilt."""
+
+    along: float
+    begin: float
+    angle: float
+    rate: float
+    axis: Array = part(3)
+
+
+@compiled
+def tilting_path(t: float, constants: Array, target: TargetData) -> None:
+    """Move a target along `Tilting`; the constants of the path follow."""
+    own = TiltingConstants.of(constants[: TiltingConstants.width()])
+    along = constants[TiltingConstants.width() :]
+    kind = int(own.along)
+    inner, pace = soft_clock(t, own.begin)
+    if kind == Along.HEART:
+        heart_path(inner, along, target)
+    elif kind == Along.CIRCLE:
+        circle_path(inner, along, target)
+    elif kind == Along.LINE:
+        line_path(inner, along, target)
+    elif kind == Along.LISSAJOUS:
+        lissajous_path(inner, along, target)
+    elif kind == Along.WAYPOINTS:
+        waypoints_path(inner, along, target)
+    for i in range(3):
+        target.linear_velocity[i] *= pace
+        target.angular_velocity[i] *= pace
+    axis = triple(own.axis)
+    sine, cosine = sin_cos(own.rate * inner)
+    tilt = own.angle * sine
+    speed = own.angle * (own.rate * pace) * cosine
+    turn_target(target, scaled(tilt, axis), scaled(speed, axis))
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,9 +177,14 @@ class Tilting(SoftStart):
         begin = self._set_begin(getattr(self.along, "begin", None))
         # One clock for both.
         along = replace(self.along, begin=0.0) if isinstance(self.along, SoftStart) else self.along
-        kind = float(_ALONG.index(type(self.along)))
-        own = [kind, begin, self.angle, rate, *direction("axis", self.axis)]
-        self._set(constants=np.concatenate([own, along.constants]))
+        own = TiltingConstants.make(
+            along=_ALONG.index(type(self.along)),
+            begin=begin,
+            angle=self.angle,
+            rate=rate,
+            axis=direction("axis", self.axis),
+        )
+        self._set(constants=np.append(own.numbers, along.constants))
 
     @property
     def _round(self) -> float:

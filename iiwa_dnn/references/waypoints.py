@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.checks import (
     Array,
+    Matrix,
     Vector3,
     finite_array,
     not_negative,
@@ -24,10 +25,11 @@ from iiwa_dnn.checks import (
     read_only,
 )
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.references.base import Reference
-from iiwa_dnn.references.rotations import added, combined, scaled, turn_target
+from iiwa_dnn.references.rotations import added, combined, scaled, triple, turn_target
 from iiwa_dnn.references.splines import (
     Spline,
     smoothed,
@@ -35,7 +37,7 @@ from iiwa_dnn.references.splines import (
     spline_of_positions,
     spline_of_turns,
 )
-from iiwa_dnn.references.targets import Target
+from iiwa_dnn.references.targets import Target, TargetData
 
 Ends = Literal["clamped", "closed"]
 Interpolation = Literal["limited", "cubic"]
@@ -51,61 +53,68 @@ _UNIT_WITHIN = 0.01
 """Difference of a quaternion's norm from 1 that is forgiven: rounding to few digits."""
 
 
-# Constants: 1 if closed, else 0; number of pieces p; knots [s], (p + 1,); of each piece the
-# displacement's coefficients of x^3, x^2, x and 1, and those of the turn, (p, 8, 3).
+class WaypointsConstants(Record):
+    """Period [s], inf for an open path, and duration [s], before the pieces one after another."""
+
+    period: float
+    duration: float
+    pieces: Array = part()
+
+
+class Piece(Record):
+    """Start of a piece [s], and cubics of displacement and turn: x^3, x^2, x and 1, row by row."""
+
+    start: float
+    move: Matrix = part(4, 3)
+    turn: Matrix = part(4, 3)
 
 
 @compiled
-def _piece(t: float, constants: Array) -> tuple[float, float, float]:
-    """Find the piece at a time, the time since it began, and 0.0 if the path is at rest, or 1.0."""
-    closed = constants[0] != 0.0
-    pieces = int(constants[1])
-    end = constants[2 + pieces]
-    inside = t % end if closed else min(max(t, 0.0), end)
+def _piece(pieces: Matrix, t: float) -> int:
+    """Find the piece at a time [s] by bisection."""
     low = 0
-    high = pieces - 1
+    high = len(pieces) - 1
     while low < high:
         middle = (low + high + 1) // 2
-        if constants[2 + middle] <= inside:
+        if Piece.of(pieces[middle]).start <= t:
             low = middle
         else:
             high = middle - 1
-    moves = 1.0 if closed or inside == t else 0.0
-    return low, inside - constants[2 + low], moves
+    return low
 
 
 @compiled
-def _triple(constants: Array, at: int) -> Vector3:
-    return constants[at], constants[at + 1], constants[at + 2]
+def _cubic(powers: Matrix, x: float) -> Vector3:
+    """Compute a x^3 + b x^2 + c x of coefficients (4, 3)."""
+    first = combined(x, triple(powers[0]), 1.0, triple(powers[1]))
+    return scaled(x, combined(x, first, 1.0, triple(powers[2])))
 
 
 @compiled
-def _cubic(constants: Array, at: int, x: float) -> Vector3:
-    """Compute a x^3 + b x^2 + c x of coefficients (3, 3)."""
-    first = combined(x, _triple(constants, at), 1.0, _triple(constants, at + 3))
-    return scaled(x, combined(x, first, 1.0, _triple(constants, at + 6)))
-
-
-@compiled
-def _slope(constants: Array, at: int, x: float) -> Vector3:
+def _slope(powers: Matrix, x: float) -> Vector3:
     """Compute the derivative of `_cubic` by x."""
-    first = combined(3.0 * x, _triple(constants, at), 2.0, _triple(constants, at + 3))
-    return combined(x, first, 1.0, _triple(constants, at + 6))
+    first = combined(3.0 * x, triple(powers[0]), 2.0, triple(powers[1]))
+    return combined(x, first, 1.0, triple(powers[2]))
 
 
 @compiled
-def waypoints_path(t: float, constants: Array, target: Array) -> None:
-    """Move a target along `Waypoints`, see the comment above for the constants (c,)."""
-    piece, x, moves = _piece(t, constants)
-    at = 3 + int(constants[1]) + 24 * int(piece)
-    moved = added(_cubic(constants, at, x), _triple(constants, at + 9))
-    velocity = _slope(constants, at, x)
+def waypoints_path(t: float, constants: Array, target: TargetData) -> None:
+    """Move a target along `Waypoints`."""
+    own = WaypointsConstants.of(constants)
+    pieces = own.pieces.reshape(own.pieces.size // Piece.width(), Piece.width())
+    repeats = own.period < np.inf
+    inside = t % own.period if repeats else min(max(t, 0.0), own.duration)
+    moves = 1.0 if repeats or inside == t else 0.0
+    piece = Piece.of(pieces[_piece(pieces, inside)])
+    x = inside - piece.start
+    moved = added(_cubic(piece.move, x), triple(piece.move[3]))
+    velocity = _slope(piece.move, x)
     for i in range(3):
-        target[i] += moved[i]
-        target[12 + i] += moves * velocity[i]
-    turn_target(target, _triple(constants, at + 21), (0.0, 0.0, 0.0))
-    rate = scaled(moves, _slope(constants, at + 12, x))
-    turn_target(target, _cubic(constants, at + 12, x), rate)
+        target.position[i] += moved[i]
+        target.linear_velocity[i] += moves * velocity[i]
+    turn_target(target, triple(piece.turn[3]), (0.0, 0.0, 0.0))
+    rate = scaled(moves, _slope(piece.turn, x))
+    turn_target(target, _cubic(piece.turn, x), rate)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -171,9 +180,13 @@ class Waypoints(Reference):
             splines["rad"] = spline_of_turns(knots, poses, *rule)
             about_base = [poses[:-1].apply(own) for own in splines["rad"].pieces.swapaxes(0, 1)]
             turns = np.stack([*about_base, (poses[:-1] * poses[0].inv()).as_rotvec()], axis=1)
-        pieces = np.concatenate([splines["m"].pieces, turns], axis=1)
+        coefficients = np.concatenate([splines["m"].pieces, turns], axis=1)
+        pieces = np.column_stack([knots[:-1], coefficients.reshape(len(turns), -1)])
+        own = WaypointsConstants.make(
+            period=self.period, duration=self.duration, pieces=pieces.ravel()
+        )
         self._set(
-            constants=np.concatenate([[rule[0], len(pieces)], knots, pieces.ravel()]),
+            constants=own.numbers,
             jumps=np.flatnonzero(np.any([spline.jumps for spline in splines.values()], axis=0)),
             moved=read_only(np.linalg.norm(points - self.points, axis=1)),
         )

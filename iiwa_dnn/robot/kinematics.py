@@ -9,14 +9,28 @@ from collections.abc import Iterable
 import numpy as np
 import pinocchio as pin
 
-from iiwa_dnn.checks import Array
+from iiwa_dnn.checks import Array, Matrix
+from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot.robot import Robot
 
 _WORLD = pin.Convention.WORLD
 _update_jacobians = pin.computeJointJacobians
 _update_placements = pin.updateFramePlacements
-_PLACEMENT = 12  # numbers of a placement: the rotation column by column, then the translation
+
+
+class Placement(Record):
+    """Placement of a frame in the world: its three axes, then its position [m]."""
+
+    axes: Matrix = part(3, 3)
+    position: Array = part(3)
+
+
+class Twist(Record):
+    """Linear velocity of the world's origin, and angular velocity, along the world's axes."""
+
+    linear: Array = part(3)
+    angular: Array = part(3)
 
 
 class Kinematics:
@@ -80,8 +94,8 @@ class Kinematics:
 
 def _placements(model: pin.Model, data: pin.Data) -> Array:
     """View all frame placements as one array, (frames, 12): Pinocchio keeps them in one block."""
-    shape = (model.nframes, _PLACEMENT)
-    view: Array = np.lib.stride_tricks.as_strided(data.oMf[0].rotation, shape, (8 * _PLACEMENT, 8))
+    shape = (model.nframes, Placement.width())
+    view: Array = np.lib.stride_tricks.as_strided(data.oMf[0].rotation, shape, (8 * shape[1], 8))
     pin.framesForwardKinematics(model, data, pin.neutral(model))
     last = data.oMf[model.nframes - 1]  # where it lies in the block, the others do too
     if not np.array_equal(view[-1], np.append(last.rotation.T, last.translation)):

@@ -33,14 +33,13 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references.rotations import dot
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
+from iiwa_dnn.robot.kinematics import Placement
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacles
 from iiwa_dnn.schemes.parts import Checks, Limit
 from iiwa_dnn.schemes.scene import (
-    HALF_LENGTH,
-    SECOND,
-    SPEED,
-    STILL,
+    Body,
     Contact,
+    Pair,
     Scene,
     SceneViews,
     contact_of,
@@ -80,7 +79,7 @@ def collision_rows(
     limits = np.empty(candidates)
     slacks = np.empty(candidates)
     slacks[:] = np.inf
-    placed = np.empty((len(scene.bodies), 12))
+    placed = np.empty((len(scene.bodies), Placement.width()))
     place_bodies(scene, step.placements, placed)
     for k in range(len(scene.pairs)):
         _write_ends(step, scene, placed, k, gradients, limits, slacks)
@@ -112,27 +111,27 @@ def _write_ends(
     A pair that is too far away for any velocity within the limits is left out.
     """
     contact = contact_of(scene, k, placed)
-    kept = kept_distance(scene, contact, step.least[scene.first + k])
-    step.least[scene.first + k] = kept
-    least = min(kept, scene.least)
-    gain = min(scene.gain, step.rate)
+    pair = Pair.of(scene.pairs[k])
+    kept = kept_distance(scene, contact, step.least[scene.head.first + k])
+    step.least[scene.head.first + k] = kept
+    least = min(kept, scene.head.least)
+    gain = min(scene.head.gain, step.rate)
     travel = np.empty(step.q.size)
-    most = scene.pairs[k, SPEED] - gain * (contact.distance - least - ROOM)
+    most = pair.speed - gain * (contact.distance - least - ROOM)
     for j in range(step.q.size):
         travel[j] = abs(step.last[j]) / step.rate
         most += abs(scene.radii[k, j]) * scene.dq_max[j]
     if most <= 0.0:
         return
-    second = int(scene.pairs[k, SECOND])
-    ends = ends_of(scene, placed, second)
-    is_point = scene.bodies[second, HALF_LENGTH] == 0.0
+    ends = ends_of(scene, placed, pair.second)
+    is_point = Body.of(scene.bodies[pair.second]).half[2] == 0.0
     eps = second_order(scene.moves, scene.radii, k, travel)
     for at in range(1 if is_point else ENDS):
-        if int(scene.pairs[k, STILL]) == at + 1:
+        if pair.still == at + 1:
             continue
         row = ENDS * k + at
         left = contact.distance + height_of(ends[at], contact) - least - ROOM
-        limits[row] = gain * left - scene.pairs[k, SPEED]
+        limits[row] = gain * left - pair.speed
         fastest = 0.0
         for j in range(step.q.size):
             if scene.moves[k, j] != 0.0:
@@ -143,8 +142,8 @@ def _write_ends(
         limits[row] -= gain * eps
         if left < eps and step.rate < np.inf:
             limits[row] -= (step.rate - gain) * min(eps - left, eps)
-        if least < scene.least:
-            limits[row] = max(limits[row], -scene.pairs[k, SPEED])
+        if least < scene.head.least:
+            limits[row] = max(limits[row], -pair.speed)
 
 
 @compiled
@@ -162,10 +161,10 @@ def kept_distance(scene: SceneViews, contact: Contact, kept: float) -> float:
     """
     if dot(contact.normal, contact.normal) == 0.0:
         return MEET
-    if contact.distance >= scene.least + ROOM:
-        return scene.least
+    if contact.distance >= scene.head.least + ROOM:
+        return scene.head.least
     if kept == 0.0 or kept == MEET:
-        return contact.distance - ROOM if contact.distance < scene.least else scene.least
+        return contact.distance - ROOM if contact.distance < scene.head.least else scene.head.least
     return kept
 
 

@@ -54,10 +54,11 @@ from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.references.rotations import combined, dot, scaled
+from iiwa_dnn.references.rotations import combined, dot, scaled, triple
 from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot.kinematics import Placement
 from iiwa_dnn.schemes.parts import Checks, Limit, Task
-from iiwa_dnn.schemes.step import StepViews, point_rate, rate_along, vector_at
+from iiwa_dnn.schemes.step import StepViews, point_rate, rate_along
 from iiwa_dnn.schemes.tasks import JointCouplingTask
 
 NEGLIGIBLE = 1e-6
@@ -729,7 +730,7 @@ def tip_speed_bounds(
     """Tighten the bounds to those of `TipSpeedLimit`, whose constants these are."""
     frame = int(constants[0])
     gain = min(constants[2], step.rate)
-    point = vector_at(step.placements[frame], 9)
+    point = triple(Placement.of(step.placements[frame]).position)
     velocity = (0.0, 0.0, 0.0)
     for j in range(step.q.size):
         share = step.last[j] * step.moves[frame, j]

@@ -8,7 +8,7 @@ that function reads. All kernels of a kind have one signature:
     limit  kernel(step, constants, G, h, lb, ub)        writes G (rows, n) and h (rows,), and
                                                         tightens lb (n,) and ub (n,)
 
-`step` is a `StepViews`, `target` (18,) the `Target.data` of the frame that the task tracks. The
+`step` is a `StepViews`, `target` the `TargetData` of the frame that the task tracks. The
 rows come in as zeros, h as zeros, and n counts the joints and then the scheme's slack variables.
 
 A part may override a method in numpy instead. It is asked before each step, and its kernel, that
@@ -26,6 +26,7 @@ from iiwa_dnn.compiling.library import compiled, entry
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.program import real_array
+from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.step import Step, StepViews
 
@@ -42,9 +43,9 @@ def enter_cost(address: int, step: StepViews, constants: Vector, P: Matrix, q: V
 
 @entry
 def enter_task(
-    address: int, step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
+    address: int, step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
-    """Enter a task's kernel, with constants (k,), target (18,), A (rows, n), b (rows,)."""
+    """Enter a task's kernel, with constants (k,), target, A (rows, n), b (rows,)."""
 
 
 @entry
@@ -221,8 +222,14 @@ def copy_cost(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
 
 
 @compiled
-def copy_task(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+def copy_task(step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector) -> None:
     """Write A and b from the constants."""
+    _copy_rows(constants, A, b)
+
+
+@compiled
+def _copy_rows(constants: Vector, A: Matrix, b: Vector) -> None:
+    """Write rows A and their right-hand sides b from the constants, which begin with them."""
     n = A.shape[1]
     for j in range(b.size):
         b[j] = constants[n * b.size + j]
@@ -235,7 +242,7 @@ def copy_limit(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
     """Write G and h, and tighten lb and ub, from the constants."""
-    copy_task(step, constants, h, G, h)
+    _copy_rows(constants, G, h)
     n = lb.size
     first = h.size * (n + 1)
     for i in range(n):

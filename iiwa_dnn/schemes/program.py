@@ -22,6 +22,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.qp.layout import IntMatrix, QPViews, data_size, qp_views
 from iiwa_dnn.references import Target
+from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import MEET, CollisionAvoidance
@@ -46,7 +47,7 @@ from iiwa_dnn.schemes.parts import (
     enter_limit,
     enter_task,
 )
-from iiwa_dnn.schemes.scene import FIRST_PAIR
+from iiwa_dnn.schemes.scene import SceneHead
 from iiwa_dnn.schemes.step import Step, StepViews
 from iiwa_dnn.schemes.tasks import JointCouplingTask
 
@@ -300,7 +301,8 @@ class StepProgram:
         self.pairs: list[tuple[str, float]] = []
         for block in self.blocks:
             if isinstance(block.part, CollisionAvoidance):
-                self.constants[block.start + FIRST_PAIR] = len(self.pairs)
+                scene = self.constants[block.start : block.start + SceneHead.width()]
+                SceneHead.of(scene).first = len(self.pairs)
                 self.pairs += block.part.pairs(robot)
         tip = robot.frame_id(self.target_frames[0])
         head = (*self.sizes, robot.dof, len(self.blocks), tip, 0)
@@ -529,7 +531,7 @@ def assemble(
         first = table[k, 2]
         rows = table[k, 3]
         own = constants[table[k, 4] : table[k, 5]]
-        target = step.targets[table[k, 6]]
+        target = TargetData.of(step.targets[table[k, 6]])
         if kind == COSTS:
             enter_cost(address, step, own, qp.P, qp.q)
         elif kind == TASKS:

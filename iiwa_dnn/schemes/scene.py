@@ -28,35 +28,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple
-from iiwa_dnn.references.rotations import combined, dot
+from iiwa_dnn.references.rotations import combined, dot, triple
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
-from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.robot.kinematics import Kinematics, Placement
 from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox, box_around
-from iiwa_dnn.schemes.step import axis_at, rate_along, seen_from, vector_at
+from iiwa_dnn.schemes.step import axis_at, rate_along, seen_from
 
 ROUNDS = 60
 """Most steps of the search along the segment; it needs about six."""
-
-HEAD = 5
-PAIRS = 3
-FIRST_PAIR = 4
-"""Constants of a scene before those of joints, bodies and pairs, and among them the number of its
-pairs and that of the pairs of the scenes before it."""
-
-PER_BODY = 16
-HALF_LENGTH = 3
-"""Numbers of a body, and the one among them that is half the length of a segment [m]."""
-
-PER_PAIR = 5
-SPEED, SECOND, FIRST, RADIUS, STILL = range(PER_PAIR)
-"""Numbers of a pair: bound on the speed of its first body [m/s], the index of the second body, a
-segment, that of the first, any box, the sum of both radii [m], and 1 or 2 for the end of the
-segment that no joint moves towards or away from the first body, else 0."""
 
 POSTURES = 64
 UNMOVED = 1e-9
@@ -67,26 +52,74 @@ _MET = 1e-9
 """Distance of two cores below which they count as one [m]."""
 
 
-class SceneViews(NamedTuple):
-    """Constants of a scene of b bodies and k pairs, as views.
+class SceneHead(Record):
+    """Settings of a scene, and the sizes of the tables that follow them.
 
     Attributes:
         least: Least distance [m].
         gain: Largest rate at which a distance shrinks towards it [1/s].
+        bodies: Number of bodies.
+        pairs: Number of pairs.
         first: Number of pairs of the scenes before this one.
+    """
+
+    least: float
+    gain: float
+    bodies: int
+    pairs: int
+    first: int
+
+
+class Body(Record):
+    """A box in a frame.
+
+    Attributes:
+        frame: Index of the frame.
+        half: Half-extents [m]; a segment lies along the third axis.
+        axes: The box's axes in the frame, one a row.
+        center: Its centre in the frame [m].
+    """
+
+    frame: int
+    half: Vector = part(3)
+    axes: Matrix = part(3, 3)
+    center: Vector = part(3)
+
+
+class Pair(Record):
+    """Two bodies that may meet.
+
+    Attributes:
+        speed: Bound on the speed of the first body [m/s].
+        second: Index of the second body, a segment.
+        first: Index of the first body, any box.
+        radius: Sum of both radii [m].
+        still: 1 or 2 for the end of the segment that no joint moves towards or away from the first
+            body, else 0.
+    """
+
+    speed: float
+    second: int
+    first: int
+    radius: float
+    still: int
+
+
+class SceneViews(NamedTuple):
+    """Constants of a scene of b bodies and k pairs, as views.
+
+    Attributes:
+        head: Settings of the scene.
         dq_max: Velocity limits of the joints [rad/s], (n,).
-        bodies: Of each body the index of its frame, half-extents [m], and placement in the frame
-            as of `Kinematics.placements`, (b, 16).
-        pairs: Numbers of each pair, (k, 5).
+        bodies: A `Body` in each row, (b, 16).
+        pairs: A `Pair` in each row, (k, 5).
         moves: For each pair and joint 1 if it moves the second body alone, -1 if it moves the
             first alone, else 0, (k, n).
         radii: For each pair and joint the largest distance of the second body from its axis [m], -1
             for a prismatic joint, 0 for one that moves neither alone, (k, n).
     """
 
-    least: float
-    gain: float
-    first: int
+    head: SceneHead
     dq_max: Vector
     bodies: Matrix
     pairs: Matrix
@@ -115,7 +148,7 @@ class Scene(NamedTuple):
         robot: The robot, n joints.
         pairs: Names of the bodies of each pair: a link or an obstacle, and a link beside it.
         frames: Links whose placements are needed.
-        moving: Obstacles that move, each with the part of `constants` that its centre takes.
+        moving: Obstacles that move, each with the number of its body.
         constants: Numbers that compiled code sees through `scene_views`, (k,).
         left_out: Names of the bodies of each pair that is not watched, and the reason.
     """
@@ -123,14 +156,16 @@ class Scene(NamedTuple):
     robot: Robot
     pairs: list[tuple[str, str]]
     frames: tuple[str, ...]
-    moving: list[tuple[Obstacle, slice]]
+    moving: list[tuple[Obstacle, int]]
     constants: Vector
     left_out: tuple[tuple[str, str, str], ...]
 
     def move(self, constants: Vector, t: float) -> None:
         """Bring the moving obstacles in a copy of `constants`, (k,), to a time [s]."""
-        for obstacle, part in self.moving:
-            constants[part] = self.constants[part] + obstacle.shift(t)
+        resting = scene_views(self.constants, self.robot.dof).bodies
+        moved = scene_views(constants, self.robot.dof).bodies
+        for obstacle, k in self.moving:
+            Body.of(moved[k]).center = Body.of(resting[k]).center + obstacle.shift(t)
 
     def distances(self, q: Matrix, t: Vector) -> Matrix:
         """Compute the distances of all pairs [m], (k, pairs), at q (k, n) [rad] and t (k,) [s]."""
@@ -203,12 +238,12 @@ def make_scene(
         reason = f"; {unwatched(bare)}" if bare else ""
         problem = f"there is no pair that could meet{reason}"
         raise InvalidInputError("obstacles", problem, obstacles)
-    rows[:, STILL] = np.where(moved.all(axis=1), 0.0, 1.0 + moved[:, 0])
+    still = np.where(moved.all(axis=1), 0, 1 + moved[:, 0])
+    for row, end in zip(rows, still, strict=True):
+        Pair.of(row).still = end
     constants = _constants(robot, distances, bodies, rows[watched], motions[watched])
-    # The last three numbers of a body are its centre.
-    ends = HEAD + robot.dof + PER_BODY * np.arange(links + 1, len(bodies) + 1)
-    centers = [slice(end - 3, end) for end in ends]
-    moving = [pair for pair in zip(obstacles, centers, strict=True) if pair[0].speed]
+    numbered = enumerate(obstacles, links)
+    moving = [(each, k) for k, each in numbered if each.speed]
     reasons = np.where(moved.any(axis=1), "given", "no joint moves it").tolist()
     left = tuple((*names[at], reasons[at]) for at in np.flatnonzero(~watched))
     return Scene(robot, [*itertools.compress(names, watched)], frames, moving, constants, left)
@@ -248,7 +283,8 @@ def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArr
     for q in robot.draw(np.random.default_rng(0), POSTURES):
         kinematics.update(q)
         write_end_rates(constants, kinematics.jacobian, kinematics.placements, rates)
-    moved = (rates > UNMOVED) | (scene.pairs[:, [SPEED]] > 0.0)
+    itself = [[Pair.of(row).speed > 0.0] for row in scene.pairs]
+    moved = (rates > UNMOVED) | np.reshape(itself, (-1, 1))
     return np.array(moved & scene.moves.any(axis=1, keepdims=True))
 
 
@@ -261,10 +297,16 @@ def _constants(
 ) -> Vector:
     """Return `Scene.constants`, (k,), for bodies and the pairs of `_layout`."""
     placed = [
-        np.concatenate([[frame], box.half_extents, box.rotation.T.ravel(), box.center])
-        for _, frame, box, *_ in bodies
+        Body.make(
+            frame=body.frame,
+            half=body.box.half_extents,
+            axes=body.box.rotation.T,
+            center=body.box.center,
+        )
+        for body in bodies
     ]
-    head = (*distances, len(bodies), len(rows), 0.0)
+    least, gain = distances
+    head = SceneHead.make(least=least, gain=gain, bodies=len(bodies), pairs=len(rows), first=0)
     parts = (head, robot.dq_max, placed, rows, motions[:, 0], motions[:, 1])
     return np.concatenate([np.ravel(part) for part in parts])
 
@@ -273,9 +315,18 @@ def _layout(
     robot: Robot, bodies: list[_Body], pairs: list[tuple[int, int]]
 ) -> tuple[Matrix, Matrix]:
     """Return `SceneViews.pairs`, (k, 5), and `moves` and `radii`, (k, 2, n), of pairs of bodies."""
-    rows = [(bodies[i].speed, k, i, bodies[i].radius + bodies[k].radius, 0.0) for i, k in pairs]
+    rows = [
+        Pair.make(
+            speed=bodies[i].speed,
+            second=k,
+            first=i,
+            radius=bodies[i].radius + bodies[k].radius,
+            still=0,
+        )
+        for i, k in pairs
+    ]
     motions = [_motion(robot, bodies[i], bodies[k]) for i, k in pairs]
-    return np.reshape(rows, (-1, PER_PAIR)), np.reshape(motions, (-1, 2, robot.dof))
+    return np.reshape(rows, (-1, Pair.width())), np.reshape(motions, (-1, 2, robot.dof))
 
 
 def _motion(robot: Robot, first: _Body, second: _Body) -> Matrix:
@@ -313,19 +364,19 @@ def _motion(robot: Robot, first: _Body, second: _Body) -> Matrix:
 @compiled
 def scene_views(constants: Vector, dof: int) -> SceneViews:
     """Make the views of a scene's constants (k,) for a robot of `dof` joints."""
-    bodies = int(constants[2])
-    pairs = int(constants[PAIRS])
-    at_bodies = HEAD + dof
-    at_pairs = at_bodies + PER_BODY * bodies
-    at_moves = at_pairs + PER_PAIR * pairs
+    at_limits = SceneHead.width()
+    head = SceneHead.of(constants[:at_limits])
+    bodies = head.bodies
+    pairs = head.pairs
+    at_bodies = at_limits + dof
+    at_pairs = at_bodies + Body.width() * bodies
+    at_moves = at_pairs + Pair.width() * pairs
     at_radii = at_moves + dof * pairs
     return SceneViews(
-        constants[0],
-        constants[1],
-        int(constants[FIRST_PAIR]),
-        constants[HEAD:at_bodies],
-        constants[at_bodies:at_pairs].reshape(bodies, PER_BODY),
-        constants[at_pairs:at_moves].reshape(pairs, PER_PAIR),
+        head,
+        constants[at_limits:at_bodies],
+        constants[at_bodies:at_pairs].reshape(bodies, Body.width()),
+        constants[at_pairs:at_moves].reshape(pairs, Pair.width()),
         constants[at_moves:at_radii].reshape(pairs, dof),
         constants[at_radii : at_radii + dof * pairs].reshape(pairs, dof),
     )
@@ -335,33 +386,38 @@ def scene_views(constants: Vector, dof: int) -> SceneViews:
 def place_bodies(scene: SceneViews, placements: Matrix, placed: Matrix) -> None:
     """Write the placements of all bodies in the world, (b, 12), for those of frames (k, 12)."""
     for k in range(len(scene.bodies)):
-        frame = placements[int(scene.bodies[k, 0])]
-        for i in range(12):
-            value = frame[9 + i % 3] if i >= 9 else 0.0
+        body = Body.of(scene.bodies[k])
+        frame = Placement.of(placements[body.frame])
+        here = Placement.of(placed[k])
+        for i in range(3):
+            here.position[i] = frame.position[i]
             for j in range(3):
-                value += frame[3 * j + i % 3] * scene.bodies[k, 4 + i - i % 3 + j]
-            placed[k, i] = value
+                here.position[i] += frame.axes[j, i] * body.center[j]
+                here.axes[j, i] = 0.0
+                for axis in range(3):
+                    here.axes[j, i] += frame.axes[axis, i] * body.axes[j, axis]
 
 
 @compiled
 def ends_of(scene: SceneViews, placed: Matrix, body: int) -> tuple[Triple, Triple]:
     """Return the ends of a segment among the bodies in the world [m], (3,) each."""
-    center = vector_at(placed[body], 9)
-    axis = vector_at(placed[body], 6)
-    half = scene.bodies[body, HALF_LENGTH]
+    place = Placement.of(placed[body])
+    center = triple(place.position)
+    axis = triple(place.axes[2])
+    half = Body.of(scene.bodies[body]).half[2]
     return combined(1.0, center, -half, axis), combined(1.0, center, half, axis)
 
 
 @compiled
 def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
     """Compute the contact of pair k, for the placements of all bodies (b, 12)."""
-    first = int(scene.pairs[k, FIRST])
-    base = placed[first]
-    half = vector_at(scene.bodies[first], 1)
-    a, b = ends_of(scene, placed, int(scene.pairs[k, SECOND]))
-    way = combined(1.0, b, -1.0, a)
-    start = seen_from(base, combined(1.0, a, -1.0, vector_at(base, 9)))
-    along = seen_from(base, way)
+    pair = Pair.of(scene.pairs[k])
+    base = Placement.of(placed[pair.first])
+    half = triple(Body.of(scene.bodies[pair.first]).half)
+    a, b = ends_of(scene, placed, pair.second)
+    path = combined(1.0, b, -1.0, a)
+    start = seen_from(base, combined(1.0, a, -1.0, triple(base.position)))
+    along = seen_from(base, path)
     s = nearest_parameter(start, along, half)
     nearest = combined(1.0, start, s, along)
     side = beyond(nearest, half)
@@ -373,7 +429,7 @@ def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
         flat = 0.0 if half[0] == 0.0 else 1.0
         normal = (flat * x, flat * y, flat * z)
     outward = axis_at(base, normal)
-    return Contact(combined(1.0, a, s, way), outward, core - scene.pairs[k, RADIUS])
+    return Contact(combined(1.0, a, s, path), outward, core - pair.radius)
 
 
 @compiled
@@ -396,7 +452,7 @@ def write_distances(constants: Vector, dof: int, placements: Matrix, distances: 
         distances: The distances, (pairs,), overwritten.
     """
     scene = scene_views(constants, dof)
-    placed = np.empty((len(scene.bodies), 12))
+    placed = np.empty((len(scene.bodies), Placement.width()))
     place_bodies(scene, placements, placed)
     for k in range(distances.size):
         distances[k] = contact_of(scene, k, placed).distance
@@ -416,11 +472,11 @@ def write_end_rates(constants: Vector, jacobian: Matrix, placements: Matrix, rat
     """
     dof = len(jacobian)
     scene = scene_views(constants, dof)
-    placed = np.empty((len(scene.bodies), 12))
+    placed = np.empty((len(scene.bodies), Placement.width()))
     place_bodies(scene, placements, placed)
     for k in range(len(scene.pairs)):
         contact = contact_of(scene, k, placed)
-        ends = ends_of(scene, placed, int(scene.pairs[k, SECOND]))
+        ends = ends_of(scene, placed, Pair.of(scene.pairs[k]).second)
         for at in range(2):
             if dot(contact.normal, contact.normal) == 0.0:
                 rates[k, at] = np.inf

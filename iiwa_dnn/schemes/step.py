@@ -14,10 +14,10 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Target
-from iiwa_dnn.references.rotations import added, combined, cross, dot, scaled
+from iiwa_dnn.references.rotations import added, combined, cross, dot, scaled, triple
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.configuration import FrameState
-from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.robot.kinematics import Kinematics, Placement, Twist
 
 TARGET_SIZE = 18
 """Length of `Target.data`."""
@@ -133,24 +133,19 @@ class Step:
 
 
 @compiled
-def vector_at(array: Vector, start: int) -> Vector3:
-    """Return three numbers of an array (k,), from an index on."""
-    return array[start], array[start + 1], array[start + 2]
+def axis_at(placement: Placement, axis: Vector3) -> Vector3:
+    """Turn a direction in a frame's own coordinates, by its placement, into the world's."""
+    x = scaled(axis[0], triple(placement.axes[0]))
+    y = triple(placement.axes[1])
+    return added(x, combined(axis[1], y, axis[2], triple(placement.axes[2])))
 
 
 @compiled
-def axis_at(placement: Vector, axis: Vector3) -> Vector3:
-    """Turn a direction in a frame's own coordinates, by its placement (12,), into the world's."""
-    x = scaled(axis[0], vector_at(placement, 0))
-    return added(x, combined(axis[1], vector_at(placement, 3), axis[2], vector_at(placement, 6)))
-
-
-@compiled
-def seen_from(placement: Vector, v: Vector3) -> Vector3:
-    """Turn a vector (3,) of the world into the coordinates of a placement (12,)."""
-    x = dot(vector_at(placement, 0), v)
-    y = dot(vector_at(placement, 3), v)
-    return x, y, dot(vector_at(placement, 6), v)
+def seen_from(placement: Placement, v: Vector3) -> Vector3:
+    """Turn a vector (3,) of the world into the coordinates of a placement."""
+    x = dot(triple(placement.axes[0]), v)
+    y = dot(triple(placement.axes[1]), v)
+    return x, y, dot(triple(placement.axes[2]), v)
 
 
 @compiled
@@ -159,8 +154,8 @@ def point_rate(jacobian: Matrix, j: int, point: Vector3) -> Vector3:
 
     A joint with angular velocity w and velocity v of the world's origin moves it with v + w x p.
     """
-    turned = cross(vector_at(jacobian[j], 3), point)
-    return added(vector_at(jacobian[j], 0), turned)
+    twist = Twist.of(jacobian[j])
+    return added(triple(twist.linear), cross(triple(twist.angular), point))
 
 
 @compiled
@@ -188,4 +183,4 @@ def write_spin(step: StepViews, constants: Vector, axis: Vector3, row: Vector) -
     base = int(constants[BASE])
     for j in range(step.q.size):
         sign = step.moves[frame, j] - step.moves[base, j]
-        row[j] = sign * dot(axis, vector_at(step.jacobian[j], 3))
+        row[j] = sign * dot(axis, triple(Twist.of(step.jacobian[j]).angular))

@@ -30,9 +30,11 @@ from iiwa_dnn.references.rotations import (
     cross,
     dot,
     rotation_log,
-    row_of,
+    triple,
 )
+from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot.kinematics import Placement
 from iiwa_dnn.schemes.parts import Checks, Task
 from iiwa_dnn.schemes.step import (
     BASE,
@@ -42,7 +44,6 @@ from iiwa_dnn.schemes.step import (
     StepViews,
     axis_at,
     seen_from,
-    vector_at,
     write_spin,
     write_velocity,
 )
@@ -60,72 +61,81 @@ VERTICAL = 1e-9
 
 
 @compiled
-def position_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+def position_rows(
+    step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
+) -> None:
     """Write the rows of a frame's position as seen from its base, three."""
     gain = min(constants[GAIN], step.rate)
-    base = step.placements[int(constants[BASE])]
-    point = vector_at(step.placements[int(constants[FRAME])], 9)
-    offset = combined(1.0, point, -1.0, vector_at(base, 9))
+    base = Placement.of(step.placements[int(constants[BASE])])
+    point = triple(Placement.of(step.placements[int(constants[FRAME])]).position)
+    offset = combined(1.0, point, -1.0, triple(base.position))
     for i in range(3):
-        axis = vector_at(base, 3 * i)
-        b[i] = target[12 + i] + gain * (target[i] - dot(axis, offset))
+        axis = triple(base.axes[i])
+        missing = target.position[i] - dot(axis, offset)
+        b[i] = target.linear_velocity[i] + gain * missing
         write_velocity(step, constants, point, axis, A[i])
 
 
 @compiled
-def rotation_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+def rotation_rows(
+    step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
+) -> None:
     """Write the rows of a frame's orientation as seen from its base, three."""
     gain = min(constants[GAIN], step.rate)
-    base = step.placements[int(constants[BASE])]
-    placement = step.placements[int(constants[FRAME])]
+    base = Placement.of(step.placements[int(constants[BASE])])
+    placement = Placement.of(step.placements[int(constants[FRAME])])
     missing = np.empty((3, 3))
     error = np.empty(3)
     for i in range(3):
         for k in range(3):
-            seen = seen_from(placement, vector_at(base, 3 * k))
-            missing[i, k] = dot(row_of(target, i), seen)
+            seen = seen_from(placement, triple(base.axes[k]))
+            missing[i, k] = dot(triple(target.rotation[i]), seen)
     rotation_log(missing, error)
     for i in range(3):
-        b[i] = target[15 + i] + gain * error[i]
-        write_spin(step, constants, vector_at(base, 3 * i), A[i])
+        b[i] = target.angular_velocity[i] + gain * error[i]
+        write_spin(step, constants, triple(base.axes[i]), A[i])
 
 
 @compiled
-def block_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+def block_rows(
+    step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
+) -> None:
     """Write the rows of `OrientationTask` in the form ``block``, four."""
     gain = min(constants[GAIN], step.rate)
-    placement = step.placements[int(constants[FRAME])]
+    placement = Placement.of(step.placements[int(constants[FRAME])])
     for i in range(4):
         unit = (1.0, 0.0, 0.0) if i < 2 else (0.0, 1.0, 0.0)
-        here = vector_at(placement, 3 * (i % 2))
-        there = column_of(target, i % 2)
+        here = triple(placement.axes[i % 2])
+        there = column_of(target.rotation, i % 2)
         b[i] = gain * dot(unit, combined(1.0, there, -1.0, here))
-        b[i] += dot(cross(there, unit), vector_at(target, 15))
+        b[i] += dot(cross(there, unit), triple(target.angular_velocity))
         write_spin(step, constants, cross(here, unit), A[i])
-    project_on_range(placement, b)
+    project_on_range(placement.axes, b)
 
 
 @compiled
-def project_on_range(placement: Vector, b: Vector) -> None:
-    """Replace b (4,) by its projection on the range of W of a frame's placement (12,)."""
-    row = math.sqrt(placement[2] * placement[2] + placement[5] * placement[5])
-    column = math.sqrt(placement[6] * placement[6] + placement[7] * placement[7])
+def project_on_range(axes: Matrix, b: Vector) -> None:
+    """Replace b (4,) by its projection on the range of W of a frame's axes (3, 3)."""
+    x, y, _ = triple(axes[2])
+    row = math.sqrt(axes[0, 2] * axes[0, 2] + axes[1, 2] * axes[1, 2])
+    column = math.sqrt(x * x + y * y)
     normal = np.empty(4)
+    along = 0.0
     for i in range(4):
         if row > VERTICAL:
-            first = placement[7] if i < 2 else -placement[6]
-            second = -placement[5] if i % 2 == 0 else placement[2]
+            first = y if i < 2 else -x
+            second = -axes[1, 2] if i % 2 == 0 else axes[0, 2]
             normal[i] = first * second / (row * column)
         else:
-            first = -placement[i % 2 * 3 + 1] if i < 2 else placement[i % 2 * 3]
+            first = -axes[i % 2, 1] if i < 2 else axes[i % 2, 0]
             normal[i] = first / math.sqrt(2.0)
-    along = normal[0] * b[0] + normal[1] * b[1] + normal[2] * b[2] + normal[3] * b[3]
+        along += normal[i] * b[i]
     for i in range(4):
         b[i] = b[i] - along * normal[i] if row > VERTICAL else along * normal[i]
 
 
 @compiled
-def pose_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+def pose_rows(step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector) -> None:
     """Write the rows of a frame's position and orientation as seen from its base, six."""
     position_rows(step, constants, target, A[:3], b[:3])
     rotation_rows(step, constants, target, A[3:], b[3:])
@@ -133,10 +143,10 @@ def pose_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: 
 
 @compiled
 def held_pose_rows(
-    step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
+    step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write the rows of a pose that is among the constants, six."""
-    pose_rows(step, constants, constants[OWN:], A, b)
+    pose_rows(step, constants, TargetData.of(constants[OWN:]), A, b)
 
 
 def feedback_gain(argument: str, value: float) -> float:
@@ -310,19 +320,17 @@ class RelativePoseTask(FrameTask):
 
 
 @compiled
-def axis_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+def axis_rows(step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector) -> None:
     """Write the rows of `AxisTask`, two."""
-    placement = step.placements[int(constants[FRAME])]
-    axis = vector_at(constants, OWN)
+    placement = Placement.of(step.placements[int(constants[FRAME])])
+    axis = triple(constants[OWN:])
     spin = (0.0, 0.0, 0.0)
-    wanted = vector_at(constants, OWN + 9)
+    wanted = triple(constants[OWN + 9 :])
     if dot(wanted, wanted) == 0.0:
-        spin = vector_at(target, 15)
-        wanted = (
-            dot(row_of(target, 0), axis),
-            dot(row_of(target, 1), axis),
-            dot(row_of(target, 2), axis),
-        )
+        spin = triple(target.angular_velocity)
+        x = dot(triple(target.rotation[0]), axis)
+        y = dot(triple(target.rotation[1]), axis)
+        wanted = (x, y, dot(triple(target.rotation[2]), axis))
     here = axis_at(placement, axis)
     turn = cross(here, wanted)
     sine = np.sqrt(dot(turn, turn))
@@ -330,7 +338,7 @@ def axis_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: 
     factor = angle / sine if sine > 1e-12 else 1.0
     rate = combined(1.0, spin, min(constants[GAIN], step.rate) * factor, turn)
     for i in range(2):
-        normal = axis_at(placement, vector_at(constants, OWN + 3 + 3 * i))
+        normal = axis_at(placement, triple(constants[OWN + 3 + 3 * i :]))
         b[i] = dot(normal, rate)
         write_spin(step, constants, normal, A[i])
 
@@ -368,15 +376,15 @@ class AxisTask(FrameTask):
 
 @compiled
 def remote_center_rows(
-    step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
+    step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write the rows of `RemoteCenterTask`, two."""
-    placement = step.placements[int(constants[FRAME])]
-    carrier = step.placements[int(constants[BASE])]
-    point = added(vector_at(carrier, 9), vector_at(constants, OWN + 6))
-    offset = combined(1.0, point, -1.0, vector_at(placement, 9))
+    placement = Placement.of(step.placements[int(constants[FRAME])])
+    carrier = Placement.of(step.placements[int(constants[BASE])])
+    point = added(triple(carrier.position), triple(constants[OWN + 6 :]))
+    offset = combined(1.0, point, -1.0, triple(placement.position))
     for i in range(2):
-        normal = axis_at(placement, vector_at(constants, OWN + 3 * i))
+        normal = axis_at(placement, triple(constants[OWN + 3 * i :]))
         b[i] = min(constants[GAIN], step.rate) * dot(normal, offset)
         write_velocity(step, constants, point, normal, A[i])
 
@@ -430,7 +438,9 @@ def _normals(axis: Sequence[float]) -> Matrix:
 
 
 @compiled
-def joint_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+def joint_rows(
+    step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
+) -> None:
     """Write the rows of a task of joints: its constants are gain, C (rows, dof) and c (rows,)."""
     dof = step.q.size
     gain = min(constants[0], step.rate)

@@ -90,7 +90,7 @@ def largest(motion: Motion) -> float:
 @compiled
 def count_up(values: Vector, start: int) -> float:
     stats = Stats.of(values[start : start + 2])
-    stats.count += 1
+    stats.count += Stats.width() / 2
     return share(stats)
 
 
@@ -189,6 +189,22 @@ def test_members_lie_in_the_array_one_after_another(both: tuple[Any, Any]) -> No
     motion.new = -2.0
     assert motion.numbers.tolist() == [0.0, -2.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, -1.0]
     assert python.Motion.zeros(4).velocity.shape == (4,)
+
+
+def test_a_record_is_made_of_all_its_members_and_no_others(both: tuple[Any, Any]) -> None:
+    python, _ = both
+    given = {"time": 1, "new": 2, "position": [3, 4], "axis": [5, 6, 7], "velocity": [8, 9]}
+    made = python.Motion.make(**given)
+    assert made.numbers.tolist() == [1, 2, 3, 4, 5, 6, 7, 8, 9]
+    made.position += 1.0
+    made.axis = [7.0, 6.0, 5.0]
+    assert made.numbers.tolist() == [1, 2, 4, 5, 7, 6, 5, 8, 9]
+    for wrong in (given | {"lost": 1.0}, {"time": 1.0}):
+        with pytest.raises(TypeError, match="Motion has the members time, new, position, axis"):
+            python.Motion.make(**wrong)
+    for wrong in (given | {"axis": [1, 2]}, given | {"position": [1, 2, 3]}):
+        with pytest.raises(ValueError, match="broadcast"):
+            python.Motion.make(**wrong)
 
 
 @pytest.mark.parametrize("n", [1, 2, 7])

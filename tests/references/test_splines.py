@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.spatial.transform import Rotation, RotationSpline
 
 from iiwa_dnn import InvalidInputError, Waypoints
+from iiwa_dnn.references.waypoints import WaypointsConstants
 
 Array = NDArray[np.float64]
 
@@ -174,7 +175,7 @@ def test_dense_smooth_rows_have_the_digits_of_scipys_splines(closed: bool) -> No
     path = Waypoints(t, points, "closed" if closed else "clamped", turns.as_quat()[:, [3, 0, 1, 2]])
     assert not path.jumps.size
     spline = CubicSpline(t, points - points[0], bc_type="periodic" if closed else "clamped")
-    pieces = path.constants[3 + 300 :].reshape(300, 8, 3)
+    pieces = WaypointsConstants.of(path.constants).pieces.reshape(300, 25)[:, 1:].reshape(300, 8, 3)
     np.testing.assert_array_equal(pieces[:, :4], spline.c.swapaxes(0, 1))
     if not closed:
         ends = np.concatenate([[-1e-10], t, [t[-1] + 1e-10]])

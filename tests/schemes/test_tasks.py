@@ -112,7 +112,7 @@ def test_projection_on_the_range_of_the_blocks_rows_is_scipys(tilt: float) -> No
         vector = rng.standard_normal(4)
         basis = scipy.linalg.orth(block_map(rotation), rcond=1e-9)
         expected = basis @ (basis.T @ vector)
-        project_on_range(np.append(rotation.T, np.zeros(3)), vector)
+        project_on_range(np.ascontiguousarray(rotation.T), vector)
         assert_allclose(vector, expected, rtol=0, atol=1e-8)
 
 
