@@ -11,7 +11,7 @@ FULL := $(VENV)/.full
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help force heart test setup lint docs notebooks clean
+.PHONY: help force heart test setup lint docs figures notebooks clean
 
 help:  ## list what can be made
 	@echo 'usage: make TARGET [PYTHON=python3.12] [EXTRAS=view] [ARGS="..."]'
@@ -33,6 +33,10 @@ lint: $(FULL)  ## check style, layout and types
 
 docs: $(FULL)  ## build the documentation into site/, any warning an error
 	$(VENV_PYTHON) -m sphinx -W --keep-going -q -b html docs site $(ARGS)
+
+figures: $(FULL)  ## draw the figures of the pages anew, minutes, and the live page, with clang and lld
+	$(VENV_PYTHON) docs/figures.py $(ARGS)
+	$(VENV_PYTHON) docs/browser/make_page.py
 
 notebooks: $(FULL)  ## run the notebooks; what they print is not kept
 	$(VENV_PYTHON) -m pytest --nbmake --nbmake-timeout=60 notebooks $(ARGS)

@@ -100,8 +100,8 @@ def test_the_block_loses_the_tilt_where_the_tool_is_vertical() -> None:
     rotation = paper_start().rotation
     assert math.degrees(math.acos(-rotation[2, 2])) == pytest.approx(11.08, abs=0.01)
     # At the paper's start a tilt moves the block by a seventh of what a turn moves it.
-    turn, _, tilt = np.linalg.svd(block_map(rotation))[1]
-    assert tilt / turn == pytest.approx(0.097, abs=1e-3)
+    tilt, _, turn = np.linalg.norm(block_map(rotation), axis=0)  # about the axes x, y and z
+    assert tilt / turn == pytest.approx(1.0 / 7.3, abs=1e-3)
 
 
 def test_the_block_weakens_the_program() -> None:
@@ -270,3 +270,19 @@ def test_one_euler_step_in_a_control_step_is_unstable() -> None:
         d.ExplicitEuler(substeps=1).advance(network, qp, state, control_step)
     assert np.isfinite(state).all()
     assert np.abs(network.rates(qp, state)).max() > 0.1
+
+
+def test_without_delta_an_error_of_the_position_stays() -> None:
+    robot, start = paper_robot(), paper_start()
+    off = np.array([1e-3, 0.0, 0.0])
+    target = d.Target(start.position + off, start.rotation)
+    left = []
+    for gain in (1e-9, 10.2):  # as printed, as if it were zero
+        scheme = d.DoubleIndicator(position_gain=gain, home=PAPER_Q0)
+        controller = d.Controller(robot, scheme, dt=1e-2)
+        q = np.array(PAPER_Q0)
+        for k in range(100):
+            q = controller.step(q, 1e-2 * k, target).next_q
+        left.append(np.linalg.norm(target.position - d.Configuration(robot, q).position))
+    assert left[0] == pytest.approx(1e-3, rel=1e-3)
+    assert left[1] == pytest.approx(1e-3 * (1 - 0.102) ** 100, rel=0.1)

@@ -7,15 +7,16 @@ bounds and the inequality rows. It is handed out, recorded and checked as it was
 
 ``slow``
     Along a path, the scaled program: the task velocity becomes s b with the largest feasible
-    :math:`s \in [0, 1]`, less a thousandth of it. The reference's clock advances by s dt, so the
-    arm goes along the same path, later. The task is softened where the reference rests, where s is
-    below a tenth, and where the joints race while the tip hardly moves, as in a singular pose.
+    :math:`s \in [0, 1]`, less a thousandth of it. The reference's clock advances by s dt, so
+    without limits on acceleration or jerk the arm goes along the same path, later. The task is
+    softened where the reference rests, where s is below a tenth, and where the joints race while
+    the tip hardly moves, as in a singular pose.
     Along a path the clock then advances by the share of the task velocity that is reached, at
     least by a tenth, so that the path leads out of it.
 ``relax``
     The softened program: the task rows are violated least, damped. The clock runs on.
 ``stop``
-    No velocity; the run ends.
+    A braking motion to zero. A run ends there; a loop goes on once the task has a solution.
 
 The multipliers of the relaxed programs name the bounds and rows that stand in the way. A row that
 asks for more than all joints together can give is followed as far as they can. If the limits
@@ -48,7 +49,7 @@ class Action(IntEnum):
     RELAX = 3
     """The task rows hold as far as they can."""
     STOP = 4
-    """No velocity."""
+    """A braking motion to zero."""
     EULER = 5
     """A later stage of midpoint or RK4 had no solution: an Euler step was taken."""
 

@@ -45,7 +45,7 @@ SIZE = (960, 540)
 
 OBSTACLE_COLOR = (0.25, 0.45, 0.75, 1.0)
 _PIECES = 400  # straight ones that a path is drawn with
-_SCENERY = f"""
+SCENERY = f"""
 <mujoco>
   <visual>
     <headlight ambient="0.4 0.4 0.4" diffuse="0.3 0.3 0.3" specular="0.1 0.1 0.1"/>
@@ -135,7 +135,7 @@ def draw_arm(
     mujoco = import_mujoco()
     prepare_renderer()  # before the slow part
     obstacles = obstacles_of(record)
-    model = _scene(mujoco, robot, obstacles)
+    model = build_scene(mujoco, robot, obstacles)
     data = mujoco.MjData(model)
     camera = mujoco.MjvCamera()
     _aim(camera, record)
@@ -160,9 +160,11 @@ def draw_arm(
             yield renderer.render()
 
 
-def _scene(mujoco: Any, robot: Robot, obstacles: Iterable[Obstacle]) -> Any:
+def build_scene(
+    mujoco: Any, robot: Robot, obstacles: Iterable[Obstacle], scenery: str = SCENERY
+) -> Any:
     """Compile robot, floor and light, and the obstacles as bodies that can be displaced."""
-    spec = mujoco.MjSpec.from_string(_SCENERY)
+    spec = mujoco.MjSpec.from_string(scenery)
     arm = build_spec(robot)
     shell = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
     shape = {
@@ -206,11 +208,11 @@ def obstacles_of(record: Record) -> list[Obstacle]:
 
 
 def _aim(camera: Any, record: Record) -> None:
-    """Aim a camera at the whole arm from beside the path."""
+    """Aim a camera at the arm from before the path, so near that the path is seen."""
     path = record.position_desired.mean(axis=0)
     radius = max(float(np.linalg.norm(record.position, axis=1).max()), 0.4)
-    camera.lookat[:] = 0.5 * path + np.array([0.0, 0.0, 0.26 * radius])
-    camera.distance = 2.0 * radius
-    # MuJoCo's azimuth is the direction of sight.
-    camera.azimuth = np.degrees(np.arctan2(path[1], path[0])) + 120.0
-    camera.elevation = -38.0
+    camera.lookat[:] = 0.72 * path + np.array([0.0, 0.0, 0.2 * radius])
+    camera.distance = 1.6 * radius
+    # MuJoCo's azimuth is the direction of sight; from the front no link hides the path.
+    camera.azimuth = np.degrees(np.arctan2(path[1], path[0])) + 205.0
+    camera.elevation = -36.0

@@ -37,9 +37,9 @@ COLUMN = 3.5  # width in a two-column journal [in]
 BUCKETS = 700  # stretches of a curve: one for each pixel across a column at 200 dots an inch
 STYLE = Path(__file__).with_name("style.mplstyle")
 CAPTIONS = {
-    "overview": "Path, joint angles and velocities with the joints' limits near them in their "
-    "colors, errors and kinetic index, and further quantities of the run. A line is the mean or "
-    "the largest value, a band the range, of each short stretch of time.",
+    "overview": "Path, joint angles and velocities with the joints' limits near them, errors and "
+    "kinetic index, and further quantities of the run. A line is the mean or the largest value, a "
+    "band the range, of each short stretch of time.",
     "convergence": "KKT residual of the network, and gap to the reference.",
     "moments": "The arm after each fifth of the run.",
 }
@@ -58,6 +58,7 @@ _ERRORS = (
     (r"$\|e\|$", "0.0", "-"),
 )
 _DASHES = ("-", "--", "-.", ":")
+_UNITS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9))
 
 
 def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
@@ -135,7 +136,20 @@ def overview_figure(record: Record) -> Figure:
         *(partial(draw_joints, name=rate) for rate in RATES if rate in beyond_robot(record)),
         *(draw for draw, column in further.items() if len(column)),
     ]
-    return _draw_panels(record, panels, 2, 2.7)
+    figure = _draw_panels(record, panels, 2, 2.7)
+    figure.suptitle(title_of(record), fontsize=9)
+    return figure
+
+
+def title_of(record: Record) -> str:
+    """Name robot, path, and the limits of the joints that the commands kept."""
+    settings = record.settings
+    kept = ["position", "velocity"]
+    for kind, key in (("acceleration", "ddq_max"), ("jerk", "dddq_max")):
+        if np.isfinite(limits(record, key)).any():
+            kept.append(kind)
+    path = (settings.get("reference") or {}).get("name", "targets")
+    return f"{settings['robot']}, {path}; limits of {', '.join(kept[:-1])} and {kept[-1]}"
 
 
 def convergence_figure(record: Record) -> Figure:
@@ -175,28 +189,41 @@ def draw_path(axes: Axes, record: Record) -> None:
 def draw_joints(axes: Axes, record: Record, name: str) -> None:
     """Draw one curve a joint over time, told apart by luminance and dashes.
 
-    The name is ``"q"``, ``"dq"``, ``"acceleration"``, ``"jerk"`` or ``"torque"``; limits near the
-    curves have the color of their joint.
+    The name is ``"q"``, ``"dq"``, ``"acceleration"``, ``"jerk"`` or ``"torque"``. If the limits of
+    the joints differ, all but positions are drawn as shares of them; a position limit near the
+    curves is a mark of its joint's color at the end of the time axis.
     """
     import matplotlib
 
     symbol, quantity, limit = _JOINTS[name]
     upper = limits(record, limit)
-    bounds = np.array([limits(record, "q_lower", -np.inf) if name == "q" else -upper, upper])
+    lower = limits(record, "q_lower", -np.inf) if name == "q" else -upper
+    curves = joint_rates(record, name)[0] if name in RATES else getattr(record, name)
+    if name != "q" and np.isfinite(upper).all() and np.ptp(upper):
+        curves = 100.0 * curves / upper
+        quantity = f"{quantity.partition(' [')[0]} [% of limit]"
+        lower = np.full(record.dof, -100.0)
+        upper = -lower
     colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, record.dof))
     names = short_names(record.settings)
     labels = [symbol.format(name) if name.isdigit() else name for name in names]
-    curves = joint_rates(record, name)[0] if name in RATES else getattr(record, name)
     for joint, curve in enumerate(curves.T):
         dashes = _DASHES[joint % len(_DASHES)]
         style = {"color": colors[joint], "linestyle": dashes, "label": labels[joint]}
         _draw_curve(axes, record.t[: len(curve)], curve, **style)
     low, high = axes.get_ylim()
     margin = 0.15 * (high - low)  # a limit farther off would only flatten the curves
-    for i, joint in np.argwhere((low - margin <= bounds) & (bounds <= high + margin)):
-        line = axes.axhline(bounds[i, joint], linewidth=0.8, linestyle=(0, (8, 3)))
-        line.set_color(colors[joint] if np.ptp(bounds[i]) else "0.0")
-        line.set_label("_" if "limit" in axes.get_legend_handles_labels()[1] else "limit")
+    for bound in (lower, upper):
+        common = not np.ptp(bound)
+        for joint in np.flatnonzero((low - margin <= bound) & (bound <= high + margin)):
+            # A limit of one joint is a mark at the end of the run.
+            line = axes.axhline(bound[joint], xmin=0.0 if common else 0.94, linewidth=0.8)
+            line.set(linestyle=(0, (8, 3)), color="0.0")
+            if not common:
+                line.set(linestyle="-", linewidth=2.0, color=colors[joint])
+            line.set_label("_" if "limit" in axes.get_legend_handles_labels()[1] else "limit")
+            if common:
+                break
     label_time(axes, record, quantity, columns=4 if max(map(len, names)) < 8 else 2)
 
 
@@ -209,14 +236,14 @@ def _draw_curve(axes: Axes, t: Array, curve: Array, **line: Any) -> None:
 
 def draw_error(axes: Axes, record: Record) -> None:
     """Draw the position error's components and norm over time, in the unit that suits its size."""
-    from matplotlib.ticker import EngFormatter
-
     error = position_error(record)
+    largest = np.abs(error[np.isfinite(error)]).max(initial=0.0)
+    unit, size = next((each for each in _UNITS if largest >= each[1]), _UNITS[-1])
+    error = error / size
     curves = [*error.T, np.linalg.norm(error, axis=1)]
     for (label, color, dashes), curve in zip(_ERRORS, curves, strict=True):
         _draw_curve(axes, record.t, curve, color=color, linestyle=dashes, label=label)
-    axes.yaxis.set_major_formatter(EngFormatter("m"))
-    label_time(axes, record, "Position error")
+    label_time(axes, record, f"Position error [{unit}]")
 
 
 def draw_orientation_error(axes: Axes, record: Record) -> None:
@@ -230,7 +257,8 @@ def draw_orientation_error(axes: Axes, record: Record) -> None:
 def draw_kinetic_index(axes: Axes, record: Record) -> None:
     """Draw the kinetic index over time."""
     _draw_curve(axes, record.t[:-1], record.kinetic_index, color="0.0", label="kinetic index")
-    label_time(axes, record, r"$\dot{q}^T G \dot{q}$")
+    unit = "J" if record.settings["scheme"].get("kinetic") == "inertia" else "rad²/s²"
+    label_time(axes, record, rf"$\dot{{q}}^T G \dot{{q}}$ [{unit}]")
 
 
 def draw_residual(axes: Axes, record: Record) -> None:

@@ -53,11 +53,14 @@ TABLE2 = {
 def published(settings: Mapping[str, Any]) -> dict[str, float]:
     """Return Table I's numbers of a run of these settings, by the names of `TABLE1`.
 
-    If the run does not draw the paper's heart with one of the paper's weights, there are none.
+    If the run does not draw the paper's heart with one of the paper's weights, or has noise or
+    physics, there are none.
     """
     heart = {"name": "heart", "scale": 3.45e-3, "period": 10.0}
     weight = settings["scheme"].get("weight")
     if settings["robot"] != "iiwa7" or settings["reference"] != heart or weight not in WEIGHTS:
+        return {}
+    if settings.get("motion") == "physics" or settings.get("noise"):
         return {}
     column = WEIGHTS.index(weight)
     printed = {name: row[column] for name, row in TABLE1.items()}

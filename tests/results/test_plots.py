@@ -92,8 +92,8 @@ def test_same_bytes_elsewhere_whatever_the_users_style_and_without_pyplot(heart,
 
 def test_a_run_has_the_panels_of_what_it_has(heart):
     always = [
-        "$y$ [m]", "Joint angle [rad]", "Joint velocity [rad/s]", "Position error",
-        "Orientation error [rad]", r"$\dot{q}^T G \dot{q}$",
+        "$y$ [m]", "Joint angle [rad]", "Joint velocity [rad/s]", "Position error [nm]",
+        "Orientation error [rad]", r"$\dot{q}^T G \dot{q}$ [rad²/s²]",
     ]  # fmt: skip
     assert labels_of(heart) == always
     frame = np.zeros((11, 1, 3))
@@ -142,6 +142,21 @@ def test_curves_are_told_apart_without_colour_and_by_their_joints_names(heart):
     assert axes.get_legend_handles_labels()[1] == [*"abcdefg", "limit"]
 
 
+def test_limits_that_differ_are_one_line_for_shares_of_them():
+    limit = np.array([320.0, 320, 176, 176, 110, 40, 40])
+    torque = np.tile(0.9 * limit, (10, 1))
+    torque[5, 1] = 42.0  # beyond what joint 7 may, far from what joint 2 may
+    record = make_record(torque=torque, settings={"torque_max": limit.tolist()})
+    axes = axes_of(draw_joints, record, "torque")
+    assert axes.get_ylabel() == "Joint torque [% of limit]"
+    curves = np.array([line.get_ydata() for line in axes.lines[:7]])
+    assert curves[1].min() == pytest.approx(100 * 42 / 320)
+    assert np.delete(curves, 1, axis=0) == pytest.approx(90.0)
+    assert [line.get_ydata()[0] for line in axes.lines[7:]] == [100.0]
+    figure = overview_figure(make_record(settings={"ddq_max": [1.0] * 7}))
+    assert figure.get_suptitle() == "iiwa7, Heart; limits of position, velocity and acceleration"
+
+
 def test_each_limit_near_the_curves_has_the_color_of_its_joint(heart):
     settings = {
         "q_lower": [*[None] * 3, -2.0, *[None] * 3],
@@ -159,8 +174,8 @@ def test_a_spike_of_one_sample_is_drawn(heart):
     position = np.array(heart.position)
     position[12_345, 0] += 2e-3
     axes = axes_of(draw_error, dataclasses.replace(heart, position=position))
-    assert axes.yaxis.get_major_formatter()(2e-3) == "2 mm"
-    assert axes.dataLim.y1 == pytest.approx(2e-3, rel=1e-3)
+    assert axes.get_ylabel() == "Position error [mm]"
+    assert axes.dataLim.y1 == pytest.approx(2.0, rel=1e-3)
 
 
 def test_convergence_shows_tolerances_only_where_they_judge(heart):

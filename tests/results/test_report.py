@@ -49,6 +49,9 @@ def test_the_reports_numbers_are_the_metrics(run):
     assert table["largest position error"] == [beside, "m"]
     assert table["joint drift, start to end"][0].endswith(" (the paper's 0.0174)")
     assert published({"robot": "panda", "scheme": {}, "reference": {}}) == {}
+    heart = {"robot": "iiwa7", "scheme": {"weight": 0.2}, "reference": d.Heart().settings()}
+    assert published(heart)
+    assert published(heart | {"motion": "physics"}) == published(heart | {"noise": 0.01}) == {}
     assert table["cross-check"][0] == ("proxqp or osqp: 500 own programs checked")
     assert table["q_upper"] == ["3 (all 7)"]
     assert table["scheme"] == ["name = DoubleIndicator, weight = 0.2, kinetic = identity"]
