@@ -20,10 +20,11 @@ from .translator import Translator
 
 FLAGS = (
     *("-std=gnu11", "-O3", "-ffp-contract=off", "-fno-strict-aliasing", "-shared", "-fPIC"),
+    *("-fno-math-errno", "-fno-trapping-math"),
     *("-Wall", "-Wextra", "-Wconversion", "-Werror"),
 )
-"""Without contraction a result is that of Python's own arithmetic, to the last bit. No warning is
-off: types that do not fit are warned of."""
+"""Without contraction a result is that of Python's own arithmetic, to the last bit; nobody reads
+errno or the flags of exceptions. No warning is off: types that do not fit are warned of."""
 
 
 def build(package: Path) -> Path:

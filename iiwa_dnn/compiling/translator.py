@@ -170,7 +170,7 @@ class Function(Expressions):
         names = map(c_word, self.parameters)
         own = ["struct arena *arena"] * self.uses_arena
         own += map("".join, zip(self.types, names, strict=True))
-        return f"static {self.result.tag} {self.name}({', '.join(own) or 'void'})"
+        return f"static inline {self.result.tag} {self.name}({', '.join(own) or 'void'})"
 
     @property
     def code(self) -> str:

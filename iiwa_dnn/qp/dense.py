@@ -28,24 +28,31 @@ def row_dot(rows: Matrix, j: int, x: Vector) -> float:
 
     From `LONG` terms on four sums are added, of each fourth term: a processor forms them at once.
     """
-    size = rows.shape[1]
     row = rows[j]
-    own = x[: rows.shape[1]]
+    own = x[: row.size]
+    if row.size >= LONG:
+        return _long_dot(row, own)
     value = 0.0
-    first = 0
-    if size >= LONG:
-        two = 0.0
-        three = 0.0
-        four = 0.0
-        for k in range(size // 4):
-            value += row[4 * k] * own[4 * k]
-            two += row[4 * k + 1] * own[4 * k + 1]
-            three += row[4 * k + 2] * own[4 * k + 2]
-            four += row[4 * k + 3] * own[4 * k + 3]
-        value = (value + two) + (three + four)
-        first = size - size % 4
-    for k in range(first, size):
+    for k in range(row.size):
         value += row[k] * own[k]
+    return value
+
+
+@compiled
+def _long_dot(row: Vector, x: Vector) -> float:
+    """Compute `row_dot` of a row (n,) in four parts."""
+    one = 0.0
+    two = 0.0
+    three = 0.0
+    four = 0.0
+    for k in range(row.size // 4):
+        one += row[4 * k] * x[4 * k]
+        two += row[4 * k + 1] * x[4 * k + 1]
+        three += row[4 * k + 2] * x[4 * k + 2]
+        four += row[4 * k + 3] * x[4 * k + 3]
+    value = (one + two) + (three + four)
+    for k in range(row.size - row.size % 4, row.size):
+        value += row[k] * x[k]
     return value
 
 

@@ -465,16 +465,13 @@ def joint_bounds(
         rates: Its limits.
         periods: Periods of the step.
     """
-    _, accel, jerk, _, _, lag = rates
+    _, accel, jerk, _, _, _ = rates
     above *= periods.share
     below *= periods.share
-    # Below a limit that shrinks, the way to rest is counted at the samples.
-    vary = periods.vary or lag > 0.0
-    own = Periods(periods.dt, periods.hold, periods.longest, periods.share, vary)
     if jerk < np.inf:
-        lower, upper = _jerk_bounds(last, before, above, below, rates, own)
+        lower, upper = _jerk_bounds(last, before, above, below, rates, periods)
     elif accel < np.inf:
-        lower, upper = _acceleration_bounds(last, above, below, rates, own)
+        lower, upper = _acceleration_bounds(last, above, below, rates, periods)
     else:
         return -np.inf, np.inf
     if lower <= upper:
@@ -549,8 +546,9 @@ def _jerk_bounds(
     final = min(max(min(quickest, middle + change), bottom), top)
     jerk = _usable_jerk(jerk, deceleration, fastest, longest)
     unit = jerk * dt * dt
-    lb = min(max(last - unit * approach((last + fastest) / unit, periods.vary), first), final)
-    ub = min(max(last + unit * approach((fastest - last) / unit, periods.vary), first), final)
+    vary = periods.vary or lag > 0.0
+    lb = min(max(last - unit * approach((last + fastest) / unit, vary), first), final)
+    ub = min(max(last + unit * approach((fastest - last) / unit, vary), first), final)
     if lb > ub:
         lb = 0.5 * (lb + ub)
         ub = lb
@@ -709,16 +707,16 @@ def _ceiling_below_ramp(
     the way at constant deceleration: the lower the deceleration, the less.
     """
     fastest, accel, jerk, deceleration, ramp, lag = rates
-    dt = periods.dt
+    # Below a limit that shrinks, the way to rest is counted at the samples.
+    own = Periods(periods.dt, periods.hold, periods.longest, periods.share, True)
     for level in range(LEVELS):
         J = _usable_jerk(jerk, deceleration, fastest, periods.longest)
         A = min(deceleration, accel - J * periods.longest)
-        end = room if periods.vary else room - MARGIN * (J * dt * dt) * dt
-        end -= 0.5 * lag * lag * ramp * A / (ramp - A)
+        end = room - 0.5 * lag * lag * ramp * A / (ramp - A)
         # One that brakes by more is behind on its way.
         way = (J, A, A)
-        if level == 0 or highest(lb, last, periods, way) <= end:
-            lb = _ceiling(lb, ub, end, last, periods, way)
+        if level == 0 or highest(lb, last, own, way) <= end:
+            lb = _ceiling(lb, ub, end, last, own, way)
         deceleration *= LOWER
     return lb
 

@@ -181,7 +181,7 @@ def test_the_code_is_plain_c_and_its_memory_is_stated(
     assert set(re.findall(r"#include <(\S+)\.h>", code)) == included
     assert not re.search(r"\b(malloc|free|alloca|printf|fopen|goto|setjmp|restrict)\b", code)
     for words in (
-        "static ptrdiff_t control_step_take_step(struct arena *arena, Vector row,",
+        "static inline ptrdiff_t control_step_take_step(struct arena *arena, Vector row,",
         "/* Tighten the bounds to those of `JointLimits`, whose constants these are.",
         " * iiwa_dnn/schemes/limits.py: joint_limits */",
     ):
