@@ -7,8 +7,8 @@ joints' true positions, so that no disturbance breaks a limit.
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.control.command import FIGURES
 from iiwa_dnn.control.relaxed import Yielding, nearest_within
+from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.qp.layout import qp_views
 
@@ -43,7 +43,7 @@ def clip_command(qp: QP, dq: Vector, yielding: Yielding) -> tuple[Vector, NDArra
     if (rows @ clipped > qp.h + ROW_TOLERANCE)[of_joints].any():
         of_limits = QP(np.eye(n), np.zeros(n), G=rows[of_joints], h=qp.h[of_joints], lb=lb, ub=ub)
         views = qp_views(of_limits.data, *of_limits.sizes)
-        if not nearest_within(views, clipped, yielding, np.zeros(FIGURES)):
+        if not nearest_within(views, clipped, yielding, SolveStats.zeros()):
             clipped = np.clip(np.zeros(n), lb, ub)
     changed = ~(np.abs(dq - clipped) <= TOLERANCE)
     return clipped, changed.astype(np.int8)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.command import Command, log_of
 from iiwa_dnn.control.paths import (
     References,
     beyond_reach,
@@ -25,18 +25,10 @@ from iiwa_dnn.control.paths import (
     paths_of,
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
-from iiwa_dnn.control.state import (
-    BEFORE,
-    DELAY,
-    HALTED,
-    LAST,
-    REST,
-    ControllerState,
-    Q,
-    kept_distances,
-)
+from iiwa_dnn.control.state import ControllerState
 from iiwa_dnn.control.step import INVALID, ControlStep, take_step
-from iiwa_dnn.control.yielding import BRAKE, guard_step
+from iiwa_dnn.control.stopping import stopping_time
+from iiwa_dnn.control.yielding import BRAKE
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
@@ -145,11 +137,11 @@ class Controller:
         own = float(value) if name in ("dt", "longest_period") and value is not None else value
         object.__setattr__(self, name, own)
         self._derived = None
-        if name == "robot" and self._state.past.shape[1] != value.dof:
+        if name == "robot" and self._state.sizes[0] != value.dof:
             self._state = ControllerState(value.dof)
         # A braking motion in hand keeps the limits of before.
         if name in ("robot", "scheme") and value is not before:
-            self._state.past[REST] = 0.0
+            self._state.motion.stopping_periods = 0.0
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
@@ -173,7 +165,7 @@ class Controller:
     @property
     def delay(self) -> float:
         """Time by which the reference's clock is behind [s]."""
-        return float(self._state.past[DELAY, 0])
+        return self._state.motion.path_lag
 
     def step(
         self,
@@ -208,24 +200,24 @@ class Controller:
                 0; or both are given, or `elapsed` without a `longest_period`.
         """
         state = self._state
-        before = state.past
+        before = state.numbers
         after = before
         if self._lock._is_owned():  # type: ignore[attr-defined]
             self._turn()
         try:
             with self._lock:
-                before = state.past
+                before = state.numbers
                 command = self._compute(q, t, target, dt, elapsed)
-                after = state.next
-                state.past = after
+                after = state.next_numbers
+                state.numbers = after
                 if self.longest_period is not None:
                     state.slowed = 1.0 - command.fraction
                     state.booked = self.dt if dt is None else dt
                 return command
         except BaseException as error:
             with self._lock:
-                if state.past is after:  # interrupted before anybody got the command
-                    state.past = before
+                if state.numbers is after:  # interrupted before anybody got the command
+                    state.numbers = before
             if isinstance(error, TypeError | InvalidInputError):
                 checks.finite("t", t)
             raise
@@ -252,12 +244,12 @@ class Controller:
         with self._turn():
             state = self._state
             state.dt = state.dt or self.dt
-            past = state.next.copy()
-            past[BEFORE] = state.past[LAST]
-            past[LAST] = sent
-            past[REST] = 0.0
-            past[DELAY] = state.past[DELAY] + self.dt * (1.0 - share)
-            state.past = past
+            motion = state.next_motion.copy()
+            motion.before[:] = state.motion.last
+            motion.last[:] = sent
+            motion.stopping_periods = 0.0
+            motion.path_lag = state.motion.path_lag + self.dt * (1.0 - share)
+            state.numbers = motion.numbers
 
     def _compute(
         self,
@@ -276,27 +268,30 @@ class Controller:
             reasons = self._take_periods(step, dt, elapsed)
         layout = step.layout
         program = step.program
-        if not _is_plain(q, layout.shape):
+        if not _is_plain(q, step.shape):
             q = checks.joint_positions("q", q, self.robot.dof)
         program.kinematics.update(q)
         row = np.empty(layout.width)
-        past = state.past
+        numbers = state.numbers
         samples = step.samples and target is None
         if not samples:
-            layout.targets(row)[:] = self.targets(t - past[DELAY, 0], target, step.dt)
+            lag = state.motion.path_lag
+            log_of(row, layout.sizes).targets[:] = self.targets(t - lag, target, step.dt)
         if program.refreshed:
-            program.refresh(q, past[LAST], layout.targets(row), t, step.dt)
-        following = np.empty(step.shape)
+            targets = log_of(row, layout.sizes).targets
+            program.refresh(q, state.motion.last, targets, t, step.dt)
+        next_numbers = np.empty(step.width)
         if state.halted:
-            past = past.copy()
-            past[HALTED] = 1.0
-        network = self.solver.state_for(layout.sizes) if step.has_network else row[:0]
-        action = take_step(row, step.plan, q, past, following, network, t, samples)
+            motion = state.motion.copy()
+            motion.halts = True
+            numbers = motion.numbers
+        network = self.solver.state_for(program.sizes) if step.has_network else row[:0]
+        action = take_step(row, step.plan, q, numbers, next_numbers, network, t, samples)
         if action == INVALID:
             checks.finite("t", t)
             checks.joint_positions("q", q, self.robot.dof)
-            checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
-        state.next = following
+            checks.finite_array("target", log_of(row, layout.sizes).targets, (-1, TARGET_SIZE))
+        state.next_numbers = next_numbers
         return Command(row, layout, _ACTIONS[action], reasons)
 
     def _take_periods(
@@ -331,13 +326,13 @@ class Controller:
         """
         with self._turn():
             step = self.control_step
-            if step.plan.yielding.limits.size:
+            if step.program.rate_limits is not None:
                 return True
             step.program.kinematics.update(q)
-            following = self._state.next.copy()
-            following[LAST] = dq
-            past = np.zeros_like(following)
-            return bool(guard_step(step.plan.arrays, past, following, step.plan.yielding))
+            least = self._state.next_motion.least
+            rest = np.zeros(q.size)
+            own = step.plan.yielding
+            return bool(stopping_time(step.plan.arrays, q, rest, least, own, dq) >= 0.0)
 
     def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlStep:
         """Anchor the scheme, and at the first step warn of a start that is most likely wrong.
@@ -363,7 +358,7 @@ class Controller:
             paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
             longest = self.longest_period
             step = ControlStep(program, paths, self.solver, self.dt, policy, longest)
-            self._state.watch(step.shape, [names for names, _ in program.pairs])
+            self._state.watch([names for names, _ in program.pairs])
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
             return step
@@ -372,7 +367,8 @@ class Controller:
     def positions(self) -> Vector:
         """Joint positions of the last step [rad], (n,); without any the robot's start."""
         with self._lock:
-            return np.array(self._state.past[Q] if self._anchored else self.robot.start_posture())
+            own = self._state.motion.q if self._anchored else self.robot.start_posture()
+            return np.array(own)
 
     @property
     def program(self) -> StepProgram:
@@ -390,7 +386,7 @@ class Controller:
             if scheme is not self.scheme:
                 self._set("scheme", scheme)
             self._anchored = scheme
-            self._state.past[Q] = start.q
+            self._state.motion.q[:] = start.q
 
     def warn_of_start(self, start: Configuration, t: float, own: bool, stacklevel: int) -> None:
         """Warn of settings, a start posture or a first target that are most likely wrong, once.
@@ -464,18 +460,16 @@ class Controller:
     def placement(self, q: Vector) -> Vector:
         """Compute the placement of the first tracked frame at joint positions q (n,), (12,)."""
         with self._turn():
-            program = self.program
-            program.kinematics.update(q)
-            return program.placement
+            arrays = self.control_step.plan.arrays
+            self.program.kinematics.update(q)
+            return np.array(arrays.placements[arrays.tip])
 
     def program_at(self, q: Vector, targets: Matrix, t: float) -> QP:
         """Build the program at joint positions q (n,) [rad] for targets (k, 18)."""
         with self._turn():
-            program = self.program
-            past = self._state.past[: LAST + 2].copy()
-            past[Q] = q
-            least = kept_distances(self._state.next).copy()
-            return program.qp_at(past, targets, self.dt, t, least)
+            motion = self._state.motion
+            least = self._state.next_motion.least.copy()
+            return self.program.qp_at(q, motion.last, motion.before, targets, self.dt, t, least)
 
 
 def _is_plain(q: Any, shape: tuple[int, ...]) -> bool:

@@ -77,7 +77,7 @@ def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> 
     robot = program.robot
     if problem := robot.outside(start.q):
         yield f"the start posture {problem}"
-    for coupling in LimitNames(program, dt).conditions(start.q, program.least):
+    for coupling in LimitNames(program).conditions(start.q, program.least):
         yield f"{coupling} at the start: they come to it within the limits"
     yield from _doubt_of_gain(program, dt)
     if dt > SLOWEST:
@@ -100,7 +100,7 @@ def _doubt_of_gain(program: StepProgram, dt: float) -> Iterator[str]:
     if program.rate_limits is None:
         return
     gains = [min(task.gain, 1.0 / dt) for task in program.tasks if isinstance(task, GainTask)]
-    largest = largest_gain(program.rate_limits.numbers(program.robot), 1.0 / dt)
+    largest = largest_gain(program.rate_limits.constants(program.robot), 1.0 / dt)
     if max(gains, default=0.0) > largest * (1.0 + 1e-9):
         yield (
             f"a gain of {max(gains):.3g} 1/s is above {largest:.3g} 1/s, up to which a loop with "
@@ -126,10 +126,10 @@ def lost_rank(
         dt: Control period [s].
         sample: Returns the targets of a time [s], (k, 18).
     """
-    past = np.vstack([start.q, np.zeros((2, start.q.size))])
+    rest = np.zeros(start.q.size)
     targets = np.array([sample(t), *(sample(t + dt * 2.0**k) for k in range(DOUBLINGS))])
     near = np.abs(targets - targets[0])[..., :12].max(axis=(1, 2)) <= NEAR
-    qps = [program.qp_at(past, each, dt) for each in targets[near]]
+    qps = [program.qp_at(start.q, rest, rest, each, dt) for each in targets[near]]
     A = qps[0].A
     b = np.transpose([qp.b for qp in qps])
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=ZERO)

@@ -221,7 +221,7 @@ def _descend(
 
 def _at(program: StepProgram, q: Vector, goal: Matrix, weight: float) -> _Point:
     """Write the program at joint positions q (n,) [rad] for a goal (1, 18), and weigh its turn."""
-    qp = program.qp_at(np.array([q, 0.0 * q, 0.0 * q]), goal, np.inf)
+    qp = program.qp_at(q, 0.0 * q, 0.0 * q, goal, np.inf)
     qp.A[3:6] *= weight
     qp.b[3:6] *= weight
     error = qp.b[:6]

@@ -41,13 +41,13 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.networks.integrators.base import TOLERANCE
-from iiwa_dnn.networks.integrators.implicit import settle
+from iiwa_dnn.networks.integrators.base import SolveStats
+from iiwa_dnn.networks.integrators.implicit import solve_within
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, row_dot
-from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, copied, data_size, qp_views
+from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, copied, data_size, qp_views
 from iiwa_dnn.qp.residuals import within
-from iiwa_dnn.schemes.limits import Periods
+from iiwa_dnn.schemes.limits import MotionNumbers, Periods
 from iiwa_dnn.schemes.program import add_soft
 
 MOST_SYSTEMS = 60
@@ -92,11 +92,10 @@ class Yielding(NamedTuple):
 
     Attributes:
         weights: Weight of each task row, (p,); 0 for a row that is a limit.
-        limits: Numbers of the acceleration and jerk limits, `MotionLimits.numbers`, (8 dof,);
-            empty where there are none.
-        settings: Constants with which the network settles, ``[tol, budget]``, (2,).
-        scenes: Beginning and end, among the constants of all parts, of those of each scene that
-            braking keeps away from, (scenes, 2).
+        limits: Acceleration and jerk limits; of no joints where there are none.
+        tolerance: Tolerance of the answers.
+        budget: Linear systems after which a program counts as one without a solution.
+        scenes: Blocks of the scenes that braking keeps away from, (scenes,).
         dt: Period that the command is for [s].
         periods: Periods as limits count them.
         cubic: Whether the jerk of a joint is limited.
@@ -105,9 +104,10 @@ class Yielding(NamedTuple):
     """
 
     weights: Vector
-    limits: Vector
-    settings: Vector
-    scenes: IntMatrix
+    limits: MotionNumbers
+    tolerance: float
+    budget: int
+    scenes: IntVector
     dt: float
     periods: Periods
     cubic: bool
@@ -136,30 +136,27 @@ def largest_entry(values: Vector) -> float:
 
 @compiled
 def settled(
-    qp: QPViews,
-    settings: Vector,
-    state: Vector,
-    point: Vector,
-    figures: Vector,
+    qp: QPViews, tol: float, budget: int, state: Vector, point: Vector, stats: SolveStats
 ) -> bool:
     """Settle the network from its last state or, if need be, from a cold start.
 
     Args:
         qp: The program.
-        settings: Tolerance and budget, `Yielding.settings`, (2,).
+        tol: Tolerance.
+        budget: Largest number of linear systems.
         state: Its state, (size,), advanced; where it does not settle, cold again.
         point: The point that the state stands for, (2 n + m + p,), overwritten.
-        figures: Figures of the step's answer, (5,): the linear systems are added to the first, the
-            others are overwritten.
+        stats: Statistics of the step's answer: the linear systems are added, the time is
+            overwritten.
 
     Returns:
         Whether the point is the program's solution.
     """
     for _ in range(2):
-        systems, time, primal, dual, gap = settle(qp, 0, settings, state, point)
-        figures[0] += systems
-        figures[1] = time
-        if within(primal, dual, gap, settings[TOLERANCE]):
+        systems, time, primal, dual, gap = solve_within(qp, tol, budget, state, point)
+        stats.iterations += systems
+        stats.time = time
+        if within(primal, dual, gap, tol):
             return True
         state[:] = 0.0
     return False
@@ -167,7 +164,7 @@ def settled(
 
 @compiled
 def largest_factor(
-    qp: QPViews, yielding: Yielding, state: Vector, point: Vector, figures: Vector, retreats: bool
+    qp: QPViews, yielding: Yielding, state: Vector, point: Vector, stats: SolveStats, retreats: bool
 ) -> float:
     """Compute the largest factor of what a program asks for that its limits allow.
 
@@ -177,7 +174,7 @@ def largest_factor(
         state: State of the network that solves it, (3 n + 3 + m + p,), advanced.
         point: Point of the program with the factor as the last variable, (2 n + 2 + m + p,),
             overwritten.
-        figures: Figures of the step's answer, (5,), as of `settled`.
+        stats: Statistics of the step's answer, as of `settled`.
         retreats: Whether the factor is that of what limits ask for, negative right-hand sides h and
             those of joints that follow others, without the task; else it is the scaling factor of
             the task.
@@ -205,10 +202,8 @@ def largest_factor(
             wider.A[j, n] = -qp.b[j] / longest
         elif not retreats:
             wider.b[j] = qp.b[j]
-    settings = yielding.settings.copy()
-    if retreats:
-        settings[TOLERANCE] = max(settings[TOLERANCE], RETREAT)
-    if not settled(wider, settings, state, point, figures):
+    tol = max(yielding.tolerance, RETREAT) if retreats else yielding.tolerance
+    if not settled(wider, tol, yielding.budget, state, point, stats):
         return -1.0
     factor: float = max(point[n] / longest, 0.0)
     return 1.0 if factor >= FEASIBLE else ALMOST * factor
@@ -306,28 +301,28 @@ def note_blocking(point: Vector, n: int, m: int, extra: int, blocking: Vector) -
 
 
 @compiled
-def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, figures: Vector) -> bool:
+def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, stats: SolveStats) -> bool:
     """Move x (n,) into the bounds of a program, and on to the nearest point within its rows too.
 
-    The rows of joints that follow others hold as well, if the bounds allow it. The figures (5,) are
+    The rows of joints that follow others hold as well, if the bounds allow it. The statistics are
     those of `settled`.
 
     Returns:
         False if the inequality rows contradict the bounds: x is then within the bounds.
     """
-    if yielding.coupled and _move_within(qp, x, yielding, figures, qp.b.size):
+    if yielding.coupled and _move_within(qp, x, yielding, stats, qp.b.size):
         return True
     outside = 0
     for i in range(x.size):
         x[i] = min(max(x[i], qp.lb[i]), qp.ub[i])
     for j in range(qp.h.size):
         outside += row_dot(qp.G, j, x) > qp.h[j]
-    return outside == 0 or _move_within(qp, x, yielding, figures, 0)
+    return outside == 0 or _move_within(qp, x, yielding, stats, 0)
 
 
 @compiled
 def _move_within(
-    qp: QPViews, x: Vector, yielding: Yielding, figures: Vector, equalities: int
+    qp: QPViews, x: Vector, yielding: Yielding, stats: SolveStats, equalities: int
 ) -> bool:
     """Move x (n,) to the nearest point within bounds and rows, and the first equalities' limits."""
     n = x.size
@@ -343,7 +338,8 @@ def _move_within(
             nearest.b[j] = _rate_within(qp, j, x)
     _copy_limits(qp, nearest)
     point = np.empty(2 * n + m + equalities)
-    found = settled(nearest, yielding.settings, np.zeros(3 * n + m + equalities), point, figures)
+    state = np.zeros(3 * n + m + equalities)
+    found = settled(nearest, yielding.tolerance, yielding.budget, state, point, stats)
     # Bounds that are off by rounding may contradict the equalities: as near as they allow, then.
     if found or (equalities > 0 and all_finite(point, 0, n)):
         copied(x, point[:n])

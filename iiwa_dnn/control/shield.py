@@ -25,6 +25,7 @@ import math
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,9 +33,10 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.state import BEFORE, LAST, YIELDS, ControllerState
+from iiwa_dnn.control.state import ControllerState
 from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
@@ -57,14 +59,15 @@ from iiwa_dnn.schemes import (
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.limits import (
     MotionLimits,
+    MotionNumbers,
     Periods,
+    Rates,
     arriving,
     braking,
     checked_longest,
     constant_periods,
     joint_bounds,
     joint_rates,
-    positive_rates,
     stated_periods,
 )
 from iiwa_dnn.schemes.step import TARGET_SIZE, StepViews
@@ -93,8 +96,7 @@ JOINTS = ""
 """Frame of requests for all joints."""
 
 REASONS = ("", "no wish", "wish too old", "wish not finite", "halted")
-"""Reasons why a request to rest counts; the first is none."""
-NO_WISH, TOO_OLD, NOT_FINITE, HALTED = range(1, 5)
+"""Words of each `Reason`."""
 
 TAKEN_OVER = "measured positions taken over"
 
@@ -102,8 +104,15 @@ IS_CUT = "request cut"
 
 SINGULAR = "singular posture"
 
-AGE, REASON, BEGUN, TAKEN, CUTS, FLAGS = range(6)
-"""Numbers of `ShieldState.flags`, and how many they are."""
+
+class Reason(IntEnum):
+    """Reasons why a request to rest counts."""
+
+    NONE = 0
+    NO_REQUEST = 1
+    TIMED_OUT = 2
+    NOT_FINITE = 3
+    HALTED = 4
 
 
 @compiled
@@ -165,67 +174,96 @@ class TwistTask(PoseTask):
     kernel = staticmethod(twist_rows)
 
 
+class Flags(Record):
+    """State of a request.
+
+    Attributes:
+        age: Time since it came [s].
+        reason: `Reason` why it is one to rest.
+        begun: Whether there was a first step.
+        resynchronised: Whether measured positions were taken over.
+        is_cut: Whether it is cut.
+    """
+
+    age: float
+    reason: int
+    begun: bool
+    resynchronised: bool
+    is_cut: bool
+
+
+class ShieldSettings(Record):
+    """Settings of a shield.
+
+    Attributes:
+        period: Last period [s].
+        timeout: Time for which a request counts [s].
+        tracking_error: Difference of positions above which measured ones are taken over [rad].
+        delay: Time by which the arm is behind its commands [s].
+    """
+
+    period: float
+    timeout: float
+    tracking_error: float
+    delay: float
+
+
 class ShieldState(NamedTuple):
     """Commanded positions and the request that counts, which a step overwrites.
 
     Attributes:
         positions: Joint positions [rad], (n,).
-        wish: The request, (k,): zero without one.
-        flags: Time since the request came [s], its reason if it is not the given one, by its number
-            in `REASONS`, 1 after the first step, 1 if measured positions were taken over, and 1 if
-            the request is cut, (5,).
+        request: The request, (k,): zero without one.
+        flags: State of the request.
     """
 
     positions: Vector
-    wish: Vector
-    flags: Vector
+    request: Vector
+    flags: Flags
 
 
 @compiled
-def take_positions(q: Vector, state: ShieldState, settings: Vector) -> None:
-    """Take measured positions q (n,) [rad] over at the first step, or if they are far.
+def take_request(
+    q: Vector, request: Vector, given: bool, state: ShieldState, settings: ShieldSettings
+) -> bool:
+    """Take measured positions q (n,) [rad] and a request (k,) over.
 
-    The settings (3,) are the last period [s], timeout [s] and tracking error [rad].
-    """
-    far = 0
-    for i in range(q.size):
-        far += not abs(q[i] - state.positions[i]) <= settings[2]
-    state.flags[TAKEN] = 0.0
-    if far > 0 or state.flags[BEGUN] == 0.0:
-        state.flags[TAKEN] = state.flags[BEGUN]
-        state.flags[BEGUN] = 1.0
-        copied(state.positions, q)
-
-
-@compiled
-def take_wish(wish: Vector, given: bool, state: ShieldState, settings: Vector) -> bool:
-    """Take a request (k,) over if one is given, else the last one, or one to rest for a reason.
-
-    The settings are those of `take_positions`.
+    The positions count at the first step, or if they are far. If no request is given, the last one
+    counts, or one to rest for a reason.
 
     Returns:
         Whether the request that counts is that of the last step.
     """
     flags = state.flags
-    flags[AGE] += settings[0]
-    if given and flags[REASON] != HALTED:
-        flags[AGE] = 0.0
-        flags[REASON] = 0.0 if all_finite(wish, 0, wish.size) else NOT_FINITE
-    if flags[REASON] == 0.0 and flags[AGE] > settings[1] + 0.5 * settings[0]:
-        flags[REASON] = TOO_OLD
+    far = 0
+    for i in range(q.size):
+        far += not abs(q[i] - state.positions[i]) <= settings.tracking_error
+    flags.resynchronised = False
+    if far > 0 or not flags.begun:
+        flags.resynchronised = flags.begun
+        flags.begun = True
+        copied(state.positions, q)
+    flags.age += settings.period
+    if given and flags.reason != Reason.HALTED:
+        flags.age = 0.0
+        finite = all_finite(request, 0, request.size)
+        flags.reason = Reason.NONE if finite else Reason.NOT_FINITE
+    if flags.reason == Reason.NONE and flags.age > settings.timeout + 0.5 * settings.period:
+        flags.reason = Reason.TIMED_OUT
     other = 0
-    for i in range(wish.size):
-        now = wish[i] if flags[REASON] == 0.0 else 0.0
-        other += now != state.wish[i]
-        state.wish[i] = now
+    for i in range(request.size):
+        now = request[i] if flags.reason == Reason.NONE else 0.0
+        other += now != state.request[i]
+        state.request[i] = now
     return other == 0
 
 
 @compiled
 def come_nearer(
     state: ShieldState,
-    past: Matrix,
-    limits: Vector,
+    last: Vector,
+    before: Vector,
+    limits: MotionNumbers,
     periods: Periods,
     reaches: bool,
     held: bool,
@@ -239,37 +277,38 @@ def come_nearer(
 
     Args:
         state: The request, and where the joints are.
-        past: `ControllerState.past`, (8 + k, n).
-        limits: `MotionLimits.numbers`, (8 n,).
+        last: Last command [rad/s], (n,).
+        before: Command before it [rad/s], (n,).
+        limits: Limits of the joints.
         periods: Periods of the step.
         reaches: Whether the request is one for positions.
         held: Whether it is that of the last step.
         dq: The velocities, overwritten.
     """
-    n = dq.size
-    state.flags[CUTS] = 0.0
-    for i in range(n):
-        wish = state.wish[i]
-        left = wish - state.positions[i]
-        above = limits[n + i] - state.positions[i]
-        below = state.positions[i] - limits[i]
-        rates = joint_rates(limits, n, i)
-        most = CUT * min(rates[0], FASTEST)
+    state.flags.is_cut = False
+    for i in range(dq.size):
+        wanted = state.request[i]
+        left = wanted - state.positions[i]
+        above = limits.upper[i] - state.positions[i]
+        below = state.positions[i] - limits.lower[i]
+        rates = joint_rates(limits, i)
+        most = CUT * min(rates.velocity, FASTEST)
         if reaches:
             above = left if left >= 0.0 else np.inf
             below = -left if left < 0.0 else np.inf
-            rates = (rates[0], rates[1], rates[2], rates[1], np.inf, 0.0)
-            wish = min(max(left / periods.hold, -most), most)
-        elif abs(wish) > most:
-            wish = math.copysign(most, wish)
-            state.flags[CUTS] = 1.0
-        lower, upper = joint_bounds(past[LAST, i], past[BEFORE, i], above, below, rates, periods)
+            accel = rates.acceleration
+            rates = Rates(rates.velocity, accel, rates.jerk, accel, np.inf, 0.0)
+            wanted = min(max(left / periods.hold, -most), most)
+        elif abs(wanted) > most:
+            wanted = math.copysign(most, wanted)
+            state.flags.is_cut = True
+        lower, upper = joint_bounds(last[i], before[i], above, below, rates, periods)
         if reaches:
-            wish = min(max(wish, lower), upper)
-            wish = arriving(past[LAST, i], past[BEFORE, i], left, wish, rates, periods)
-        elif held or wish < lower or wish > upper:
-            wish += braking(past[LAST, i] - wish, -np.inf, np.inf, limits[4 * n + i], periods)
-        dq[i] = wish
+            wanted = min(max(wanted, lower), upper)
+            wanted = arriving(last[i], before[i], left, wanted, rates, periods)
+        elif held or wanted < lower or wanted > upper:
+            wanted += braking(last[i] - wanted, -np.inf, np.inf, limits.jerk[i], periods)
+        dq[i] = wanted
 
 
 def under_way(sent: Matrix, delay: float) -> tuple[Vector, Matrix]:
@@ -288,12 +327,9 @@ def under_way(sent: Matrix, delay: float) -> tuple[Vector, Matrix]:
     return way, sent[ages < delay]
 
 
-def _words_of(flags: Vector) -> tuple[str, ...]:
-    """Return the reasons that the flags (5,) of a state hold, in words."""
-    _, reason, _, taken, cuts = flags.tolist()
-    if not (reason or taken or cuts):
-        return ()
-    words = (REASONS[int(reason)], TAKEN_OVER * int(taken), IS_CUT * int(cuts))
+def _words_of(flags: Flags) -> tuple[str, ...]:
+    """Return the reasons that the flags of a state hold, in words."""
+    words = (REASONS[flags.reason], TAKEN_OVER * flags.resynchronised, IS_CUT * flags.is_cut)
     return tuple(filter(None, words))
 
 
@@ -421,8 +457,8 @@ class Shield:
         dt: Control period [s].
         longest_period: Longest control period where periods vary [s]; None: they do not.
         limits: Limits that every command keeps.
-        motion: Their numbers for the joints, `MotionLimits.numbers`, (8 n,).
-        settings: Control period [s], timeout [s], tracking error [rad], delay [s], (4,).
+        motion: Their numbers for the joints.
+        settings: Control period, timeout, tracking error and delay.
     """
 
     def __init__(
@@ -462,16 +498,15 @@ class Shield:
         self.dt = checks.positive("dt", dt)
         self.longest_period = checked_longest(longest_period, self.dt)
         self._periods = constant_periods(self.dt)
-        self.settings = np.array(
-            [
-                self.dt,
-                positive_rates("timeout", timeout),
-                checks.not_negative("tracking_error", tracking_error),
-                checks.not_negative("delay", delay),
-            ]
-        )
+        self.settings = ShieldSettings.zeros()
+        self.settings.period = self.dt
+        if timeout != math.inf:
+            checks.positive("timeout", timeout)
+        self.settings.timeout = timeout
+        self.settings.tracking_error = checks.not_negative("tracking_error", tracking_error)
+        self.settings.delay = checks.not_negative("delay", delay)
         rates = own_rate_limits(robot)
-        self.motion = MotionLimits(rates).numbers(robot)
+        self.motion = MotionLimits(rates).constants(robot)
         self.limits: list[Limit] = [JointLimits(), *rates]
         if obstacles is not None:
             watched = CollisionAvoidance(obstacles, distance=distance, left_out=left_out)
@@ -494,21 +529,21 @@ class Shield:
     @property
     def delay(self) -> float:
         """Time by which the arm is behind its commands [s]."""
-        return float(self.settings[3])
+        return self.settings.delay
 
     def reset(self) -> None:
         """Forget requests, a halt and the commands: the arm stands where it is measured next."""
         n = self.robot.dof
         with self._lock:
             self._kept.rest()
-            self._state = ShieldState(np.zeros(n), np.zeros(max(n, TWIST)), np.zeros(FLAGS))
-            self._state.flags[REASON] = NO_WISH
+            self._state = ShieldState(np.zeros(n), np.zeros(max(n, TWIST)), Flags.zeros())
+            self._state.flags.reason = Reason.NO_REQUEST
             self._memory = Memory("dq", JOINTS, 0.0, self.dt, np.zeros((0, 1 + n)))
 
     def halt(self) -> None:
         """Brake from now on, whatever is requested, until `reset`."""
         with self._lock:
-            self._state.flags[REASON] = HALTED
+            self._state.flags.reason = Reason.HALTED
 
     def warm_up(self, q: ArrayLike, frames: Sequence[str] = ()) -> None:
         """Lay the programs out ahead, so that the first step is as quick as the others.
@@ -559,13 +594,14 @@ class Shield:
         wishes = {"dq": dq, "twist": twist, "position": position}
         given = {kind: value for kind, value in wishes.items() if value is not None}
         with self._lock:
-            kept = ShieldState(*[part.copy() for part in self._state])
-            before = (self._kept.past, kept, self._memory)
+            positions, request, flags = self._state
+            kept = ShieldState(positions.copy(), request.copy(), flags.copy())
+            before = (self._kept.numbers, kept, self._memory)
             try:
                 return self._step(q, given, frame, dt, elapsed)
             except BaseException:  # refused, or interrupted before anybody got the command
-                halted = self._state.flags[REASON] == HALTED
-                self._kept.past, self._state, self._memory = before
+                halted = self._state.flags.reason == Reason.HALTED
+                self._kept.numbers, self._state, self._memory = before
                 if halted:
                     self.halt()
                 raise
@@ -587,10 +623,11 @@ class Shield:
             if elapsed is not None:
                 self._book(periods.dt)
             self._kept.set_period(periods.dt)
-            settings = np.append(self._memory.period, settings[1:])
+            settings = settings.copy()
+            settings.period = self._memory.period
         kind, seen, t, _, sent = self._memory
-        if settings[3] > 0.0:
-            way, sent = under_way(sent, settings[3])
+        if settings.delay > 0.0:
+            way, sent = under_way(sent, settings.delay)
             measured += way
         if self.longest_period is not None and dt is None and elapsed is None:
             # Nobody says for how long the last command was held.
@@ -600,19 +637,19 @@ class Shield:
         asked = (kind, seen)
         held = self._take(measured, given, settings)
         positions, wish, flags = self._state
-        if flags[REASON]:
+        if flags.reason:
             kind, seen = "dq", JOINTS
         controller = self.controller(seen)
         target = self._target(controller, kind, held, periods)
         command = controller.step(positions, t, target, dt=dt, elapsed=elapsed)
         # A request that can be had again is had at once.
-        self._kept.past[YIELDS] = 0.0
+        self._kept.motion.yields = False
         velocity = wish[: positions.size].copy() if kind == "dq" else None
         reasons = (*_words_of(flags), *command.reasons)
         decision = ShieldCommand(command.dq, velocity, reasons, command, self, t, periods.dt)
         hold = controller.control_step.dt
         positions += hold * command.dq
-        if settings[3] > 0.0:
+        if settings.delay > 0.0:
             sent = np.vstack([np.append(hold, command.dq), sent])
         self._memory = Memory(*asked, t + hold, hold, sent)
         return decision
@@ -621,21 +658,20 @@ class Shield:
         """Count the last command as one that was held for so long [s]."""
         kind, frame, t, period, sent = self._memory
         positions = self._state.positions
-        positions += (elapsed - period) * self._kept.past[LAST]
+        positions += (elapsed - period) * self._kept.motion.last
         sent = sent.copy()
         sent[:1, 0] = elapsed
         self._memory = Memory(kind, frame, t + elapsed - period, elapsed, sent)
 
-    def _take(self, q: Vector, given: dict[str, ArrayLike], settings: Vector) -> bool:
+    def _take(self, q: Vector, given: dict[str, ArrayLike], settings: ShieldSettings) -> bool:
         """Take positions and a request over; return whether it is that of the last step."""
         if len(given) > 1:
             raise InvalidInputError(" and ".join(given), "are several wishes")
-        wish = self._state.wish.copy()
+        wish = self._state.request.copy()
         for kind, value in given.items():
             size = TWIST if kind == "twist" else q.size
             wish[:size] = checks.array(kind, value, (size,))
-        take_positions(q, self._state, settings)
-        held: bool = take_wish(wish, bool(given), self._state, settings)
+        held: bool = take_request(q, wish, bool(given), self._state, settings)
         return held
 
     def controller(self, frame: str = JOINTS) -> Controller:
@@ -673,22 +709,25 @@ class Shield:
         state = controller.solver.state_for(program.sizes)
         state[:] = 0.0
         aim = state[: self.robot.dof]
-        past = self._kept.past
-        come_nearer(self._state, past, self.motion, periods, kind == "position", held, aim)
+        motion = self._kept.motion
+        reaches = kind == "position"
+        come_nearer(
+            self._state, motion.last, motion.before, self.motion, periods, reaches, held, aim
+        )
         targets = np.zeros((len(frames), TARGET_SIZE))
         targets.reshape(-1)[: aim.size] = aim
         return dict(zip(frames, map(Target.from_data, targets), strict=True))
 
     def _cut_twist(self, frame: str) -> Vector:
         """Return the twist that is requested of a frame, (6,), cut where no joints can do it."""
-        v = self._state.wish[:TWIST].copy()
+        v = self._state.request[:TWIST].copy()
         size = np.abs(v).max()
-        self._state.flags[CUTS] = 0.0
+        self._state.flags.is_cut = False
         if size > CUT:
             jacobian = Configuration(self.robot, self._state.positions).frame(frame).jacobian
             fastest = np.minimum(self.robot.dq_max, FASTEST)
             most = CUT * max((np.abs(jacobian) @ fastest).max(), 1.0)
             if size > most:
                 v *= most / size
-                self._state.flags[CUTS] = 1.0
+                self._state.flags.is_cut = True
         return v

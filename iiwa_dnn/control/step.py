@@ -5,7 +5,8 @@ enters it once a step.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from enum import IntEnum
 from functools import partial
 from typing import NamedTuple
 
@@ -17,44 +18,33 @@ from iiwa_dnn.control.command import (
     ADVANCED,
     NOT_FINITE,
     NOT_SETTLED,
-    PAST,
     SOLVED,
-    RowLayout,
-    RowViews,
+    StepLog,
+    lay_out_log,
+    log_of,
     note_command,
-    row_views,
 )
 from iiwa_dnn.control.relaxed import Yielding, largest_entry, relaxed_size
-from iiwa_dnn.control.state import (
-    BEFORE,
-    DELAY,
-    HALTED,
-    LAST,
-    REST,
-    YIELDS,
-    Q,
-    kept_distances,
-    rows_of,
-)
+from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.yielding import (
     BRAKE,
     NONE,
+    OWN,
     guard_step,
     make_yielding,
     yield_step,
 )
 from iiwa_dnn.networks.integrators.base import (
-    BUDGET,
-    DURATION,
-    TOLERANCE,
+    AnswerSettings,
     CompiledAnswer,
     Settled,
+    SolveStats,
     enter_answer,
 )
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.qp.dense import all_finite
-from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, copied, qp_views
+from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, copied
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.base import Ahead, enter_path
@@ -62,15 +52,22 @@ from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import MEET
 from iiwa_dnn.schemes.limits import (
-    STATED,
     JointLimits,
     MotionLimits,
+    MotionNumbers,
     Periods,
+    PositionNumbers,
     check_ranges,
     checked_longest,
     constant_periods,
 )
-from iiwa_dnn.schemes.program import LimitNames, ProgramArrays, StepProgram, assemble
+from iiwa_dnn.schemes.program import (
+    LimitNames,
+    ProgramArrays,
+    StepProgram,
+    assemble,
+    program_views,
+)
 
 FEASIBLE_BUDGET = 60.0
 """Linear systems after which a program with acceleration or jerk limits counts as infeasible."""
@@ -79,19 +76,44 @@ INVALID = -1
 """Action at targets that are not finite, or joint positions that are none: nothing is changed."""
 
 
+class PathColumn(IntEnum):
+    """Columns of the table of paths: address, whether it is seen ahead, its constants' ends."""
+
+    ADDRESS = 0
+    AHEAD = 1
+    START = 2
+    STOP = 3
+
+
+class Paths(NamedTuple):
+    """Compiled paths of the tracked frames.
+
+    Attributes:
+        table: A row for each, (k, 4), by `PathColumn`.
+        constants: Base and constants of each, (size,).
+        period: Control period [s].
+    """
+
+    table: IntMatrix
+    constants: Vector
+    period: float
+
+
 class StepPlan(NamedTuple):
     """Layout of a control step.
 
     Attributes:
         arrays: Arrays with which the program is written.
-        ends: `RowLayout.ends`, (12,).
+        network: The network's answer.
+        paths: Paths that are sampled.
         yielding: What relaxed programs need beside them.
         relaxed: States of the networks of relaxed programs, (`relaxed_size`,), warm starts.
         policy: Action that the policy asks for at a step without a solution; `BRAKE`: none.
     """
 
     arrays: ProgramArrays
-    ends: IntVector
+    network: CompiledAnswer
+    paths: Paths
     yielding: Yielding
     relaxed: Vector
     policy: int
@@ -102,8 +124,9 @@ class ControlStep:
 
     Attributes:
         program: The scheme laid out for the robot.
-        layout: Columns of the rows that are written.
-        shape: Shape of the states from step to step, (8 + k, dof).
+        layout: Layout of the logs that are written.
+        shape: Shape of joint positions, (dof,).
+        width: Length of the states from step to step, `MotionState`.
         dt: Period that the next command is for [s].
         steady: The same where periods do not vary, else NaN.
         plan: Arrays and settings that stay the same from step to step.
@@ -137,22 +160,34 @@ class ControlStep:
         """
         checked_longest(longest, dt)
         self.program = program
-        frames = len(program.target_frames)
-        names = LimitNames(program, dt)
-        pairs = program.least.size
-        self.shape = (rows_of(pairs, program.robot.dof), program.robot.dof)
-        self.layout = RowLayout(program.sizes, program.robot.dof, frames, names, pairs)
-        self.has_network = self._add_network(solver, dt, policy == BRAKE)
-        self.samples = self._add_paths(references, dt) and not program.reads_targets
         arrays = program.arrays(dt)
+        sizes = arrays.sizes
+        self.shape = (sizes.joints,)
+        self.width = MotionState.width(sizes.joints, sizes.pairs)
+        self.layout = lay_out_log(sizes, LimitNames(program), dt)
+        lags = policy == BRAKE
+        # A subclass that solves in a way of its own is asked, not bypassed.
+        own = (
+            solver.compiled_answer(program.sizes, lags * dt) if type(solver) is DNNSolver else None
+        )
+        self.has_network = own is not None
+        network = own or _asked(solver, program.sizes, lags * dt)
+        self._rate = network.settings.duration / dt  # 0 where the network solves
+        if program.rate_limits is not None:
+            # A program that a few systems do not solve most likely has no solution.
+            network.settings.budget = min(network.settings.budget, FEASIBLE_BUDGET)
+        paths = _compiled_paths(references, program.target_frames, dt)
+        self.samples = paths is not None and not program.reads_targets
         yielding = make_yielding(program, solver.tol, dt, self.has_network)
         relaxed = np.zeros(relaxed_size(program.sizes))
-        self.plan = StepPlan(arrays, self.layout.ends, yielding, relaxed, policy)
-        if yielding.limits.size:
+        none = Paths(np.zeros((0, len(PathColumn)), dtype=np.int64), np.zeros(0), dt)
+        self.plan = StepPlan(arrays, network, paths or none, yielding, relaxed, policy)
+        if program.rate_limits is not None:
             check_ranges(yielding.limits, 1.0 / (longest or dt))
         if longest is not None:
-            for start, _ in program.constants_of(JointLimits):
-                program.constants[start] = min(program.constants[start], 1.0 / longest)
+            for constants in program.constants_of(JointLimits):
+                limits = PositionNumbers.of(constants)
+                limits.gain = min(limits.gain, 1.0 / longest)
         self._varies = longest is not None
         self.set_periods(dt, constant_periods(dt))
 
@@ -165,49 +200,45 @@ class ControlStep:
         """
         self.dt = dt
         self.steady = math.nan if self._varies else dt
-        self.layout = self.layout.at_periods(periods)
+        self.layout = self.layout._replace(periods=periods)
         arrays = self.plan.arrays._replace(rate=1.0 / dt)
+        paths = self.plan.paths._replace(period=dt)
         yielding = self.plan.yielding._replace(dt=dt, periods=periods)
-        self.plan = self.plan._replace(arrays=arrays, yielding=yielding)
-        self.program.constants[self._duration_at] = dt * self._duration_rate
+        self.plan = self.plan._replace(arrays=arrays, paths=paths, yielding=yielding)
+        self.plan.network.settings.duration = dt * self._rate
         if periods.vary:
-            for _, stop in self.program.constants_of(MotionLimits):
-                self.program.constants[stop - STATED : stop] = periods[:STATED]
+            for constants in self.program.constants_of(MotionLimits):
+                limits = MotionNumbers.of(constants)
+                limits.dt, limits.hold, limits.longest, limits.share, _ = periods
 
-    def _add_network(self, solver: DNNSolver, dt: float, lags: bool) -> bool:
-        """Add the network's entry to the table; return whether the network is compiled."""
-        program = self.program
-        answer = None
-        # A subclass that solves in a way of its own is asked, not bypassed.
-        if type(solver) is DNNSolver:
-            answer = solver.compiled_answer(program.sizes, lags * dt)
-        compiled = answer is not None
-        if answer is None:
-            address = enter_answer.address(partial(ask, solver, program.sizes))
-            answer = CompiledAnswer(address, 0, np.array([solver.tol, np.inf, lags * dt]))
-        if program.rate_limits is not None:
-            # A program that a few systems do not solve most likely has no solution.
-            answer.constants[BUDGET] = min(answer.constants[BUDGET], FEASIBLE_BUDGET)
-        self._duration_at = program.constants.size + DURATION
-        self._duration_rate = answer.constants[DURATION] / dt  # 0 where the network settles
-        program.append(answer.address, answer.constants, answer.rates)
-        return compiled
 
-    def _add_paths(self, references: Mapping[str, Reference], dt: float) -> bool:
-        """Add an entry for each reference; return whether all of them are compiled."""
-        frames = self.program.target_frames
-        seen = [references[name] for name in frames if name in references]
-        paths = [path.along if isinstance(path, Ahead) else path for path in seen]
-        if len(paths) < len(frames) or not all(path.compiled for path in paths):
-            return False
-        if any(isinstance(path, Ahead) and path.dt != dt for path in seen):
-            return False
-        for path, other in zip(paths, seen, strict=True):
-            constants = np.concatenate([path.base, path.constants])
-            self.program.append(
-                enter_path.address(path.compiled), constants, int(path is not other)
-            )
-        return True
+def _asked(solver: DNNSolver, sizes: Sizes, duration: float) -> CompiledAnswer:
+    """Return the answer of a solver that is not compiled."""
+    address = enter_answer.address(partial(ask, solver, sizes))
+    settings = AnswerSettings.zeros(0)
+    settings.tolerance = solver.tol
+    settings.budget = np.inf
+    settings.duration = duration
+    return CompiledAnswer(address, 0, settings)
+
+
+def _compiled_paths(
+    references: Mapping[str, Reference], frames: Sequence[str], dt: float
+) -> Paths | None:
+    """Return the paths of all frames, if all of them are compiled; else None."""
+    seen = [references[name] for name in frames if name in references]
+    paths = [path.along if isinstance(path, Ahead) else path for path in seen]
+    if len(paths) < len(frames) or not all(path.compiled for path in paths):
+        return None
+    if any(isinstance(path, Ahead) and path.dt != dt for path in seen):
+        return None
+    constants = [np.concatenate([path.base, path.constants]) for path in paths]
+    stops = np.cumsum([own.size for own in constants])
+    rows = [
+        (enter_path.address(path.compiled), path is not other, stop - own.size, stop)
+        for path, other, own, stop in zip(paths, seen, constants, stops, strict=True)
+    ]
+    return Paths(np.array(rows, dtype=np.int64), np.concatenate(constants), dt)
 
 
 def ask(
@@ -215,7 +246,7 @@ def ask(
     sizes: Sizes,
     qp: QPViews,
     rates: int,
-    constants: Vector,
+    settings: AnswerSettings,
     state: Vector,
     point: Vector,
 ) -> Settled:
@@ -224,8 +255,8 @@ def ask(
     It keeps its state itself, and its duration is in seconds.
     """
     program = QP.from_data(np.concatenate([part.ravel() for part in qp]), sizes)
-    if constants[DURATION] > 0.0:
-        solution = solver.advance(program, float(constants[DURATION]))
+    if settings.duration > 0.0:
+        solution = solver.advance(program, settings.duration)
     else:
         solution = solver.solve(program)
     point[:] = solution.point
@@ -239,8 +270,8 @@ def take_step(
     row: Vector,
     plan: StepPlan,
     q: Vector,
-    past: Matrix,
-    following: Matrix,
+    numbers: Vector,
+    next_numbers: Vector,
     state: Vector,
     t: float,
     samples: bool,
@@ -251,11 +282,11 @@ def take_step(
     or the time are not finite, or joint positions beyond 2^20 rad, nothing but the row is written.
 
     Args:
-        row: The row, (width,), with the targets unless they are sampled.
+        row: The log, (width,), with the targets unless they are sampled.
         plan: What the step is laid out with.
         q: Joint positions [rad], (dof,), that the kinematics are at.
-        past: `ControllerState.past`, (8 + k, dof); its joint positions are overwritten.
-        following: The same for the next step, overwritten.
+        numbers: The state of the motion, `MotionState`, (k,); its joint positions are overwritten.
+        next_numbers: The same for the next step, (k,), overwritten.
         state: The network's state, (size,), advanced.
         t: Time [s].
         samples: Whether the references are asked for the targets.
@@ -264,105 +295,116 @@ def take_step(
         The action that was taken, or `INVALID`.
     """
     arrays = plan.arrays
-    table = arrays.table
-    views = row_views(row, plan.ends, table[0, 3])
+    sizes = arrays.sizes
+    log = log_of(row, sizes)
+    motion_state = MotionState.of(numbers, sizes.joints, sizes.pairs)
+    next_motion_state = MotionState.of(next_numbers, sizes.joints, sizes.pairs)
     if samples:
-        sample_targets(arrays, t - past[DELAY, 0], views.targets)
-    first = row.size - views.targets.size
+        sample_targets(plan.paths, t - motion_state.path_lag, log.targets)
     finite = math.isfinite(t)
     for i in range(q.size):
         finite = finite and abs(q[i]) <= LARGEST
-    if not finite or not all_finite(row, first, row.size):
+    if not finite or not all_finite(row, row.size - log.targets.size, row.size):
         return INVALID
-    copied(past[Q], q)
-    copied(following.reshape(following.size), past.reshape(past.size))
-    copied(following[BEFORE], past[LAST])
-    following[REST, 0] = 0.0
-    following[YIELDS, 0] = 0.0
-    assemble(views.program, arrays, past, kept_distances(following), views.targets, t)
-    _note_instant(views, arrays, past, following)
-    halted = past[HALTED, 0] != 0.0 or largest_entry(views.least) == MEET
-    if past[YIELDS, 0] == 0.0 and not halted and _answer(views, arrays, state):
-        note_command(views, following, views.point, plan.yielding.dt)
-        if guard_step(arrays, past, following, plan.yielding):
+    copied(motion_state.q, q)
+    copied(next_numbers, numbers)
+    copied(next_motion_state.before, motion_state.last)
+    next_motion_state.stopping_periods = 0.0
+    next_motion_state.yields = False
+    assemble(
+        log.program,
+        arrays,
+        q,
+        motion_state.last,
+        motion_state.before,
+        next_motion_state.least,
+        log.targets,
+        t,
+    )
+    _note_instant(log, arrays, motion_state, next_motion_state)
+    halted = motion_state.halts or largest_entry(log.least) == MEET
+    if not motion_state.yields and not halted and _answer(log, arrays, plan.network, state):
+        note_command(log, next_motion_state, log.point, plan.yielding.dt)
+        if guard_step(arrays, motion_state, next_motion_state, plan.yielding):
             return NONE
     policy = BRAKE if halted else plan.policy
-    return yield_step(views, arrays, past, following, plan.yielding, plan.relaxed, policy)
+    return yield_step(
+        log, arrays, motion_state, next_motion_state, plan.yielding, plan.relaxed, policy
+    )
 
 
 @compiled
-def _note_instant(views: RowViews, arrays: ProgramArrays, past: Matrix, following: Matrix) -> None:
-    """Note what the program in a row was built at, and that it is not answered yet."""
-    table = arrays.table
-    dof = table[0, 3]
-    qp = qp_views(views.program, table[0, 0], table[0, 1], table[0, 2])
-    copied(views.past.reshape(PAST * dof), past[:PAST].reshape(PAST * dof))
-    copied(views.bounds[0], qp.lb[:dof])
-    copied(views.bounds[1], qp.ub[:dof])
-    copied(views.placement, arrays.placements[table[0, 5]])
-    copied(views.least, kept_distances(following)[: views.least.size])
-    views.figures[:] = 0.0
-    views.decision[:] = 0.0
-    views.blocking[:] = 0.0
+def _note_instant(
+    log: StepLog, arrays: ProgramArrays, motion_state: MotionState, next_motion_state: MotionState
+) -> None:
+    """Note what a program was built at, and that it is not answered yet."""
+    qp = program_views(log.program, arrays.sizes)
+    copied(log.q, motion_state.q)
+    copied(log.last, motion_state.last)
+    copied(log.before, motion_state.before)
+    copied(log.lower, qp.lb[: log.lower.size])
+    copied(log.upper, qp.ub[: log.upper.size])
+    copied(log.placement, arrays.placements[arrays.tip])
+    copied(log.least, next_motion_state.least)
+    log.stats.numbers[:] = 0.0
+    log.blocking[:] = 0.0
+    log.fraction = 0.0
+    log.status = SOLVED
+    log.kind = OWN
 
 
 @compiled
-def _answer(views: RowViews, arrays: ProgramArrays, state: Vector) -> bool:
-    """Ask the network for the answer to the program in a row, and note it.
+def _answer(log: StepLog, arrays: ProgramArrays, network: CompiledAnswer, state: Vector) -> bool:
+    """Ask the network for the answer to the program of a log, and note it.
 
     Returns:
         False if it did not settle or diverged; its state (size,) is then as it was.
     """
-    table = arrays.table
-    entry = table[1 + table[0, 4]]
-    own = arrays.constants[entry[4] : entry[5]]
-    qp = qp_views(views.program, table[0, 0], table[0, 1], table[0, 2])
+    qp = program_views(log.program, arrays.sizes)
     before = state.copy()
-    figures = views.figures
-    figures[0], figures[1], figures[2], figures[3], figures[4] = enter_answer(
-        entry[1], qp, entry[2], own, state, views.point
+    stats = log.stats
+    stats.iterations, stats.time, stats.primal, stats.dual, stats.gap = enter_answer(
+        network.address, qp, network.rates, network.settings, state, log.point
     )
-    views.decision[1] = 1.0
-    views.decision[2] = status_of(figures, own, state)
-    if views.decision[2] >= NOT_SETTLED:
+    log.fraction = 1.0
+    log.status = status_of(stats, network.settings, state)
+    if log.status >= NOT_SETTLED:
         copied(state, before)
         return False
     return True
 
 
 @compiled
-def status_of(figures: Vector, own: Vector, state: Vector) -> int:
-    """Judge an answer by its figures (5,); one that was advanced by its state (size,) too.
+def status_of(stats: SolveStats, settings: AnswerSettings, state: Vector) -> int:
+    """Judge an answer by its residuals; one that was advanced by its state (size,) too.
 
-    The point of an infinite state is finite, since it is clipped to the bounds. `own` are the
-    constants of the network.
+    The point of an infinite state is finite, since it is clipped to the bounds.
     """
-    size = figures[2] + figures[3] + figures[4]
-    if own[DURATION] > 0.0:
+    size = stats.primal + stats.dual + stats.gap
+    if settings.duration > 0.0:
         for i in range(state.size):
             size += abs(state[i])
     if not size < np.inf:
         return NOT_FINITE
-    if own[DURATION] > 0.0:
+    if settings.duration > 0.0:
         return ADVANCED
-    settled = within(figures[2], figures[3], figures[4], own[TOLERANCE])
+    settled = within(stats.primal, stats.dual, stats.gap, settings.tolerance)
     return SOLVED if settled else NOT_SETTLED
 
 
 @compiled
-def sample_targets(arrays: ProgramArrays, t: float, targets: Matrix) -> None:
+def sample_targets(paths: Paths, t: float, targets: Matrix) -> None:
     """Write the targets (k, 18) of all paths at time t [s]; the constants begin with their base."""
-    table = arrays.table
-    first = 2 + table[0, 4]
-    period = 1.0 / arrays.rate
-    for k in range(first, table.shape[0]):
-        own = arrays.constants[table[k, 4] : table[k, 5]]
-        target = TargetData.of(targets[k - first])
+    for k in range(len(paths.table)):
+        entry = paths.table[k]
+        address = entry[PathColumn.ADDRESS]
+        own = paths.constants[entry[PathColumn.START] : entry[PathColumn.STOP]]
+        target = TargetData.of(targets[k])
         base = own[: TargetData.width()]
         move = own[TargetData.width() :]
         copied(target.numbers, base)
-        enter_path(table[k, 1], t, move, target)
-        if table[k, 2] != 0:
+        enter_path(address, t, move, target)
+        if entry[PathColumn.AHEAD] != 0:
             then = TargetData.of(base.copy())
-            enter_path(table[k, 1], t + period, move, then)
-            set_mean_twist(target, then, period)
+            enter_path(address, t + paths.period, move, then)
+            set_mean_twist(target, then, paths.period)

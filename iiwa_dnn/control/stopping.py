@@ -36,11 +36,11 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.relaxed import Yielding
-from iiwa_dnn.control.state import LAST, Q
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple
 from iiwa_dnn.robot.kinematics import Placement
-from iiwa_dnn.schemes.program import ProgramArrays
+from iiwa_dnn.schemes.limits import MotionNumbers
+from iiwa_dnn.schemes.program import ProgramArrays, block_constants
 from iiwa_dnn.schemes.scene import (
     Pair,
     contact_of,
@@ -104,7 +104,9 @@ def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float
 
 
 @compiled
-def least_periods(x: Vector, before: Vector, limits: Vector, dt: float, cubic: bool) -> float:
+def least_periods(
+    x: Vector, before: Vector, limits: MotionNumbers, dt: float, cubic: bool
+) -> float:
     """Compute the number of periods in which velocities go to zero together.
 
     It is the least one, or with a jerk limit one that is found from below in steps of a tenth.
@@ -112,15 +114,15 @@ def least_periods(x: Vector, before: Vector, limits: Vector, dt: float, cubic: b
     Args:
         x: Velocities of now [rad/s], (n,).
         before: Velocities of the period before [rad/s], (n,).
-        limits: Constants of the acceleration and jerk limits, (8 n,).
+        limits: Acceleration and jerk limits.
         dt: Control period [s].
         cubic: Whether a jerk is limited.
 
     Returns:
         M, 0 at rest; inf if no number is enough.
     """
-    accelerations = limits[3 * x.size : 4 * x.size]
-    jerks = limits[4 * x.size : 5 * x.size]
+    accelerations = limits.acceleration
+    jerks = limits.jerk
     periods = 0.0
     for i in range(x.size):
         fewest = math.ceil(abs(x[i]) / (accelerations[i] * dt) * (1.0 - SLACK))
@@ -182,36 +184,34 @@ def least_way(motion: Motion, x: float, b: float, dt: float) -> float:
 
 
 @compiled
-def keeps_joint_limits(motion: Motion, q: Vector, limits: Vector, dt: float) -> bool:
+def keeps_joint_limits(motion: Motion, q: Vector, limits: MotionNumbers, dt: float) -> bool:
     """Test whether joints at q (n,) [rad] keep position and velocity limits on a motion to rest."""
-    n = q.size
-    for i in range(n):
+    for i in range(q.size):
         x = motion.first[i]
         b = motion.bend[i]
         top = q[i] - least_way(motion, -x, -b, dt)
         bottom = q[i] + least_way(motion, x, b, dt)
         # A joint that is outside already may come back.
-        if top > max(limits[n + i], q[i]) or bottom < min(limits[i], q[i]):
+        if top > max(limits.upper[i], q[i]) or bottom < min(limits.lower[i], q[i]):
             return False
         steepest = 6.0 * x + 3.0 * b
         u = b / steepest if steepest != 0.0 else 0.0
-        fastest = limits[2 * n + i] * (1.0 + SLACK)
+        fastest = limits.velocity[i] * (1.0 + SLACK)
         if 0.0 < u < 1.0 and abs(velocity_at(x, b, u, True)) > fastest:
             return False
-        if limits[7 * n + i] > 0.0 and not keeps_ramp(motion, q, limits, dt, i):
+        if limits.lag[i] > 0.0 and not keeps_ramp(motion, q, limits, dt, i):
             return False
     return True
 
 
 @compiled
-def keeps_ramp(motion: Motion, q: Vector, limits: Vector, dt: float, i: int) -> bool:
+def keeps_ramp(motion: Motion, q: Vector, limits: MotionNumbers, dt: float, i: int) -> bool:
     """Test whether joint i of those at q (n,) [rad] keeps its position-dependent velocity limit."""
-    n = q.size
     at = q[i]
     for k in range(int(motion.periods)):
         x = velocity_at(motion.first[i], motion.bend[i], k / motion.periods, motion.cubic)
-        left = limits[n + i] - at if x > 0.0 else at - limits[i]
-        needed = x * x / (2.0 * limits[6 * n + i]) + abs(x) * limits[7 * n + i]
+        left = limits.upper[i] - at if x > 0.0 else at - limits.lower[i]
+        needed = x * x / (2.0 * limits.ramp[i]) + abs(x) * limits.lag[i]
         if needed > max(left, 0.0) * (1.0 + SLACK):
             return False
         at += dt * x
@@ -231,7 +231,7 @@ def keeps_distances(
         motion: The motion.
         arrays: Arrays of the loop, with the kinematics at its beginning.
         constants: `Scene.constants`, (k,).
-        least: `kept_distances` of the state, (pairs or more,).
+        least: Distance that each watched pair has to keep [m], (pairs,).
         dt: Control period [s].
     """
     n = motion.first.size
@@ -294,14 +294,15 @@ def _write_bends(x: Vector, before: Vector, periods: float, bend: Vector) -> Non
 
 @compiled
 def stopping_time(
-    arrays: ProgramArrays, past: Matrix, least: Vector, yielding: Yielding, dq: Vector
+    arrays: ProgramArrays, q: Vector, last: Vector, least: Vector, yielding: Yielding, dq: Vector
 ) -> float:
     """Compute the periods of the motion to rest from a command.
 
     Args:
-        arrays: Arrays of the loop; the kinematics are at the joint positions of `past`.
-        past: `ControllerState.past`, (8 + k, dof).
-        least: `kept_distances` of the state, (pairs or more,).
+        arrays: Arrays of the loop; the kinematics are at the joint positions.
+        q: Joint positions [rad], (dof,).
+        last: Last command [rad/s], (dof,).
+        least: Distance that each watched pair has to keep [m], (pairs,).
         yielding: Limits and scenes.
         dq: The command [rad/s], (dof,).
 
@@ -313,12 +314,13 @@ def stopping_time(
     limits = yielding.limits
     dt = yielding.periods.longest
     ratio = dt / yielding.periods.dt
-    before = past[LAST].copy()
+    before = last.copy()
     bend = np.zeros(dq.size)
     if yielding.periods.vary:
         for i in range(dq.size):
             before[i] = dq[i] - ratio * (dq[i] - before[i])
-    periods = least_periods(dq, before, limits, dt, yielding.cubic) if limits.size else 1.0
+    moves = limits.lower.size > 0
+    periods = least_periods(dq, before, limits, dt, yielding.cubic) if moves else 1.0
     if periods == np.inf:
         return -1.0
     if yielding.cubic and periods > 0.0:
@@ -326,10 +328,10 @@ def stopping_time(
     # Where periods vary, the first may be the longest and the others as short as can be.
     motion = Motion(dq, bend, periods + yielding.periods.vary, yielding.cubic)
     dt = dt / yielding.periods.share
-    if limits.size and not keeps_joint_limits(motion, past[Q], limits, dt):
+    if moves and not keeps_joint_limits(motion, q, limits, dt):
         return -1.0
     for k in range(len(yielding.scenes)):
-        scene = arrays.constants[yielding.scenes[k, 0] : yielding.scenes[k, 1]]
+        scene = block_constants(arrays, yielding.scenes[k])
         if not keeps_distances(motion, arrays, scene, least, dt):
             return -1.0
     return periods * ratio

@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.command import NOT_SETTLED, SOLVED, RowViews, note_command
+from iiwa_dnn.control.command import NOT_SETTLED, SOLVED, StepLog, note_command
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.relaxed import (
     MOST_SYSTEMS,
@@ -33,20 +33,25 @@ from iiwa_dnn.control.relaxed import (
     settled,
     soften_task,
 )
-from iiwa_dnn.control.state import BEFORE, DELAY, LAST, REST, WANTED, YIELDS, Q, kept_distances
+from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.stopping import (
     least_periods,
     next_velocity,
     stopping_time,
 )
-from iiwa_dnn.networks.integrators.base import TOLERANCE
+from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import row_dot, times
-from iiwa_dnn.qp.layout import QPViews, copied, qp_views
+from iiwa_dnn.qp.layout import QPViews, copied
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.limits import NUMBERS, braking, constant_periods
-from iiwa_dnn.schemes.program import ProgramArrays, StepProgram
+from iiwa_dnn.schemes.limits import MotionNumbers, braking, constant_periods
+from iiwa_dnn.schemes.program import (
+    ProgramArrays,
+    StepProgram,
+    block_constants,
+    program_views,
+)
 from iiwa_dnn.schemes.scene import scene_views
 
 NONE, SLOW, RELAX, STOP, _ = map(int, Action)
@@ -81,19 +86,21 @@ def make_yielding(program: StepProgram, tol: float, dt: float, alike: bool) -> Y
         dt: Control period [s].
         alike: Whether the network of the steps is that of the relaxed programs.
     """
-    limits: Vector = np.zeros(0)
+    limits = MotionNumbers.zeros(0)
     if program.rate_limits is not None:
-        limits = program.rate_limits.numbers(program.robot)
-    scenes = program.constants_of(CollisionAvoidance)
+        limits = program.rate_limits.constants(program.robot)
+    parts = program.parts
+    scenes = [k for k, part in enumerate(parts) if isinstance(part, CollisionAvoidance)]
     weights = program.row_weights
     return Yielding(
         weights,
         limits,
-        np.array([tol, float(MOST_SYSTEMS)]),
-        np.array(scenes, dtype=np.int64).reshape(-1, 2),
+        tol,
+        MOST_SYSTEMS,
+        np.array(scenes, dtype=np.int64),
         dt,
         constant_periods(dt),
-        bool((limits.reshape(NUMBERS, -1)[4] < np.inf).any()),
+        bool((limits.jerk < np.inf).any()),
         bool((weights == 0.0).any()),
         alike,
     )
@@ -101,10 +108,10 @@ def make_yielding(program: StepProgram, tol: float, dt: float, alike: bool) -> Y
 
 @compiled
 def yield_step(
-    views: RowViews,
+    log: StepLog,
     arrays: ProgramArrays,
-    past: Matrix,
-    following: Matrix,
+    motion_state: MotionState,
+    next_motion_state: MotionState,
     yielding: Yielding,
     relaxed: Vector,
     action: int,
@@ -112,10 +119,11 @@ def yield_step(
     """Answer a step for which the network has no answer, or whose task yielded at the last step.
 
     Args:
-        views: The row, with the step's own program and what it was built at.
-        arrays: Arrays of the loop; the kinematics are at the joint positions of `past`.
-        past: `ControllerState.past`, (8 + k, dof).
-        following: The same for the next step, with the last commands; the rest is overwritten.
+        log: The log, with the step's own program and what it was built at.
+        arrays: Arrays of the loop; the kinematics are at the joint positions of the state.
+        motion_state: State of the motion.
+        next_motion_state: The same for the next step, overwritten but for the last commands and
+            the distances that pairs keep.
         yielding: Weights, limits and settings of the relaxed programs.
         relaxed: States of the networks of relaxed programs, (`relaxed_size`,), advanced.
         action: Action that the policy asks for; `BRAKE`: the arm goes to rest, whatever has a
@@ -124,66 +132,67 @@ def yield_step(
     Returns:
         The action that was taken.
     """
-    table = arrays.table
-    dof = table[0, 3]
-    qp = qp_views(views.program, table[0, 0], table[0, 1], table[0, 2])
-    data = views.program.copy()
-    own = qp_views(data, table[0, 0], table[0, 1], table[0, 2])
+    qp = program_views(log.program, arrays.sizes)
+    data = log.program.copy()
+    own = program_views(data, arrays.sizes)
     kind = STOPPED
     factor = 0.0
     rest = 0.0
     if action != BRAKE:
-        _widen_bounds(qp, yielding.limits, past[Q])
-        found, factor = _answer_relaxed(views, qp, yielding, relaxed, action)
+        _widen_bounds(qp, yielding.limits, motion_state.q)
+        found, factor = _answer_relaxed(log, qp, yielding, relaxed, action)
         kind = int(found)
-    x = views.point[: qp.q.size].copy()
+    x = log.point[: qp.q.size].copy()
     limits = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, own.lb, own.ub)
     if kind != STOPPED:
-        _step(limits, past, following, yielding, views.figures, x)
-        rest = _make_stoppable(limits, arrays, past, following, yielding, views, x)
-        missing = _note_missing(views, x[:dof])
-        primal, dual, gap = point_residuals(limits, views.point)
+        _step(limits, motion_state, next_motion_state, yielding, log.stats, x)
+        rest = _make_stoppable(limits, arrays, motion_state, next_motion_state, yielding, log, x)
+        missing = _note_missing(log, x[: arrays.sizes.joints])
+        primal, dual, gap = point_residuals(limits, log.point)
         if missing > 0:
             kind = STOPPED if action == STOP else HELD
-        elif factor == 1.0 and within(primal, dual, gap, yielding.settings[TOLERANCE]):
+        elif factor == 1.0 and within(primal, dual, gap, yielding.tolerance):
             kind = OWN
             copied(qp.lb, own.lb)
             copied(qp.ub, own.ub)
     if kind == STOPPED:
-        copied(views.program, data)
-        rest = _brake(own, arrays, past, yielding, views, x)
-        _go_along(past, following)
-        views.point[:] = 0.0
-        copied(views.point, x)
-    views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
-    _note_decision(views, own, yielding, x, kind, factor, action)
-    following[REST, 0] = rest
-    following[DELAY, 0] += yielding.dt * (1.0 - views.decision[1])
-    following[YIELDS, 0] = kind != OWN and action != BRAKE
-    note_command(views, following, x, yielding.dt)
-    return int(views.decision[0])
+        copied(log.program, data)
+        rest = _brake(own, arrays, motion_state, yielding, log, x)
+        _go_along(motion_state, next_motion_state)
+        log.point[:] = 0.0
+        copied(log.point, x)
+    log.stats.primal, log.stats.dual, log.stats.gap = point_residuals(qp, log.point)
+    taken = _note_decision(log, own, yielding, x, kind, factor, action)
+    next_motion_state.stopping_periods = rest
+    next_motion_state.path_lag += yielding.dt * (1.0 - log.fraction)
+    next_motion_state.yields = kind != OWN and action != BRAKE
+    note_command(log, next_motion_state, x, yielding.dt)
+    return taken
 
 
 @compiled
 def _note_decision(
-    views: RowViews,
+    log: StepLog,
     own: QPViews,
     yielding: Yielding,
     x: Vector,
     kind: int,
     factor: float,
     action: int,
-) -> None:
-    """Note the action, how far the reference's clock advances, status and kind of the program.
+) -> int:
+    """Note how far the reference's clock advances, status and kind of the program.
 
     Args:
-        views: The step's row.
+        log: The step's log.
         own: The step's own program.
         yielding: Weights of its task rows, and whose the network is.
         x: The command, (n,).
         kind: Kind of the program that was answered.
         factor: Scaling factor of the task in it.
         action: Action that the policy asks for.
+
+    Returns:
+        The action that was taken.
     """
     taken = STOP
     fraction = 0.0
@@ -191,34 +200,33 @@ def _note_decision(
         taken = NONE if factor == 1.0 else SLOW
         fraction = factor
     elif kind != STOPPED:
-        taken = action if kind == HELD or _is_path(views.targets) else RELAX
+        taken = action if kind == HELD or _is_path(log.targets) else RELAX
         fraction = 1.0
         if taken == SLOW:
             fraction = max(attained(own.b, own.A, yielding.weights, x), CREEP)
-    views.decision[0] = taken
-    views.decision[1] = fraction
+    log.fraction = fraction
+    log.kind = kind
     if taken == STOP:
-        views.decision[2] = max(views.decision[2], float(NOT_SETTLED))
+        log.status = max(log.status, NOT_SETTLED)
     elif kind != OWN or yielding.alike:
-        views.decision[2] = SOLVED
-    elif views.decision[2] >= NOT_SETTLED:  # the answer is not that of the network that failed
-        views.figures[2] = np.inf
-    views.decision[3] = kind
+        log.status = SOLVED
+    elif log.status >= NOT_SETTLED:  # the answer is not that of the network that failed
+        log.stats.primal = np.inf
+    return taken
 
 
 @compiled
-def _widen_bounds(qp: QPViews, limits: Vector, q: Vector) -> None:
+def _widen_bounds(qp: QPViews, limits: MotionNumbers, q: Vector) -> None:
     """Replace bounds that acceleration limits have narrowed by those of position and velocity."""
-    dof = limits.size // NUMBERS
-    for i in range(dof):
-        fastest = limits[2 * dof + i]
-        qp.lb[i] = min(max(POSITION_GAIN * (limits[i] - q[i]), -fastest), fastest)
-        qp.ub[i] = min(max(POSITION_GAIN * (limits[dof + i] - q[i]), -fastest), fastest)
+    for i in range(limits.velocity.size):
+        fastest = limits.velocity[i]
+        qp.lb[i] = min(max(POSITION_GAIN * (limits.lower[i] - q[i]), -fastest), fastest)
+        qp.ub[i] = min(max(POSITION_GAIN * (limits.upper[i] - q[i]), -fastest), fastest)
 
 
 @compiled
 def _answer_relaxed(
-    views: RowViews, qp: QPViews, yielding: Yielding, relaxed: Vector, action: int
+    log: StepLog, qp: QPViews, yielding: Yielding, relaxed: Vector, action: int
 ) -> tuple[float, float]:
     """Turn a step's program into the first relaxed one that has a solution, and answer it.
 
@@ -229,25 +237,31 @@ def _answer_relaxed(
     m = qp.h.size
     point = np.empty(2 * n + 2 + m + qp.b.size)
     size = 3 * n + 3 + m + qp.b.size
-    factor = largest_factor(qp, yielding, relaxed[:size], point, views.figures, False)
-    note_blocking(point, n, m, 1, views.blocking)
-    follows = action == SLOW and _is_path(views.targets) and not _races(qp, point[:n])
+    factor = largest_factor(qp, yielding, relaxed[:size], point, log.stats, False)
+    note_blocking(point, n, m, 1, log.blocking)
+    follows = action == SLOW and _is_path(log.targets) and not _races(qp, point[:n])
     if factor == 1.0 or (follows and factor >= CREEP):
         asked = qp.b.copy()
         scale_task(qp, yielding.weights, factor)
-        if settled(qp, yielding.settings, relaxed[size:], views.point, views.figures):
+        if _settled(log, qp, yielding, relaxed[size:]):
             return SCALED, factor
         copied(qp.b, asked)
     if action == STOP:
         return STOPPED, 0.0
     retreat = 1.0
     if factor < 0.0:
-        retreat = largest_factor(qp, yielding, np.zeros(size), point, views.figures, True)
+        retreat = largest_factor(qp, yielding, np.zeros(size), point, log.stats, True)
         retreat = max(retreat, 0.0)  # what cannot be said to retreat may come no nearer
     soften_task(qp, yielding.weights, retreat)
-    found = settled(qp, yielding.settings, relaxed[size:], views.point, views.figures)
-    note_blocking(views.point, n, m, 0, views.blocking)
+    found = _settled(log, qp, yielding, relaxed[size:])
+    note_blocking(log.point, n, m, 0, log.blocking)
     return SOFTENED if found else STOPPED, 0.0
+
+
+@compiled
+def _settled(log: StepLog, qp: QPViews, yielding: Yielding, state: Vector) -> bool:
+    """Answer a relaxed program from a network's state (size,)."""
+    return settled(qp, yielding.tolerance, yielding.budget, state, log.point, log.stats)
 
 
 @compiled
@@ -269,13 +283,13 @@ def _races(qp: QPViews, x: Vector) -> bool:
 
 
 @compiled
-def _note_missing(views: RowViews, dq: Vector) -> int:
+def _note_missing(log: StepLog, dq: Vector) -> int:
     """Note the joints whose command dq (dof,) is short of the answer; return how many are."""
     count = 0
     for i in range(dq.size):
-        missing = views.point[i] - dq[i]
+        missing = log.point[i] - dq[i]
         if abs(missing) > REACHED:
-            views.blocking[i] = math.copysign(1.0, missing)
+            log.blocking[i] = math.copysign(1.0, missing)
             count += 1
     return count
 
@@ -283,58 +297,60 @@ def _note_missing(views: RowViews, dq: Vector) -> int:
 @compiled
 def _step(
     limits: QPViews,
-    past: Matrix,
-    following: Matrix,
+    motion_state: MotionState,
+    next_motion_state: MotionState,
     yielding: Yielding,
-    figures: Vector,
+    stats: SolveStats,
     x: Vector,
 ) -> None:
     """Turn a wanted velocity x (n,) into the next command on the way to it.
 
     Args:
         limits: The program that was answered, with the bounds of the step.
-        past: `ControllerState.past`, (8 + k, dof).
-        following: `ControllerState.following`, (8 + k, dof): the wanted velocity is noted.
+        motion_state: State of the motion.
+        next_motion_state: State for the next step: the wanted velocity is noted.
         yielding: Weights, limits and settings.
-        figures: Figures of the answer, (5,), as of `settled`.
+        stats: Statistics of the answer, as of `settled`.
         x: The velocity, overwritten.
     """
-    if yielding.limits.size == 0:
+    if yielding.limits.velocity.size == 0:
         return
-    copied(following[WANTED], x[: past.shape[1]])
+    copied(next_motion_state.wanted, x[: motion_state.q.size])
     # Joints that follow others have to go with them, on a straight line.
     if yielding.coupled:
-        _step_straight(past, yielding, x)
+        _step_straight(motion_state, yielding, x)
     else:
-        _step_towards(limits, past, yielding, x)
-    nearest_within(limits, x, yielding, figures)
+        _step_towards(limits, motion_state, yielding, x)
+    nearest_within(limits, x, yielding, stats)
 
 
 @compiled
-def _step_towards(limits: QPViews, past: Matrix, yielding: Yielding, x: Vector) -> None:
+def _step_towards(
+    limits: QPViews, motion_state: MotionState, yielding: Yielding, x: Vector
+) -> None:
     """Replace the wanted velocity x (n,) by the next command of joints that hurry to it.
 
     Each joint goes as quickly as its limits allow, without passing a velocity that goes on changing
     as it has done since the last step.
     """
-    dof = past.shape[1]
+    dof = motion_state.q.size
     for i in range(dof):
-        most = yielding.limits[3 * dof + i] * yielding.periods.dt
-        change = min(max(x[i] - past[WANTED, i], -most), most)
-        behind = past[LAST, i] - (x[i] - change)
-        rate = yielding.limits[4 * dof + i]
+        most = yielding.limits.acceleration[i] * yielding.periods.dt
+        change = min(max(x[i] - motion_state.wanted[i], -most), most)
+        behind = motion_state.last[i] - (x[i] - change)
+        rate = yielding.limits.jerk[i]
         x[i] += braking(behind, limits.lb[i] - x[i], limits.ub[i] - x[i], rate, yielding.periods)
 
 
 @compiled
-def _step_straight(past: Matrix, yielding: Yielding, x: Vector) -> None:
+def _step_straight(motion_state: MotionState, yielding: Yielding, x: Vector) -> None:
     """Replace the wanted velocity x (n,) by the next command on the straight line to it."""
-    dof = past.shape[1]
+    dof = motion_state.q.size
     now = np.empty(dof)
     before = np.empty(dof)
     for i in range(dof):
-        now[i] = past[LAST, i] - x[i]
-        before[i] = past[BEFORE, i] - x[i]
+        now[i] = motion_state.last[i] - x[i]
+        before[i] = motion_state.before[i] - x[i]
     periods = least_periods(now, before, yielding.limits, yielding.periods.dt, yielding.cubic)
     for i in range(dof):
         if periods < np.inf:
@@ -345,10 +361,10 @@ def _step_straight(past: Matrix, yielding: Yielding, x: Vector) -> None:
 def _make_stoppable(
     limits: QPViews,
     arrays: ProgramArrays,
-    past: Matrix,
-    following: Matrix,
+    motion_state: MotionState,
+    next_motion_state: MotionState,
     yielding: Yielding,
-    views: RowViews,
+    log: StepLog,
     x: Vector,
 ) -> float:
     """Bring a command x (n,) nearer to the braking motion in hand until the arm can stop from it.
@@ -356,26 +372,28 @@ def _make_stoppable(
     Returns:
         Periods until it rests; 0 where none is asked for.
     """
-    dof = past.shape[1]
-    rest = stopping_time(arrays, past, views.least, yielding, x[:dof])
+    dof = motion_state.q.size
+    rest = stopping_time(arrays, motion_state.q, motion_state.last, log.least, yielding, x[:dof])
     if rest >= 0.0:
         return rest
-    wanted = views.point[: x.size].copy()
-    if yielding.limits.size:
-        _step_straight(past, yielding, wanted)
-        nearest_within(limits, wanted, yielding, views.figures)
+    wanted = log.point[: x.size].copy()
+    if yielding.limits.velocity.size > 0:
+        _step_straight(motion_state, yielding, wanted)
+        nearest_within(limits, wanted, yielding, log.stats)
     brake = np.zeros(x.size)
-    left = _brake(limits, arrays, past, yielding, views, brake)
+    left = _brake(limits, arrays, motion_state, yielding, log, brake)
     share = 1.0
-    for _ in range(HALVINGS_NEAR if _is_near(arrays, yielding, views.least) else HALVINGS):
+    for _ in range(HALVINGS_NEAR if _is_near(arrays, yielding, log.least) else HALVINGS):
         for i in range(dof):
             x[i] = brake[i] + share * (wanted[i] - brake[i])
-        rest = stopping_time(arrays, past, views.least, yielding, x[:dof])
+        rest = stopping_time(
+            arrays, motion_state.q, motion_state.last, log.least, yielding, x[:dof]
+        )
         if rest >= 0.0:
             return rest
         share *= 0.5
     copied(x, brake)
-    _go_along(past, following)
+    _go_along(motion_state, next_motion_state)
     return left
 
 
@@ -384,27 +402,27 @@ def _is_near(arrays: ProgramArrays, yielding: Yielding, least: Vector) -> bool:
     """Test whether a pair keeps less than the least distance of its scene, `least` (pairs,) [m]."""
     found = False
     for k in range(len(yielding.scenes)):
-        own = arrays.constants[yielding.scenes[k, 0] : yielding.scenes[k, 1]]
-        scene = scene_views(own, arrays.jacobian.shape[0])
+        own = block_constants(arrays, yielding.scenes[k])
+        scene = scene_views(own, arrays.sizes.joints)
         for i in range(len(scene.pairs)):
             found = found or least[scene.head.first + i] < scene.head.least
     return found
 
 
 @compiled
-def _go_along(past: Matrix, following: Matrix) -> None:
+def _go_along(motion_state: MotionState, next_motion_state: MotionState) -> None:
     """Let pairs keep the distances for which a braking motion in hand was verified."""
-    if past[REST, 0] > 0.0:
-        copied(kept_distances(following), kept_distances(past))
+    if motion_state.stopping_periods > 0.0:
+        copied(next_motion_state.least, motion_state.least)
 
 
 @compiled
 def _brake(
     limits: QPViews,
     arrays: ProgramArrays,
-    past: Matrix,
+    motion_state: MotionState,
     yielding: Yielding,
-    views: RowViews,
+    log: StepLog,
     dq: Vector,
 ) -> float:
     """Write the next command (n,) of the braking motion in hand, or of the quickest one.
@@ -416,16 +434,18 @@ def _brake(
         Periods that are left afterwards; 0 if no motion is in hand.
     """
     dq[:] = 0.0
-    if yielding.limits.size == 0:
+    if yielding.limits.velocity.size == 0:
         return 0.0
-    rest: float = past[REST, 0]
-    dof = past.shape[1]
+    rest: float = motion_state.stopping_periods
+    dof = motion_state.q.size
     dt = yielding.periods.dt
     periods = rest
     if rest == 0.0:
-        periods = least_periods(past[LAST], past[BEFORE], yielding.limits, dt, yielding.cubic)
+        periods = least_periods(
+            motion_state.last, motion_state.before, yielding.limits, dt, yielding.cubic
+        )
     if periods < np.inf:
-        _slow_down(past, yielding, periods, dq)
+        _slow_down(motion_state, yielding, periods, dq)
     if rest > 0.0 and not yielding.periods.vary:
         return max(rest - 1.0, 0.0)
     lb = limits.lb.copy()
@@ -440,36 +460,50 @@ def _brake(
     idle[:] = np.inf
     times(limits.A, dq, rates)
     braking = QPViews(limits.P, limits.q, limits.G, idle, limits.A, rates, lb, ub)
-    nearest_within(braking, dq, yielding, views.figures)
+    nearest_within(braking, dq, yielding, log.stats)
     if rest > 0.0:
         return max(rest - 1.0, 0.0)
-    return max(stopping_time(arrays, past, views.least, yielding, dq[:dof]), 0.0)
+    return max(
+        stopping_time(arrays, motion_state.q, motion_state.last, log.least, yielding, dq[:dof]), 0.0
+    )
 
 
 @compiled
-def _slow_down(past: Matrix, yielding: Yielding, periods: float, dq: Vector) -> None:
+def _slow_down(motion_state: MotionState, yielding: Yielding, periods: float, dq: Vector) -> None:
     """Write the next command (n,) on the straight way to rest in so many periods."""
-    dof = past.shape[1]
+    dof = motion_state.q.size
     for i in range(dof):
-        last = past[LAST, i]
-        fastest = max(yielding.limits[2 * dof + i], abs(last))
-        change = yielding.limits[3 * dof + i] * yielding.periods.dt
-        dq[i] = next_velocity(last, past[BEFORE, i], periods, yielding.cubic)
+        last = motion_state.last[i]
+        fastest = max(yielding.limits.velocity[i], abs(last))
+        change = yielding.limits.acceleration[i] * yielding.periods.dt
+        dq[i] = next_velocity(last, motion_state.before[i], periods, yielding.cubic)
         # Where the control period has changed, the curve has too.
         dq[i] = min(max(dq[i], last - change), last + change)
         dq[i] = min(max(dq[i], -fastest), fastest)
 
 
 @compiled
-def guard_step(arrays: ProgramArrays, past: Matrix, following: Matrix, yielding: Yielding) -> bool:
-    """Test whether the command that `following` holds is stoppable, and note its way to rest.
+def guard_step(
+    arrays: ProgramArrays,
+    motion_state: MotionState,
+    next_motion_state: MotionState,
+    yielding: Yielding,
+) -> bool:
+    """Test whether the arm can stop from the next state's command, and note in how many periods.
 
     Args:
         arrays: Arrays of the loop.
-        past: `ControllerState.past`, (8 + k, dof).
-        following: `ControllerState.following`, (8 + k, dof).
+        motion_state: State of the motion.
+        next_motion_state: State for the next step.
         yielding: Limits and scenes.
     """
-    rest = stopping_time(arrays, past, kept_distances(following), yielding, following[LAST])
-    following[REST, 0] = max(rest, 0.0)
+    rest = stopping_time(
+        arrays,
+        motion_state.q,
+        motion_state.last,
+        next_motion_state.least,
+        yielding,
+        next_motion_state.last,
+    )
+    next_motion_state.stopping_periods = max(rest, 0.0)
     return rest >= 0.0

@@ -17,13 +17,15 @@ from iiwa_dnn.compiling.records import Record
 from iiwa_dnn.compiling.sources import Module, TranslationError, c_name
 from iiwa_dnn.compiling.translator import Function, Translator
 from iiwa_dnn.control import shield as shields
+from iiwa_dnn.control.command import log_of
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.state import DELAY, YIELDS, rows_of
-from iiwa_dnn.control.step import StepPlan, sample_targets, take_step
+from iiwa_dnn.control.state import MotionState
+from iiwa_dnn.control.step import PathColumn, StepPlan, sample_targets, take_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.limits import constant_periods
+from iiwa_dnn.schemes.program import Column
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 _PACKAGE = Path(__file__).parents[1]
@@ -99,31 +101,35 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
     model = model_tables(robot, program.kinematics.frame_ids, program.needs_inertia)
     code = _Code(program.needs_inertia)
     lengths = _lengths(controller, shield is not None)
-    rows = lengths["past"] // robot.dof
     texts: dict[str, Any] = {
         "plan": code.initializer("plan", code.numbered(step.plan)),
         "model": code.initializer("model", model),
         "take_step": code.kernel(take_step),
+        "log_of": code.kernel(log_of),
         "kinematics": code.kernel(write_kinematics),
         "target_function": "",
         "shield_function": "",
         "shield_declaration": "",
     }
     if step.samples:
-        sample = {"sample": code.kernel(sample_targets), "delay": DELAY}
+        sample = {
+            "sample": code.kernel(sample_targets),
+            "pairs": len(program.pairs),
+            "motion": step.width,
+        }
         texts["target_function"] = filled("target.c", sample)
     if shield is not None:
-        texts["shield_function"] = filled("shield.c", _shield_texts(code, shield, rows))
-        texts["shield_declaration"] = filled("shield.h", {"timeout": shield.settings[1]})
+        texts["shield_function"] = filled("shield.c", _shield_texts(code, shield))
+        texts["shield_declaration"] = filled("shield.h", {"timeout": shield.settings.timeout})
     return {
         **texts,
         **dict(zip("nmp", program.sizes, strict=True)),
-        **{f"at_{name}": step.layout.columns[name].start for name in ("dq", "targets")},
+        "pairs": len(program.pairs),
         "robot": robot.name,
         "version": version("iiwa-dnn"),
         "dof": robot.dof,
-        "rows": rows,
-        "width": lengths["row"],
+        "width": lengths["log"],
+        "motion": lengths["motion_state"],
         "state": lengths["state"],
         "frames": len(program.target_frames),
         "frame_names": ", ".join(program.target_frames),
@@ -138,24 +144,22 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
     }
 
 
-def _shield_texts(code: _Code, shield: shields.Shield, rows: int) -> dict[str, Any]:
-    """Return the texts of a shield's own step, whose state has so many rows."""
+def _shield_texts(code: _Code, shield: shields.Shield) -> dict[str, Any]:
+    """Return the texts of a shield's own step."""
     kernels = {
-        "take_positions": code.kernel(shields.take_positions),
-        "take_wish": code.kernel(shields.take_wish),
+        "take_request": code.kernel(shields.take_request),
         "come_nearer": code.kernel(shields.come_nearer),
     }
+    pairs = len(shield.controller().program.pairs)
     return {
         **kernels,
         "arena": _ARENA * any("&arena" in call for call in kernels.values()),
         "settings": code.initializer("shield_settings", shield.settings),
         "limits": code.initializer("shield_motion", shield.motion),
         "periods": code.initializer("shield_periods", constant_periods(shield.dt)),
-        "rows": rows,
-        "yields": YIELDS,
-        "reason": shields.REASON,
-        "halted": f"{shields.HALTED}.0",
-        "flags": shields.FLAGS,
+        "pairs": pairs,
+        "motion": MotionState.width(shield.robot.dof, pairs),
+        "flags": shields.Flags.width(),
     }
 
 
@@ -164,11 +168,10 @@ def _lengths(controller: Controller, shielded: bool) -> dict[str, int]:
     step = controller.control_step
     dof = controller.robot.dof
     n, m, p = step.program.sizes
-    rows = rows_of(step.program.least.size, dof)
     return {
-        "row": step.layout.width,
-        "past": rows * dof,
-        "following": rows * dof,
+        "log": step.layout.width,
+        "motion_state": step.width,
+        "next_motion_state": step.width,
         "state": controller.solver.state_for(step.program.sizes).size,
         "relaxed": step.plan.relaxed.size,
         "jacobian": 6 * dof,
@@ -178,7 +181,7 @@ def _lengths(controller: Controller, shielded: bool) -> dict[str, int]:
         "scratch": 8 * n * (n + m + p + 10),  # twice what the package's kernels take
         "positions": dof * shielded,
         "wish": dof * shielded,
-        "flags": shields.FLAGS * shielded,
+        "flags": shields.Flags.width() * shielded,
         "aim": TARGET_SIZE * len(step.program.target_frames) * shielded,
     }
 
@@ -201,12 +204,15 @@ class _Code:
 
     def numbered(self, plan: StepPlan) -> StepPlan:
         """Return a plan with the numbers of parts in place of their addresses."""
-        table = plan.arrays.table.copy()
-        network = table[1 + table[0, 4]]
-        network[2] = self._part(int(network[2]))
-        for row in table[1:]:
-            row[1] = self._part(int(row[1]))
-        return plan._replace(arrays=plan.arrays._replace(table=table))
+        blocks = plan.arrays.table.copy()
+        blocks[:, Column.ADDRESS] = [*map(self._part, blocks[:, Column.ADDRESS].tolist())]
+        paths = plan.paths.table.copy()
+        paths[:, PathColumn.ADDRESS] = [*map(self._part, paths[:, PathColumn.ADDRESS].tolist())]
+        network = plan.network._replace(
+            rates=self._part(plan.network.rates), address=self._part(plan.network.address)
+        )
+        arrays = plan.arrays._replace(table=blocks)
+        return plan._replace(arrays=arrays, network=network, paths=plan.paths._replace(table=paths))
 
     def _part(self, address: int) -> int:
         """Translate the function at an address, once; return its number."""

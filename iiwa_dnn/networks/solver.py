@@ -10,7 +10,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network, enter_rates
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
-from iiwa_dnn.networks.integrators.base import CompiledAnswer, enter_answer
+from iiwa_dnn.networks.integrators.base import AnswerSettings, CompiledAnswer, enter_answer
 from iiwa_dnn.networks.integrators.explicit import follow
 from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.networks.integrators.scaling import (
@@ -131,7 +131,8 @@ class DNNSolver:
         constants = [self.tol, self.settler.max_steps, duration / network.rho, substeps or 0]
         address = enter_answer.address(follow if duration > 0.0 else settle)
         rates = enter_rates.address(function) if duration > 0.0 else 0
-        return CompiledAnswer(address, rates, np.array([*constants, *network.constants(sizes)]))
+        settings = AnswerSettings.of(np.array([*constants, *network.constants(sizes)]))
+        return CompiledAnswer(address, rates, settings)
 
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and judge the point it has reached.

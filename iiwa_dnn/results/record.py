@@ -135,7 +135,7 @@ class Record:
         Array,
         Column(
             "Multipliers of the joint velocity bounds: positive at an upper one, negative at a "
-            "lower one, 0 at an inactive one (`RowLayout.multipliers`); the decrease of the "
+            "lower one, 0 at an inactive one (`LogLayout.multipliers`); the decrease of the "
             "objective per rad/s by which the bound is relaxed",
             ("N", "n"),
         ),

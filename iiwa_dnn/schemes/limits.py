@@ -52,6 +52,7 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references.rotations import combined, dot, scaled, triple
@@ -82,14 +83,8 @@ REST = 0.25
 SHARE = 8.0
 """Steps of jerk at least that braking takes to its full deceleration."""
 
-STATED = 4
-"""Numbers of `Periods` that a step states among the constants of `MotionLimits`."""
-
 HALVINGS = 20
 """Halvings of the range of a command that is to end at a position limit."""
-
-NUMBERS = 8
-"""Numbers of a joint in `MotionLimits.numbers`: position limits, and `Rates`."""
 
 LEVELS = 15
 """Decelerations that are tried below a position-dependent velocity limit."""
@@ -97,10 +92,84 @@ LEVELS = 15
 LOWER = 0.7
 """Each of them in units of the one before."""
 
-Rates = tuple[float, float, float, float, float, float]
-"""Largest velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of a joint, inf for none; the
-deceleration for which there is room before its position limits [rad/s^2]; and of its
-position-dependent velocity limit the deceleration D [rad/s^2], inf for none, and o / D [s]."""
+
+class Rates(NamedTuple):
+    """Limits of a joint on the derivatives of its position; inf for none.
+
+    Attributes:
+        velocity: Largest velocity [rad/s].
+        acceleration: Largest acceleration [rad/s^2].
+        jerk: Largest jerk [rad/s^3].
+        deceleration: Deceleration for which there is room before its position limits [rad/s^2].
+        ramp: Deceleration D of its position-dependent velocity limit [rad/s^2].
+        lag: o / D of that limit [s].
+    """
+
+    velocity: float
+    acceleration: float
+    jerk: float
+    deceleration: float
+    ramp: float
+    lag: float
+
+
+class MotionNumbers(Record):
+    """Limits of n joints on their motion, as `MotionLimits` gives them.
+
+    The first numbers are those of `Periods` that a step states; they are 0 where periods are
+    constant.
+
+    Attributes:
+        dt: Period over which changes of the command are measured [s].
+        hold: Longest time for which the command may be held [s].
+        longest: Longest period that may come [s].
+        share: Part of a distance that is gone in the stated periods at least.
+        lower: Lower position limits [rad], (n,): at one below which a position-dependent velocity
+            limit is zero, that position.
+        upper: Upper position limits [rad], (n,).
+        velocity: As in `Rates`, and so the others, (n,).
+    """
+
+    dt: float
+    hold: float
+    longest: float
+    share: float
+    lower: Vector = part()
+    upper: Vector = part()
+    velocity: Vector = part()
+    acceleration: Vector = part()
+    jerk: Vector = part()
+    deceleration: Vector = part()
+    ramp: Vector = part()
+    lag: Vector = part()
+
+
+class PositionNumbers(Record):
+    """Constants of `JointLimits` for n joints.
+
+    Attributes:
+        gain: kappa [1/s].
+        lower: Lower position limits [rad], (n,).
+        upper: Upper position limits [rad], (n,).
+        velocity: Velocity limits [rad/s], (n,).
+        offset: Offsets of the ramps [rad/s], (n,).
+        ramp: Decelerations along the ramps [rad/s^2], (n,); inf for none.
+    """
+
+    gain: float
+    lower: Vector = part()
+    upper: Vector = part()
+    velocity: Vector = part()
+    offset: Vector = part()
+    ramp: Vector = part()
+
+
+class TipSpeedNumbers(Record):
+    """Constants of `TipSpeedLimit`: index of the frame, limit [m/s] and gain [1/s]."""
+
+    frame: int
+    limit: float
+    gain: float
 
 
 class Periods(NamedTuple):
@@ -171,14 +240,14 @@ def joint_limits(
 ) -> None:
     """Tighten the bounds to those of `JointLimits`, whose constants these are."""
     dof = step.q.size
-    gain = min(constants[0], step.rate)
-    limits = constants[1:].reshape(5, dof)
+    limits = PositionNumbers.of(constants)
+    gain = min(limits.gain, step.rate)
     for i in range(dof):
-        above = limits[1, i] - step.q[i]
-        below = step.q[i] - limits[0, i]
-        fastest = limits[2, i]
-        up = min(fastest, ramp_speed(above, limits[3, i], limits[4, i]))
-        down = min(fastest, ramp_speed(below, limits[3, i], limits[4, i]))
+        above = limits.upper[i] - step.q[i]
+        below = step.q[i] - limits.lower[i]
+        fastest = limits.velocity[i]
+        up = min(fastest, ramp_speed(above, limits.offset[i], limits.ramp[i]))
+        down = min(fastest, ramp_speed(below, limits.offset[i], limits.ramp[i]))
         lb[i] = max(lb[i], min(max(-gain * below, -down), up))
         ub[i] = min(ub[i], min(max(gain * above, -down), up))
 
@@ -307,15 +376,15 @@ def own_rate_limits(robot: Robot) -> tuple[RateLimits, ...]:
 
 
 @compiled
-def joint_rates(numbers: Vector, n: int, i: int) -> Rates:
-    """Return the rates of joint i of n, from `MotionLimits.numbers`, (8 n,)."""
-    return (
-        numbers[2 * n + i],
-        numbers[3 * n + i],
-        numbers[4 * n + i],
-        numbers[5 * n + i],
-        numbers[6 * n + i],
-        numbers[7 * n + i],
+def joint_rates(limits: MotionNumbers, i: int) -> Rates:
+    """Return the rates of joint i."""
+    return Rates(
+        limits.velocity[i],
+        limits.acceleration[i],
+        limits.jerk[i],
+        limits.deceleration[i],
+        limits.ramp[i],
+        limits.lag[i],
     )
 
 
@@ -330,16 +399,14 @@ def motion_limits(
     """
     if not step.rate < np.inf:
         return
-    n = step.q.size
-    limits = constants[: NUMBERS * n].reshape(NUMBERS, n)
-    stated = constants[NUMBERS * n :]
+    limits = MotionNumbers.of(constants)
     periods = constant_periods(1.0 / step.rate)
-    if stated[0] > 0.0:
-        periods = Periods(stated[0], stated[1], stated[2], stated[3], True)
-    for i in range(n):
-        above = limits[1, i] - step.q[i]
-        below = step.q[i] - limits[0, i]
-        rates = joint_rates(constants, n, i)
+    if limits.dt > 0.0:
+        periods = Periods(limits.dt, limits.hold, limits.longest, limits.share, True)
+    for i in range(step.q.size):
+        above = limits.upper[i] - step.q[i]
+        below = step.q[i] - limits.lower[i]
+        rates = joint_rates(limits, i)
         lower, upper = joint_bounds(step.last[i], step.before[i], above, below, rates, periods)
         lb[i] = min(max(lb[i], lower), upper)
         ub[i] = min(max(ub[i], lower), upper)
@@ -359,17 +426,8 @@ class MotionLimits(Limit):
     limits: tuple[RateLimits, ...] = ()
     couplings: tuple[JointCouplingTask, ...] = ()
 
-    def constants(self, robot: Robot) -> Vector:
-        """Return `numbers`, and room for the first four numbers of `Periods`, (8 n + 4,).
-
-        These are 0 where periods are constant.
-        """
-        return np.concatenate([self.numbers(robot), np.zeros(STATED)])
-
-    def numbers(self, robot: Robot) -> Vector:
-        """Return position limits, and in further rows `Rates`, (8 n,).
-
-        The positions are those at which a position-dependent velocity limit is zero.
+    def constants(self, robot: Robot) -> MotionNumbers:
+        """Return `MotionNumbers`, whose stated periods are 0.
 
         Raises:
             InvalidInputError: A limit does not fit the robot, or a joint's range is too short to
@@ -392,45 +450,49 @@ class MotionLimits(Limit):
         braking = np.minimum(rates[1], steepness * share)
         lag = offset / steepness
         room = 0.5 * offset * lag
-        ends = [lower + room, upper - room]
-        numbers: Vector = np.concatenate([*ends, *rates, braking, steepness, lag])
-        check_ranges(numbers, np.inf)
-        return numbers
+        stated = [np.zeros(4), lower + room, upper - room]
+        numbers = np.concatenate([*stated, *rates, braking, steepness, lag])
+        limits = MotionNumbers.of(numbers)
+        check_ranges(limits, np.inf)
+        return limits
 
 
-def check_ranges(numbers: Vector, rate: float) -> None:
+def check_ranges(limits: MotionNumbers, rate: float) -> None:
     """Raise InvalidInputError if a joint's range is too short to turn round in.
 
     Args:
-        numbers: `MotionLimits.numbers`, (8 n,).
+        limits: The limits of the joints.
         rate: Control periods a second [1/s]; inf for a jerk limit that braking may use in full.
     """
-    lower, upper, fastest, _, jerk, braking, ramp, lag = numbers.reshape(NUMBERS, -1)
+    lag = limits.lag
+    braking = limits.deceleration
     with np.errstate(invalid="ignore"):  # a joint without a position-dependent velocity limit
-        lost = np.where(lag > 0.0, lag**2 * ramp * braking / (ramp - braking), 0.0)
-    usable = np.minimum(jerk, rate * np.minimum(braking, rate * fastest) / SHARE)
-    steepest = np.minimum(braking, np.sqrt(2.0 * usable * fastest))
-    short = (jerk < np.inf) & (steepest**3 > usable**2 * (upper - lower - lost))
+        lost = np.where(lag > 0.0, lag**2 * limits.ramp * braking / (limits.ramp - braking), 0.0)
+        rates = [joint_rates(limits, i) for i in range(lag.size)]
+        usable = np.array([usable_jerk(own, 1.0 / rate) for own in rates])
+    steepest = np.minimum(braking, np.sqrt(2.0 * usable * limits.velocity))
+    room = limits.upper - limits.lower - lost
+    short = (limits.jerk < np.inf) & (steepest**3 > usable**2 * room)
     if short.any():
         i = int(np.flatnonzero(short)[0])
         step = f", and more cannot be used at {1.0 / rate:g} s a step" if rate < np.inf else ""
         problem = f"joint {i + 1}: {usable[i]:g} rad/s^3 is too little to stop in its range{step}"
-        raise InvalidInputError("jerk", problem, jerk)
+        raise InvalidInputError("jerk", problem, limits.jerk)
 
 
-def largest_gain(numbers: Vector, rate: float) -> float:
+def largest_gain(limits: MotionNumbers, rate: float) -> float:
     """Compute the feedback gain up to which a loop with these limits is stable [1/s].
 
     It is one over the loop's delay: a period, and the mean time that an acceleration takes to turn
     from one limit to the other (docs/limits.md).
 
     Args:
-        numbers: `MotionLimits.numbers`, (8 n,).
+        limits: The limits of the joints.
         rate: Control periods a second [1/s].
     """
-    _, _, fastest, acceleration, jerk, *_ = numbers.reshape(NUMBERS, -1)
     with np.errstate(invalid="ignore"):  # a joint without limits
-        delay = np.fmin(acceleration / jerk, np.sqrt(fastest / jerk))
+        turn = np.sqrt(limits.velocity / limits.jerk)
+        delay = np.fmin(limits.acceleration / limits.jerk, turn)
     return float(1.0 / (delay.max() + 1.0 / rate))
 
 
@@ -465,12 +527,11 @@ def joint_bounds(
         rates: Its limits.
         periods: Periods of the step.
     """
-    _, accel, jerk, _, _, _ = rates
     above *= periods.share
     below *= periods.share
-    if jerk < np.inf:
+    if rates.jerk < np.inf:
         lower, upper = _jerk_bounds(last, before, above, below, rates, periods)
-    elif accel < np.inf:
+    elif rates.acceleration < np.inf:
         lower, upper = _acceleration_bounds(last, above, below, rates, periods)
     else:
         return -np.inf, np.inf
@@ -491,17 +552,17 @@ def _acceleration_bounds(
     last: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where no jerk is limited."""
-    fastest, accel, _, deceleration, _, lag = rates
-    first = last - accel * periods.dt
-    final = last + accel * periods.dt
+    fastest = rates.velocity
+    first = last - rates.acceleration * periods.dt
+    final = last + rates.acceleration * periods.dt
     above -= min(max(above, 0.0), ROUNDING)
     below -= min(max(below, 0.0), ROUNDING)
     # Outside of the range the way back is no quicker than the velocity limit.
-    if lag > 0.0:
+    if rates.lag > 0.0:
         upper = _speed_below_ramp(above, rates, periods.hold)
         lower = -_speed_below_ramp(below, rates, periods.hold)
     else:
-        unit = deceleration * periods.hold
+        unit = rates.deceleration * periods.hold
         upper = unit * approach(above / (unit * periods.hold), periods.vary)
         lower = -unit * approach(below / (unit * periods.hold), periods.vary)
     upper = min(max(upper, -fastest), fastest)
@@ -515,7 +576,9 @@ def _speed_below_ramp(room: float, rates: Rates, hold: float) -> float:
 
     A position-dependent velocity limit is zero at its end, and bounds the velocity on the way.
     """
-    _, accel, _, _, ramp, lag = rates
+    accel = rates.acceleration
+    ramp = rates.ramp
+    lag = rates.lag
     unit = ramp * (hold + lag)
     speed = unit * approach(room / (unit * (hold + lag)), True)
     # Where the limit shrinks by more than the joint can brake, it has to have braked before.
@@ -531,7 +594,8 @@ def _jerk_bounds(
     last: float, before: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where the jerk is limited."""
-    fastest, accel, jerk, deceleration, _, lag = rates
+    fastest = rates.velocity
+    accel = rates.acceleration
     dt = periods.dt
     longest = periods.longest
     slowest = last - accel * dt
@@ -541,20 +605,20 @@ def _jerk_bounds(
     bottom = min(-fastest, quickest)
     top = max(fastest, slowest)
     middle = min(max(2.0 * last - before, slowest), quickest)
-    change = jerk * dt * dt
+    change = rates.jerk * dt * dt
     first = min(max(max(slowest, middle - change), bottom), top)
     final = min(max(min(quickest, middle + change), bottom), top)
-    jerk = _usable_jerk(jerk, deceleration, fastest, longest)
+    jerk = usable_jerk(rates, longest)
     unit = jerk * dt * dt
-    vary = periods.vary or lag > 0.0
+    vary = periods.vary or rates.lag > 0.0
     lb = min(max(last - unit * approach((last + fastest) / unit, vary), first), final)
     ub = min(max(last + unit * approach((fastest - last) / unit, vary), first), final)
     if lb > ub:
         lb = 0.5 * (lb + ub)
         ub = lb
-    way = (jerk, min(deceleration, accel - jerk * longest), np.inf)
+    way = (jerk, min(rates.deceleration, accel - jerk * longest), np.inf)
     margin = 0.0 if periods.vary else MARGIN * unit * dt
-    if lag > 0.0:
+    if rates.lag > 0.0:
         upper = _ceiling_below_ramp(lb, ub, above, last, rates, periods)
         lower = -_ceiling_below_ramp(-ub, -lb, below, -last, rates, periods)
     else:
@@ -587,7 +651,8 @@ def arriving(
     A joint that is all but at rest halves what is left in each period, if its jerk limit allows
     this period's change and the next one's; else the velocity is the wanted one.
     """
-    _, accel, jerk, _, _, _ = rates
+    accel = rates.acceleration
+    jerk = rates.jerk
     dt = periods.dt
     eased = _easing(left, periods.hold)
     turn = max(abs(eased - 2.0 * last + before), abs((EASE + 1.0) * eased - last))
@@ -668,9 +733,10 @@ def highest(v: float, last: float, periods: Periods, way: tuple[float, float, fl
 
 
 @compiled
-def _usable_jerk(jerk: float, deceleration: float, fastest: float, period: float) -> float:
+def usable_jerk(rates: Rates, period: float) -> float:
     """Compute J', with which braking takes `SHARE` periods at least to a deceleration [rad/s^3]."""
-    return min(jerk, min(deceleration / period, fastest / (period * period)) / SHARE)
+    steepest = min(rates.deceleration / period, rates.velocity / (period * period))
+    return min(rates.jerk, steepest / SHARE)
 
 
 @compiled
@@ -706,13 +772,16 @@ def _ceiling_below_ramp(
     Below a position-dependent velocity limit it ends before that by what the limit asks for beyond
     the way at constant deceleration: the lower the deceleration, the less.
     """
-    fastest, accel, jerk, deceleration, ramp, lag = rates
     # Below a limit that shrinks, the way to rest is counted at the samples.
     own = Periods(periods.dt, periods.hold, periods.longest, periods.share, True)
+    deceleration = rates.deceleration
     for level in range(LEVELS):
-        J = _usable_jerk(jerk, deceleration, fastest, periods.longest)
-        A = min(deceleration, accel - J * periods.longest)
-        end = room - 0.5 * lag * lag * ramp * A / (ramp - A)
+        slower = Rates(
+            rates.velocity, rates.acceleration, rates.jerk, deceleration, rates.ramp, rates.lag
+        )
+        J = usable_jerk(slower, periods.longest)
+        A = min(deceleration, rates.acceleration - J * periods.longest)
+        end = room - 0.5 * rates.lag * rates.lag * rates.ramp * A / (rates.ramp - A)
         # One that brakes by more is behind on its way.
         way = (J, A, A)
         if level == 0 or highest(lb, last, own, way) <= end:
@@ -726,8 +795,9 @@ def tip_speed_bounds(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
     """Tighten the bounds to those of `TipSpeedLimit`, whose constants these are."""
-    frame = int(constants[0])
-    gain = min(constants[2], step.rate)
+    own = TipSpeedNumbers.of(constants)
+    frame = own.frame
+    gain = min(own.gain, step.rate)
     point = triple(Placement.of(step.placements[frame]).position)
     velocity = (0.0, 0.0, 0.0)
     for j in range(step.q.size):
@@ -742,7 +812,7 @@ def tip_speed_bounds(
     for j in range(step.q.size):
         along[j] = step.moves[frame, j] * rate_along(step.jacobian, j, point, direction)
         total += abs(along[j])
-    growth = gain / step.rate * (constants[1] - speed) / total
+    growth = gain / step.rate * (own.limit - speed) / total
     for j in range(step.q.size):
         if along[j] > NEGLIGIBLE:
             ub[j] = max(min(ub[j], step.last[j] + growth), lb[j])

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterable, Mapping, Sequence
+from enum import IntEnum
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -28,13 +29,13 @@ from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import MEET, CollisionAvoidance
 from iiwa_dnn.schemes.costs import KineticEnergy
 from iiwa_dnn.schemes.limits import (
-    NUMBERS,
-    SHARE,
     MotionLimits,
+    Periods,
     RateLimits,
     approach,
-    constant_periods,
+    joint_rates,
     merged,
+    usable_jerk,
 )
 from iiwa_dnn.schemes.parts import (
     Cost,
@@ -154,7 +155,7 @@ class Scheme:
         q = conf.q
         velocity = np.zeros(q.size) if dq is None else checks.finite_array("dq", dq, (q.size,))
         targets = np.array(targets_of(conf.robot.tip, program.target_frames, target))
-        return program.qp_at(np.array([q, velocity, velocity]), targets, dt)
+        return program.qp_at(q, velocity, velocity, targets, dt)
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
         """Compute dq^T G(q) dq of a joint velocity dq (n,) [rad/s].
@@ -195,10 +196,52 @@ def targets_of(
     return [checks.instance("target", given[name], Target).data for name in frames]
 
 
+class ProgramSizes(NamedTuple):
+    """Sizes of a scheme's programs, and of what they are built for.
+
+    Attributes:
+        n: Number of variables.
+        m: Number of inequality rows.
+        p: Number of equality rows.
+        joints: Number of joints.
+        pairs: Number of watched pairs.
+        frames: Number of tracked frames.
+    """
+
+    n: int
+    m: int
+    p: int
+    joints: int
+    pairs: int
+    frames: int
+
+
+class BlockKind(IntEnum):
+    """Kinds of blocks, in the order in which they stand."""
+
+    COST = 0
+    TASK = 1
+    SOFT_TASK = 2
+    LIMIT = 3
+
+
+class Column(IntEnum):
+    """Columns of the table of blocks; their meaning is that of the fields of `Block`."""
+
+    KIND = 0
+    ADDRESS = 1
+    FIRST = 2
+    ROWS = 3
+    START = 4
+    STOP = 5
+    TARGET = 6
+
+
 class ProgramArrays(NamedTuple):
     """Arrays with which compiled code writes programs.
 
     Attributes:
+        sizes: Sizes of the programs.
         table: `StepProgram.table`.
         constants: `StepProgram.constants`, (k,).
         jacobian: `Kinematics.jacobian`, (dof, 6).
@@ -206,8 +249,10 @@ class ProgramArrays(NamedTuple):
         moves: `Robot.moves`, (frames, dof).
         inertia: `Kinematics.inertia`, (dof, dof).
         rate: Inverse of the control period [1/s]; inf outside of a loop.
+        tip: Index of the first tracked frame.
     """
 
+    sizes: ProgramSizes
     table: IntMatrix
     constants: Vector
     jacobian: Matrix
@@ -215,6 +260,7 @@ class ProgramArrays(NamedTuple):
     moves: Matrix
     inertia: Matrix
     rate: float
+    tip: int
 
 
 POSITION, VELOCITY, ACCELERATION, JERK = range(1, 5)
@@ -228,16 +274,13 @@ _CLOSE = 1e-9
 OFF = 1e-6
 """What a relation of joints lacks from which on it is said [rad]."""
 
-COSTS, TASKS, SOFT_TASKS, LIMITS = range(4)
-"""Kinds of blocks, in the order in which they stand."""
-
 
 class Block(NamedTuple):
     """Rows of one part; from `kind` on, a row of the table.
 
     Attributes:
         part: The part.
-        kind: `COSTS`, `TASKS`, `SOFT_TASKS` or `LIMITS`.
+        kind: What kind of part it is.
         address: Address of its kernel.
         first: Its first row among the program's equality or inequality rows.
         rows: Number of its rows; none for a cost.
@@ -247,7 +290,7 @@ class Block(NamedTuple):
     """
 
     part: Part
-    kind: int
+    kind: BlockKind
     address: int
     first: int
     rows: int
@@ -269,8 +312,7 @@ class StepProgram:
             tip's if no task tracks one.
         refreshed: Blocks of the parts whose constants change along a run.
         kinematics: The robot's, overwritten by each step.
-        table: What compiled code reads of the layout, (1 + parts, 7): in its first row
-            ``n, m, p``, the number of joints, that of parts, and the first target's frame.
+        table: What compiled code reads of the blocks, a row each, (parts, 7), by `Column`.
         constants: Numbers that compiled code reads, (k,).
         pairs: Names in words and least distance [m] of each watched pair.
     """
@@ -293,26 +335,23 @@ class StepProgram:
         n = robot.dof + scheme.slack
         self.blocks: list[Block] = []
         self.constants: Vector = np.zeros(0)
-        rows = [
-            self._add(kind, parts, n)
-            for kind, parts in enumerate((scheme.costs, self.tasks, soft, limits))
-        ]
-        self.sizes = (n, rows[LIMITS], rows[TASKS])
+        self._add(BlockKind.COST, scheme.costs, n)
+        p = self._add(BlockKind.TASK, self.tasks, n)
+        self._add(BlockKind.SOFT_TASK, soft, n)
+        m = self._add(BlockKind.LIMIT, limits, n)
+        self.sizes = (n, m, p)
         self.pairs: list[tuple[str, float]] = []
         for block in self.blocks:
             if isinstance(block.part, CollisionAvoidance):
                 scene = self.constants[block.start : block.start + SceneHead.width()]
                 SceneHead.of(scene).first = len(self.pairs)
                 self.pairs += block.part.pairs(robot)
-        tip = robot.frame_id(self.target_frames[0])
-        head = (*self.sizes, robot.dof, len(self.blocks), tip, 0)
-        self.table: IntMatrix = np.array(
-            [head, *(block[1:] for block in self.blocks)], dtype=np.int64
-        )
+        table = [block[1:] for block in self.blocks]
+        self.table: IntMatrix = np.array(table, dtype=np.int64).reshape(-1, len(Column))
         self.refreshed = [block for block in self.blocks if block.part.refreshes]
         self.kinematics = Kinematics(robot, self._frames(), self.needs_inertia)
 
-    def _add(self, kind: int, parts: Sequence[Part], n: int) -> int:
+    def _add(self, kind: BlockKind, parts: Sequence[Part], n: int) -> int:
         """Add the blocks of the parts of a kind in programs of n variables; count their rows."""
         robot = self.robot
         first = 0
@@ -327,7 +366,7 @@ class StepProgram:
             stop = start + own.size
             address = part.entry.address(part.kernel)
             self.blocks.append(Block(part, kind, address, first, rows, start, stop, target))
-            weight = [part.weight] if kind == SOFT_TASKS and isinstance(part, Task) else []
+            weight = [part.weight] if kind is BlockKind.SOFT_TASK and isinstance(part, Task) else []
             self.constants = np.concatenate([self.constants, own, np.array(weight)])
             first += rows
         return first
@@ -344,9 +383,10 @@ class StepProgram:
         """The parts, in the order of the blocks."""
         return [block.part for block in self.blocks]
 
-    def constants_of(self, kind: type[Part]) -> list[tuple[int, int]]:
-        """Return beginning and end in `constants` of those of each part of a kind."""
-        return [(block.start, block.stop) for block in self.blocks if isinstance(block.part, kind)]
+    def constants_of(self, kind: type[Part]) -> list[Vector]:
+        """Return the constants of each part of a kind, views."""
+        found = [block for block in self.blocks if isinstance(block.part, kind)]
+        return [self.constants[block.start : block.stop] for block in found]
 
     @property
     def least(self) -> Vector:
@@ -369,27 +409,10 @@ class StepProgram:
         counts = [task.row_count(self.robot) for task in self.tasks]
         return np.repeat([task.row_weight for task in self.tasks], counts)
 
-    @property
-    def placement(self) -> Vector:
-        """Placement of the first tracked frame, (12,), a copy."""
-        return np.array(self.kinematics.placements[self.table[0, 5]])
-
-    def append(self, address: int, constants: Vector, second: int = 0) -> None:
-        """Add an entry for another compiled function of a control step.
-
-        Args:
-            address: Address of the function.
-            constants: Numbers that it reads, (k,).
-            second: A further integer, in the third column.
-        """
-        start = self.constants.size
-        entry = (0, address, second, 0, start, start + constants.size, 0)
-        self.table = np.vstack([self.table, np.array([entry], dtype=np.int64)])
-        self.constants = np.concatenate([self.constants, constants])
-
     def arrays(self, dt: float) -> ProgramArrays:
         """Return the arrays with which compiled code writes programs of a control period [s]."""
         return ProgramArrays(
+            ProgramSizes(*self.sizes, self.robot.dof, len(self.pairs), len(self.target_frames)),
             self.table,
             self.constants,
             self.kinematics.jacobian,
@@ -397,6 +420,7 @@ class StepProgram:
             self.kinematics.robot.moves,
             self.kinematics.inertia,
             1.0 / dt if dt < np.inf else np.inf,
+            self.robot.frame_id(self.target_frames[0]),
         )
 
     def refresh(
@@ -423,21 +447,23 @@ class StepProgram:
             else:
                 block.part.refresh(step, own)
 
-    def write(
+    def qp_at(
         self,
-        data: Vector,
+        q: Vector,
+        last: Vector,
+        before: Vector,
         targets: Matrix,
-        past: Matrix,
         dt: float,
         t: float = 0.0,
         least: Vector | None = None,
-    ) -> None:
-        """Write the whole program of one step, at the joint positions of `kinematics`.
+    ) -> QP:
+        """Build the program of one instant.
 
         Args:
-            data: The program, `QP.data`, (size,), overwritten.
+            q: Joint positions [rad], (dof,).
+            last: Last command [rad/s], (dof,).
+            before: Command before the last one [rad/s], (dof,).
             targets: Targets of the tracked frames, (k, 18).
-            past: Joint positions [rad], last command and the one before [rad/s], (3, n).
             dt: Control period [s]; inf outside of a loop.
             t: Time [s].
             least: Distance that each watched pair has to keep [m], (pairs,), brought up to date;
@@ -446,22 +472,11 @@ class StepProgram:
         Raises:
             InvalidInputError: The answer of a part written in numpy is wrong; the part is named.
         """
-        self.refresh(past[0], past[1], targets, t, dt)
-        kept = self.least if least is None else least
-        assemble(data, self.arrays(dt), past, kept, targets, float(t))
-
-    def qp_at(
-        self,
-        past: Matrix,
-        targets: Matrix,
-        dt: float,
-        t: float = 0.0,
-        least: Vector | None = None,
-    ) -> QP:
-        """Build the program at the joint positions of `past`; arguments as of `write`."""
         data = np.empty(data_size(*self.sizes))
-        self.kinematics.update(past[0])
-        self.write(data, targets, past, dt, t, least)
+        self.kinematics.update(q)
+        self.refresh(q, last, targets, t, dt)
+        kept = self.least if least is None else least
+        assemble(data, self.arrays(dt), q, last, before, kept, targets, float(t))
         return QP.from_data(data, self.sizes)
 
     def settings(self) -> dict[str, object]:
@@ -493,27 +508,47 @@ def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
 
 
 @compiled
+def program_views(data: Vector, sizes: ProgramSizes) -> QPViews:
+    """Make the views of a program, `QP.data` (size,)."""
+    return qp_views(data, sizes.n, sizes.m, sizes.p)
+
+
+@compiled
+def block_constants(arrays: ProgramArrays, k: int) -> Vector:
+    """Return the constants of block k, (k,)."""
+    start = arrays.table[k, Column.START]
+    return arrays.constants[start : arrays.table[k, Column.STOP]]
+
+
+@compiled
 def assemble(
-    data: Vector, arrays: ProgramArrays, past: Matrix, least: Vector, targets: Matrix, t: float
+    data: Vector,
+    arrays: ProgramArrays,
+    q: Vector,
+    last: Vector,
+    before: Vector,
+    least: Vector,
+    targets: Matrix,
+    t: float,
 ) -> None:
     """Write the rows of all parts into a program.
 
     Args:
         data: The program, `QP.data`, (size,), overwritten.
         arrays: `StepProgram.arrays`.
-        past: Joint positions [rad], last command and the one before [rad/s], (3 or more, dof).
+        q: Joint positions [rad], (dof,).
+        last: Last command [rad/s], (dof,).
+        before: Command before the last one [rad/s], (dof,).
         least: Distance that each watched pair has to keep [m], (pairs,), brought up to date.
         targets: Targets of the tracked frames, (k, 18).
         t: Time [s].
     """
-    table = arrays.table
-    constants = arrays.constants
     step = StepViews(
         t,
         arrays.rate,
-        past[0],
-        past[1],
-        past[2],
+        q,
+        last,
+        before,
         arrays.jacobian,
         arrays.placements,
         arrays.moves,
@@ -521,30 +556,29 @@ def assemble(
         targets,
         least,
     )
-    qp = qp_views(data, table[0, 0], table[0, 1], table[0, 2])
+    qp = program_views(data, arrays.sizes)
     data[:] = 0.0
     qp.lb[:] = -np.inf
     qp.ub[:] = np.inf
-    for k in range(1, 1 + table[0, 4]):
-        kind = table[k, 0]
-        address = table[k, 1]
-        first = table[k, 2]
-        rows = table[k, 3]
-        own = constants[table[k, 4] : table[k, 5]]
-        target = TargetData.of(step.targets[table[k, 6]])
-        if kind == COSTS:
+    for k in range(len(arrays.table)):
+        entry = arrays.table[k]
+        kind = entry[Column.KIND]
+        address = entry[Column.ADDRESS]
+        first = entry[Column.FIRST]
+        end = first + entry[Column.ROWS]
+        own = block_constants(arrays, k)
+        target = TargetData.of(targets[entry[Column.TARGET]])
+        if kind == BlockKind.COST:
             enter_cost(address, step, own, qp.P, qp.q)
-        elif kind == TASKS:
-            A = qp.A[first : first + rows]
-            enter_task(address, step, own, target, A, qp.b[first : first + rows])
-        elif kind == SOFT_TASKS:
-            A = np.zeros((rows, qp.q.size))
-            b = np.zeros(rows)
+        elif kind == BlockKind.TASK:
+            enter_task(address, step, own, target, qp.A[first:end], qp.b[first:end])
+        elif kind == BlockKind.SOFT_TASK:
+            A = np.zeros((end - first, qp.q.size))
+            b = np.zeros(end - first)
             enter_task(address, step, own, target, A, b)
-            add_soft(qp, A, b, constants[table[k, 5]])
+            add_soft(qp, A, b, arrays.constants[entry[Column.STOP]])
         else:
-            G = qp.G[first : first + rows]
-            enter_limit(address, step, own, G, qp.h[first : first + rows], qp.lb, qp.ub)
+            enter_limit(address, step, own, qp.G[first:end], qp.h[first:end], qp.lb, qp.ub)
 
 
 @compiled
@@ -563,16 +597,13 @@ class LimitNames:
 
     Attributes:
         settings: `StepProgram.settings`.
-        periods: Periods of the step.
     """
 
-    def __init__(self, program: StepProgram, dt: float) -> None:
-        """Take the limits of a step program and its control period [s]."""
+    def __init__(self, program: StepProgram) -> None:
+        """Take the limits of a step program."""
         self.settings = program.settings()
-        self.periods = constant_periods(dt)
         self._program = program
-        numbers = (program.rate_limits or MotionLimits()).numbers(program.robot)
-        self._limits = numbers.reshape(NUMBERS, -1)
+        self._limits = (program.rate_limits or MotionLimits()).constants(program.robot)
 
     def conditions(self, q: Vector, least: Vector) -> tuple[str, ...]:
         """State which promises wait for the arm to come nearer to them.
@@ -599,13 +630,16 @@ class LimitNames:
         ]
         return (*near, *off)
 
-    def codes(self, bounds: Matrix, sides: NDArray[Any], past: Matrix) -> NDArray[np.int8]:
+    def codes(
+        self, bounds: Matrix, sides: NDArray[Any], past: Matrix, periods: Periods
+    ) -> NDArray[np.int8]:
         """Give the bounds on some sides of a program's joints their codes.
 
         Args:
             bounds: Lower and upper bounds of the joints [rad/s], (2, n).
             sides: Above 0 for an upper bound, below for a lower one, 0 for neither, (n,).
             past: Joint positions [rad], last command and the one before [rad/s], (3, n).
+            periods: Periods of the step.
 
         Returns:
             Places in `naming.KINDS`, from 1, negative for lower bounds; 0 where `sides` is, (n,).
@@ -616,27 +650,28 @@ class LimitNames:
         value = np.where(sign > 0.0, upper, -lower)
         kinds = np.full(dof, POSITION)
         # Crossed bounds are others' than the robot's.
-        close = np.where(lower > upper, -1.0, _CLOSE * self._limits[2])
+        close = np.where(lower > upper, -1.0, _CLOSE * self._limits.velocity)
         with np.errstate(invalid="ignore"):  # joints without limits
-            for kind, candidate in zip(_KINDS, self._candidates(sign * past), strict=True):
+            for kind, candidate in zip(_KINDS, self._candidates(sign * past, periods), strict=True):
                 kinds[np.abs(candidate - value) <= close] = kind
         return np.asarray(sign * kinds, np.int8)
 
-    def _candidates(self, past: Matrix) -> list[Vector]:
+    def _candidates(self, past: Matrix, periods: Periods) -> list[Vector]:
         """Return the upper bounds that the limit of each of `_KINDS` alone makes, (n,) [rad/s].
 
         Args:
             past: Joint positions [rad], last command and the one before [rad/s], (3, n); of the
                 joints whose lower bounds are meant they have the other sign.
+            periods: Periods of the step.
         """
         _, last, before = past
-        _, _, velocity, acceleration, jerk, braking, _, lag = self._limits
-        dt, _, longest, _, vary = self.periods
-        usable = np.fmin(braking / longest, velocity / longest**2) / SHARE
-        unit = dt**2 * np.fmin(jerk, usable)
-        ways = zip((velocity - last) / unit, vary | (lag > 0.0), strict=True)
+        limits = self._limits
+        dt, _, longest, _, vary = periods
+        rates = [joint_rates(limits, i) for i in range(last.size)]
+        unit = dt**2 * np.array([usable_jerk(own, longest) for own in rates])
+        ways = zip((limits.velocity - last) / unit, vary | (limits.lag > 0.0), strict=True)
         room = [approach(x, own) for x, own in ways]
         # The velocity after which the acceleration can still be taken back in time.
-        fastest = np.where(jerk < np.inf, last + unit * room, velocity)
-        by_jerk = 2.0 * last - before + dt**2 * jerk
-        return [by_jerk, last + dt * acceleration, fastest]
+        fastest = np.where(limits.jerk < np.inf, last + unit * room, limits.velocity)
+        by_jerk = 2.0 * last - before + dt**2 * limits.jerk
+        return [by_jerk, last + dt * limits.acceleration, fastest]

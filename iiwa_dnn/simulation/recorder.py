@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.command import Command, log_of
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.networks.solver import DNNSolver
@@ -50,7 +50,7 @@ class Recorder:
         self.last_step: int | None = None
         self.layout = controller.control_step.layout
         self.infeasible: int | None = None
-        self._names = LimitNames(program, controller.dt)
+        self._names = LimitNames(program)
         self._done = 0
         self.arrays: dict[str, NDArray[Any]] = {}
         for name in COLUMNS.keys() - OPTIONAL - _LATER:
@@ -84,23 +84,26 @@ class Recorder:
         arrays["dq"][steps] = [each.dq for each in outcomes]
         arrays["dq_solver"][steps] = [each.velocity for each in outcomes]
         stages = len(rows) // count
-        figures = self.layout.view(rows, "figures").reshape(count, stages, -1)
-        arrays["iterations"][steps] = figures[..., 0].sum(axis=1)
-        arrays["kkt_residual"][steps] = figures[..., 2:].max(axis=(1, 2))
+        stats = log_of(rows, self.layout.sizes).stats
+        iterations = np.reshape(stats.iterations, (count, stages))
+        arrays["iterations"][steps] = iterations.sum(axis=1)
+        residuals = np.max([stats.primal, stats.dual, stats.gap], axis=0)
+        arrays["kkt_residual"][steps] = residuals.reshape(count, stages).max(axis=1)
         first = rows[::stages]  # pose, target and multipliers are the first stage's
+        logs = log_of(first, self.layout.sizes)
         self._look_for_infeasible(first)
         placements = np.array([each.placement for each in outcomes])
-        self._add_samples(self._done, placements, self.layout.view(first, "targets"))
+        self._add_samples(self._done, placements, logs.targets.reshape(count, -1))
         tol = self._controller.solver.tol
         of_bounds, of_rows = self.layout.multipliers(first, tol)
         for name, values in (
             ("bound_multiplier", of_bounds),
             ("row_multiplier", of_rows),
-            ("kind", self.layout.view(first, "decision")[:, 3]),
+            ("kind", np.asarray(logs.kind)),
             ("excess", self.layout.excess(first)),
         ):
             if values.any():
-                self._array(name, m=self.layout.sizes[1])[steps] = values
+                self._array(name, m=self.layout.sizes.m)[steps] = values
         tells_kinds = self._controller.program.rate_limits is not None
         for k, outcome in enumerate(outcomes, steps.start):
             self._add_incident(k, outcome)
@@ -118,7 +121,7 @@ class Recorder:
         """
         if self._controller.mode != "continuous" or self.infeasible is not None:
             return
-        violation = self.layout.view(rows, "figures")[:, 2]
+        violation = np.asarray(log_of(rows, self.layout.sizes).stats.primal)
         for first in range(0, len(rows), SEARCHED):
             worst = first + int(violation[first : first + SEARCHED].argmax())
             if self._is_infeasible(rows[worst]):
@@ -128,7 +131,7 @@ class Recorder:
 
     def _is_infeasible(self, row: Vector) -> bool:
         """Test whether the program of a row (width,) is shown to have no solution."""
-        qp = QP.from_data(self.layout.view(row, "program"), self.layout.sizes)
+        qp = QP.from_data(log_of(row, self.layout.sizes).program, self.layout.qp_sizes)
         return DNNSolver().solve(qp).status is Status.PRIMAL_INFEASIBLE
 
     def finish(self, steps: int) -> dict[str, NDArray[Any]]:
@@ -164,9 +167,8 @@ class Recorder:
         if command.action is Action.NONE:
             return
         self._array("fraction")[k] = command.fraction
-        codes = self._names.codes(command.bounds, command.blocking, command.past)
-        self._array("blocking")[k] = codes
-        rows = command.blocking[self.layout.sizes[0] :]
+        self._array("blocking")[k] = command.codes(command.blocking)
+        rows = command.blocking[self.layout.sizes.n :]
         if rows.any():
             self._array("blocking_rows", m=rows.size)[k] = rows
 
@@ -176,7 +178,9 @@ class Recorder:
         multipliers, _ = self.layout.multipliers(command.row, tol)
         if multipliers.any():
             qp = command.qp
-            kinds = self._names.codes(np.array([qp.lb, qp.ub]), multipliers, command.past)
+            bounds = np.array([qp.lb, qp.ub])
+            periods = self.layout.periods
+            kinds = self._names.codes(bounds, multipliers, command.past, periods)
             self._array("bound_kind")[k] = kinds
 
     def _add_kinetic_index(self, steps: slice, ended: bool) -> None:

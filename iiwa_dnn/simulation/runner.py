@@ -11,6 +11,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
+from iiwa_dnn.control.command import log_of
 from iiwa_dnn.control.controller import Controller, Mode
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.paths import References, beyond_reach, by_frame
@@ -24,7 +25,7 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.robot import model_limits
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.limits import NUMBERS, MotionLimits, RateLimits
+from iiwa_dnn.schemes.limits import MotionLimits, RateLimits
 from iiwa_dnn.simulation.loop import Loop
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
 from iiwa_dnn.simulation.noise import NoiseEntry, SignalChain
@@ -142,7 +143,8 @@ def simulate(
     def hand_over() -> None:
         """Pass the steps that were taken on to the record and to the check."""
         rows = recorder.flush()
-        pool.submit(layout.view(rows, "program"), layout.sizes, layout.view(rows, "point"))
+        logs = log_of(rows, layout.sizes)
+        pool.submit(logs.program, layout.qp_sizes, logs.point)
 
     interrupt = None
     try:
@@ -207,8 +209,8 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     program = controller.program
     integrator = solver.settler if controller.mode == "converged" else solver.follower
     paths = by_frame(controller.reference, "").values()
-    of_rates = (program.rate_limits or MotionLimits()).numbers(robot).reshape(NUMBERS, -1)[3:5]
-    kept = dict(zip(RATES, of_rates, strict=True))
+    rates = (program.rate_limits or MotionLimits()).constants(robot)
+    kept = dict(zip(RATES, (rates.acceleration, rates.jerk), strict=True))
     own = [*model_limits(robot.model), *robot.limits[3:]]
     limits: dict[str, Any] = {
         RATES[named.quantity]: kept[named.quantity]

@@ -5,8 +5,9 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_simulation import driven
-from iiwa_dnn.control.command import RowLayout
+from iiwa_dnn.control.command import LogLayout, lay_out_log, log_of
 from iiwa_dnn.control.policies import Policy, ProgramKind
+from iiwa_dnn.schemes.program import ProgramSizes
 
 STEPS = 120
 SPEED = 0.15
@@ -23,7 +24,7 @@ def limits_of(name: str, tip: np.ndarray) -> tuple[d.Limit, ...]:
     }[name]
 
 
-def yielding_steps(arm: str, limits: str, policy: Policy) -> tuple[RowLayout, np.ndarray]:
+def yielding_steps(arm: str, limits: str, policy: Policy) -> tuple[LogLayout, np.ndarray]:
     """Rows of the steps that yield, of an arm on a circle that is too quick for it, near a ball."""
     robot = d.load_robot(arm)
     q = robot.start_posture()
@@ -33,10 +34,11 @@ def yielding_steps(arm: str, limits: str, policy: Policy) -> tuple[RowLayout, np
     circle = d.Circle(0.06, 1.5, begin=0.0).anchored(start)
     controller = d.Controller(slow, scheme, circle, policy=policy)
     taken = np.array([command.row for command in driven(controller, q, STEPS)[1]])
-    kinds = controller.control_step.layout.view(taken, "decision")[:, 3]
+    layout = controller.control_step.layout
+    kinds = log_of(taken, layout.sizes).kind
     taken = taken[(kinds > ProgramKind.OWN) & (kinds < ProgramKind.STOPPED)]
     assert len(taken) > 20
-    return controller.control_step.layout, taken
+    return layout, taken
 
 
 CASES = [
@@ -53,40 +55,43 @@ CASES = [
 @pytest.mark.parametrize(("arm", "limits", "policy"), CASES)
 def test_solvers_and_the_proof_agree_with_an_answer_and_with_no_other(arm, limits, policy) -> None:
     layout, rows = yielding_steps(arm, limits, policy)
-    programs = np.ascontiguousarray(layout.view(rows, "program"))
-    points = np.ascontiguousarray(layout.view(rows, "point"))
-    free = layout.view(rows, "decision")[:, 3] < ProgramKind.HELD
-    commands = layout.view(rows, "dq")[free]
-    np.testing.assert_allclose(commands, points[free, : layout.shape[0]], rtol=0, atol=1e-9)
+    logs = log_of(rows, layout.sizes)
+    programs = np.ascontiguousarray(logs.program)
+    points = np.ascontiguousarray(logs.point)
+    free = logs.kind < ProgramKind.HELD
+    joints = layout.sizes.joints
+    np.testing.assert_allclose(logs.dq[free], points[free, :joints], rtol=0, atol=1e-9)
     others = points.copy()
     random = np.random.default_rng(1)
-    others[:, : layout.shape[0]] = random.uniform(-SPEED, SPEED, (len(others), layout.shape[0]))
+    others[:, :joints] = random.uniform(-SPEED, SPEED, (len(others), joints))
     for name in ("proxqp", "osqp", "proof"):
         check = d.CrossCheck((name,))
-        agreement = check.check_block(programs, layout.sizes, points)
+        agreement = check.check_block(programs, layout.qp_sizes, points)
         assert (agreement.reference_residual <= check.reference_tolerance).all()
         assert (agreement.largest <= check.tolerance).all()
-        agreement = check.check_block(programs, layout.sizes, others)
+        agreement = check.check_block(programs, layout.qp_sizes, others)
         assert not (agreement.solution_gap <= check.tolerance).any()
 
 
 @pytest.mark.parametrize(("limits", "policy"), [("jerk", "slow"), ("braking", "relax")])
 def test_a_command_that_is_held_back_is_within_its_bounds(limits: str, policy: Policy) -> None:
     layout, rows = yielding_steps("iiwa7", limits, policy)
-    held = layout.view(rows, "decision")[:, 3] == ProgramKind.HELD
+    held = log_of(rows, layout.sizes).kind == ProgramKind.HELD
     assert held.sum() > 20
     assert layout.excess(rows).max() <= 1e-9
 
 
 def test_the_excess_of_an_answer_counts_its_rows_and_a_multiplier_needs_its_bound() -> None:
     qp = d.QP(np.eye(2), np.zeros(2), G=[[1.0, 1.0]], h=[0.5], lb=[-1.0] * 2, ub=[1.0] * 2)
-    layout = RowLayout(qp.sizes, 2, 0)
+    layout = lay_out_log(ProgramSizes(*qp.sizes, 2, 0, 0), None, 1e-3)
     row = np.zeros((1, layout.width))
-    layout.view(row, "program")[:] = qp.data
-    layout.view(row, "bounds")[:] = [-1.0, -1.0, 1.0, 1.0]
-    layout.view(row, "point")[:] = [0.5, 1.0, 0.0, 2.0, 3.0]  # x, z and z_box
+    log = log_of(row, layout.sizes)
+    log.program[:] = qp.data
+    log.lower[:] = -1.0
+    log.upper[:] = 1.0
+    log.point[:] = [0.5, 1.0, 0.0, 2.0, 3.0]  # x, z and z_box
     for kind in ProgramKind:
-        layout.view(row, "decision")[:, 3] = kind
+        log.kind = kind
         counts = kind < ProgramKind.HELD
         np.testing.assert_allclose(layout.excess(row), 1.0 if counts else 0.0)
     np.testing.assert_array_equal(layout.multipliers(row, 1e-9)[0], [[0.0, 3.0]])

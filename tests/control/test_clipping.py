@@ -14,7 +14,7 @@ from iiwa_dnn.qp import QP
 def settling(tol: float = 1e-9, budget: float = 60.0) -> Yielding:
     """What a controller knows of how its network settles."""
     own = d.Controller(d.load_robot("ur5"), d.DoubleIndicator()).control_step.plan.yielding
-    return own._replace(settings=np.array([tol, budget]))
+    return own._replace(tolerance=tol, budget=int(budget))
 
 
 def limited(G: object = None, h: object = None, n: int = 3) -> QP:

@@ -8,7 +8,7 @@ import pytest
 import iiwa_dnn as d
 from helpers_simulation import driven
 from iiwa_dnn.control import stopping
-from iiwa_dnn.control.state import REST
+from iiwa_dnn.schemes.limits import MotionNumbers
 from iiwa_dnn.schemes.scene import second_order
 from judge_limits import breaches
 
@@ -17,9 +17,10 @@ ACCELERATION = (d.AccelerationLimits(),)
 JERK = (d.AccelerationLimits(), d.JerkLimits(500.0))
 
 
-def limits_of(jerk: float) -> np.ndarray:
+def limits_of(jerk: float) -> MotionNumbers:
     """Limits of three joints."""
-    return np.repeat([-3.0, 3.0, 3.0, 10.0, jerk, 10.0, np.inf, 0.0], 3)
+    numbers = np.repeat([-3.0, 3.0, 3.0, 10.0, jerk, 10.0, np.inf, 0.0], 3)
+    return MotionNumbers.of(np.concatenate([np.zeros(4), numbers]))
 
 
 def way_to_rest(x: np.ndarray, before: np.ndarray, jerk: float, dt: float) -> np.ndarray:
@@ -156,7 +157,7 @@ def test_the_braking_motion_in_hand_is_that_of_the_last_command() -> None:
     for k in range(100):
         dq = controller.step(q, k * 4e-3, tip_at(2.0, 0.0, 0.0)).dq
         q = q + 4e-3 * dq
-        noted.append(controller._state.past[REST, 0])
+        noted.append(controller._state.motion.stopping_periods)
         least.append(np.ceil(np.abs(dq / (4e-3 * ROBOT.ddq_max)).max() - 1e-9))
     np.testing.assert_array_equal(noted, least)
     assert max(noted) > 10.0

@@ -7,7 +7,7 @@ from qpsolvers import problems
 
 import iiwa_dnn as d
 from helpers_qp import known_qp
-from iiwa_dnn.networks.integrators.base import BUDGET, SUBSTEPS, TOLERANCE, enter_answer
+from iiwa_dnn.networks.integrators.base import enter_answer
 
 DENSE = [name for name in dir(problems) if name.startswith("get_") and "sparse" not in name]
 
@@ -68,7 +68,8 @@ def test_settings_are_frozen_and_reach_the_compiled_answer() -> None:
         solver.tol = 1e-6
     answer = solver.compiled_answer((7, 0, 3), 1e-4)
     assert answer is not None
-    assert answer.constants[[TOLERANCE, BUDGET, SUBSTEPS]].tolist() == [1e-12, 7, 9]
+    own = answer.settings
+    assert (own.tolerance, own.budget, own.substeps) == (1e-12, 7, 9)
     assert d.DNNSolver(d.DualNetwork()).compiled_answer((7, 0, 3)) is None
     compiled = d.DNNSolver().compiled_answer((1, 0, 0), 1e-3)
     for curvature, steps in ((1e2, 585), (1e9, 0)):  # 0: more than a million

@@ -12,6 +12,7 @@ from helpers_kinematics import PAPER_Q0, Array
 from helpers_simulation import heart, paper_robot, paper_start
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.schemes.limits import (
+    MotionNumbers,
     braking,
     check_ranges,
     constant_periods,
@@ -24,6 +25,14 @@ from judge_limits import Breach, breaches
 
 INF = math.inf
 Limits = tuple[float, float, float]
+
+
+def motion_numbers(
+    lower: float, upper: float, speed: float, acceleration: float, jerk: float
+) -> MotionNumbers:
+    """Limits of one joint, without a position-dependent velocity limit."""
+    own = [lower, upper, speed, acceleration, jerk, acceleration, INF, 0.0]
+    return MotionNumbers.of(np.array([*[0.0] * 4, *own]))
 
 
 @compiled
@@ -125,7 +134,7 @@ def test_a_range_that_is_taken_is_long_enough(speed, acceleration, jerk, dt, upp
     limits = (speed, acceleration, jerk)
     while True:
         try:
-            check_ranges(np.array([-upper, upper, *limits, acceleration, INF, 0.0]), 1.0 / dt)
+            check_ranges(motion_numbers(-upper, upper, *limits), 1.0 / dt)
             break
         except d.InvalidInputError:
             upper *= 1.02
@@ -281,10 +290,7 @@ def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
 )
 @pytest.mark.parametrize("dt", [1e-3, 4e-3])
 def test_a_loop_is_stable_up_to_the_largest_gain(limits: Any, dt: float) -> None:
-    speed, acceleration, jerk = limits
-    gain = largest_gain(
-        np.array([-1.0, 1.0, speed, acceleration, jerk, acceleration, INF, 0.0]), 1.0 / dt
-    )
+    gain = largest_gain(motion_numbers(-1.0, 1.0, *limits), 1.0 / dt)
     calm = np.zeros(int(30.0 / dt))
     noise = 1e-4 * np.random.default_rng(0).standard_normal(calm.size)
     for start in (1e-3, 0.1, 2.0):
@@ -330,7 +336,8 @@ def test_a_robots_own_rates_are_those_that_it_has() -> None:
     for name, expected in kinds.items():
         robot = d.load_robot(name)
         assert tuple(map(type, own_rate_limits(robot))) == expected
-        rates = d.Shield(robot).motion.reshape(8, -1)[3:5]
+        motion = d.Shield(robot).motion
+        rates = [motion.acceleration, motion.jerk]
         np.testing.assert_array_equal(rates, [robot.ddq_max, robot.dddq_max])
     assert own_rate_limits(d.load_robot("iiwa7").with_limits(acceleration=np.inf)) == ()
 

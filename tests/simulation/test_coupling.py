@@ -9,7 +9,6 @@ import pytest
 import iiwa_dnn as d
 from helpers_simulation import driven
 from iiwa_dnn.control.policies import ProgramKind
-from iiwa_dnn.control.state import REST
 from judge_limits import breaches
 
 START = np.array([0.0, 0.6, 0.0, -1.2, 0.0, 0.6, 0.0])
@@ -137,4 +136,4 @@ def test_braking_from_a_velocity_that_others_chose_is_tested() -> None:
     controller.send(away)
     controller.halt()
     controller.step(q, 0.0, target)
-    assert controller._state.past[REST, 0] == np.ceil(0.3 / (10.0 * DT)) - 1.0
+    assert controller._state.motion.stopping_periods == np.ceil(0.3 / (10.0 * DT)) - 1.0

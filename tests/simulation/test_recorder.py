@@ -6,8 +6,9 @@ from numpy.testing import assert_array_equal
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, run
-from iiwa_dnn.control.command import RowLayout
+from iiwa_dnn.control.command import lay_out_log, log_of
 from iiwa_dnn.control.policies import Action
+from iiwa_dnn.schemes.program import ProgramSizes
 
 
 def test_a_decision_is_noted_at_its_step_with_the_bound_in_the_way() -> None:
@@ -55,7 +56,7 @@ def test_an_active_limit_has_a_multiplier_and_no_slack() -> None:
     """Multipliers of rounding, and such as decay after the joint has left its bound, do not act."""
     rows = [[1.0, 0.0], [-1.0, 0.0], [1.0, 1.0]]
     qp = d.QP(np.eye(2), np.zeros(2), rows, [1.0, 0.0, 2.0], lb=[-1.0, -2.0], ub=[1.0, 1.5])
-    layout = RowLayout(qp.sizes, 2, 1)
+    layout = lay_out_log(ProgramSizes(*qp.sizes, 2, 0, 1), None, 1e-3)
     for x, z, z_box, active_rows, active_bounds in (
         ([1.0, 1.0], [2.0, 3.0, 1e-16], [1e-16, 1e-16], [2.0, 0.0, 0.0], [0.0, 0.0]),
         ([1.0, -2.0], [1e-9, 0.0, 40.0], [0.5, -0.1], [0.0, 0.0, 0.0], [0.5, -0.1]),
@@ -63,8 +64,9 @@ def test_an_active_limit_has_a_multiplier_and_no_slack() -> None:
     ):
         point = np.concatenate([x, z, z_box])
         row = np.zeros(layout.width)
-        layout.view(row, "program")[:] = qp.data
-        layout.view(row, "point")[:] = point
+        log = log_of(row, layout.sizes)
+        log.program[:] = qp.data
+        log.point[:] = point
         of_bounds, of_rows = layout.multipliers(row, 1e-9)
         assert_array_equal(of_rows, active_rows)
         assert_array_equal(of_bounds, active_bounds)

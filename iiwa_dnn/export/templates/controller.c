@@ -41,9 +41,10 @@ int controller_step(struct controller *c, const double *q, const double *target,
     struct arena arena = controller_arena(c, &full);
     const control_step_StepPlan plan = controller_plan(c);
     const robot_kinematics_kernel_ModelTables model = @model@;
-    const Vector row = {c->row, @width@};
-    const Matrix past = {c->past, @rows@, CONTROLLER_DOF};
-    const Matrix following = {c->following, @rows@, CONTROLLER_DOF};
+    const Vector row = {c->log, @width@};
+    const control_command_StepLog log = @log_of@row, &plan.arrays.sizes);
+    const Vector motion_state = {c->motion_state, @motion@};
+    const Vector next_motion_state = {c->next_motion_state, @motion@};
     const Vector state = {c->state, @state@};
     const Vector joints = {(double *)q, CONTROLLER_DOF};
     const double t = c->steps[0] * CONTROLLER_DT;
@@ -51,15 +52,15 @@ int controller_step(struct controller *c, const double *q, const double *target,
         memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
         return CONTROLLER_INVALID;
     }
-    memcpy(c->row + @at_targets@, target, sizeof(double) * 18 * CONTROLLER_FRAMES);
+    memcpy(log.targets.data, target, sizeof(double) * 18 * CONTROLLER_FRAMES);
     @kinematics@&model, joints, plan.arrays.jacobian, plan.arrays.placements, plan.arrays.inertia);
-    const ptrdiff_t action = @take_step@row, &plan, joints, past, following, state, t, false);
+    const ptrdiff_t action = @take_step@row, &plan, joints, motion_state, next_motion_state, state, t, false);
     if (full || action == CONTROLLER_INVALID) {
         memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
         return CONTROLLER_INVALID;
     }
-    memcpy(dq, c->row + @at_dq@, sizeof(double) * CONTROLLER_DOF);
-    memcpy(c->past, c->following, sizeof c->past);
+    memcpy(dq, log.dq.data, sizeof(double) * CONTROLLER_DOF);
+    memcpy(c->motion_state, c->next_motion_state, sizeof c->motion_state);
     c->steps[0] += 1.0;
     return (int)action;
 }

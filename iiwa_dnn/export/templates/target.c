@@ -5,5 +5,7 @@ void controller_target(struct controller *c, double t, double *target)
     struct arena arena = controller_arena(c, &full);
     const control_step_StepPlan plan = controller_plan(c);
     const Matrix targets = {target, CONTROLLER_FRAMES, 18};
-    @sample@&plan.arrays, t - c->past[@delay@ * CONTROLLER_DOF], targets);
+    const Vector numbers = {c->motion_state, @motion@};
+    const control_state_MotionState motion = control_state_MotionState_of(numbers, CONTROLLER_DOF, @pairs@);
+    @sample@&plan.paths, t - motion.at->path_lag, targets);
 }

@@ -3,6 +3,7 @@
 from typing import Any, NamedTuple, Protocol
 
 from iiwa_dnn.compiling.library import entry
+from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.networks.base import Network, settings_of
 from iiwa_dnn.qp.layout import QPViews, Vector
 from iiwa_dnn.qp.program import QP
@@ -18,21 +19,52 @@ since a control loop asks for it at every step.
 Answered = tuple[float, float, float, float, float]
 """What `Settled` holds, as compiled code returns it."""
 
-TOLERANCE, BUDGET, DURATION, SUBSTEPS, NETWORK = range(5)
-"""Constants of a compiled answer: the tolerance of the residuals, the budget of linear systems, the
-time to advance [rho], the number of explicit sub-steps, 0 for as many as stability needs, and the
-first of the network's own."""
+
+class SolveStats(Record):
+    """Statistics of a solve.
+
+    Attributes:
+        iterations: Linear systems solved, or steps taken.
+        time: Network time that passed [rho].
+        primal: Primal residual.
+        dual: Dual residual.
+        gap: Duality gap.
+    """
+
+    iterations: float
+    time: float
+    primal: float
+    dual: float
+    gap: float
+
+
+class AnswerSettings(Record):
+    """Settings of a compiled answer.
+
+    Attributes:
+        tolerance: Tolerance of the residuals.
+        budget: Largest number of linear systems.
+        duration: Time to advance [rho]; 0 to solve.
+        substeps: Number of explicit sub-steps; 0 for as many as stability needs.
+        network: Constants of the network, (k,).
+    """
+
+    tolerance: float
+    budget: float
+    duration: float
+    substeps: int
+    network: Vector = part()
 
 
 @entry
 def enter_answer(
-    address: int, qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vector
+    address: int, qp: QPViews, rates: int, settings: AnswerSettings, state: Vector, point: Vector
 ) -> Answered:
     """Enter a compiled answer at an address.
 
     It advances the state (size,), by a time or until it has settled, writes the point
     (2n + m + p,) that it stands for, and returns what `Answered` holds. `rates` is the address of
-    the network's function, and the constants are (k,).
+    the network's function.
     """
     raise NotImplementedError
 
@@ -43,12 +75,12 @@ class CompiledAnswer(NamedTuple):
     Attributes:
         address: Address of a function of the type `enter_answer`.
         rates: Address of the network's compiled function.
-        constants: ``[tolerance, budget, duration, sub-steps, network's own ...]``, (k,).
+        settings: Its settings.
     """
 
     address: int
     rates: int
-    constants: Vector
+    settings: AnswerSettings
 
 
 class Integrator(Protocol):

@@ -9,7 +9,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network, enter_rates
-from iiwa_dnn.networks.integrators.base import DURATION, NETWORK, SUBSTEPS, Answered, Integrator
+from iiwa_dnn.networks.integrators.base import Answered, AnswerSettings, Integrator
 from iiwa_dnn.networks.projection import mark_active, stable_step
 from iiwa_dnn.qp.layout import QPViews, Vector, check_size
 from iiwa_dnn.qp.program import QP
@@ -72,22 +72,23 @@ class ExplicitEuler(Integrator):
 
 
 @compiled
-def follow(qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vector) -> Answered:
+def follow(
+    qp: QPViews, rates: int, settings: AnswerSettings, state: Vector, point: Vector
+) -> Answered:
     """Advance the network by its time with explicit steps; a compiled answer (`enter_answer`).
 
-    It reads constants (k,), advances the state (size,) and writes the point (2n + m + p,).
+    It advances the state (size,) and writes the point (2n + m + p,).
 
     Returns:
         Sub-steps, 0 if none are stable, or more than `MOST` needed; time [rho]; and the residuals
         of the point.
     """
-    duration = constants[DURATION]
-    count = int(constants[SUBSTEPS])
-    own = constants[NETWORK:]
+    duration = settings.duration
+    count = settings.substeps
     values = np.empty(state.size)
     if count == 0:
         active = np.empty(state.size - qp.q.size)
-        enter_rates(rates, qp, own, state, values)
+        enter_rates(rates, qp, settings.network, state, values)
         mark_active(qp, state, values, active)
         stable = SAFETY * stable_step(qp, active)
         if not (stable > 0.0 and duration <= MOST * stable):
@@ -95,7 +96,7 @@ def follow(qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vec
         count = max(1, int(np.ceil(duration / stable)))
     step = duration / count
     for _ in range(count):
-        enter_rates(rates, qp, own, state, values)
+        enter_rates(rates, qp, settings.network, state, values)
         for i in range(state.size):
             state[i] += step * values[i]
     primal, dual, gap = kkt_point(qp, state, point)

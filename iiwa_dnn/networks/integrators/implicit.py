@@ -27,9 +27,8 @@ from iiwa_dnn.compiling.library import compiled, released
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators import pseudo_transient
 from iiwa_dnn.networks.integrators.base import (
-    BUDGET,
-    TOLERANCE,
     Answered,
+    AnswerSettings,
     Integrator,
     Settled,
 )
@@ -125,17 +124,21 @@ def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -
 
 
 @compiled
-def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector) -> Answered:
-    """Advance `s` (size,) in place until the residuals of `point` (size,) are small enough.
+def settle(qp: QPViews, rates: int, settings: AnswerSettings, s: Vector, point: Vector) -> Answered:
+    """Solve by `solve_within`: a compiled answer (`enter_answer`), of the projection network."""
+    return solve_within(qp, settings.tolerance, int(settings.budget), s, point)
 
-    A compiled answer (`enter_answer`), of the projection network alone: `rates` is not used.
+
+@compiled
+def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector) -> Answered:
+    """Advance `s` (size,) in place until the residuals of `point` (size,) are at most `tol`.
+
+    It ends after a budget of linear systems too.
 
     Returns:
         ``(systems, time, primal, dual, gap)``: linear systems solved, network time that passed
         [rho], and the residuals of `point`.
     """
-    tol = constants[TOLERANCE]
-    budget = int(constants[BUDGET])
     n = qp.q.size
     rows = s.size - n
     matrix = Condensed(
@@ -195,7 +198,4 @@ def settle_program(
 ) -> Answered:
     """Settle the projection network from `s` (size,) for a program's flat array; see `settle`."""
     n, m, p = sizes
-    constants = np.empty(BUDGET + 1)
-    constants[TOLERANCE] = tol
-    constants[BUDGET] = max_systems
-    return settle(qp_views(data, n, m, p), 0, constants, s, point)
+    return solve_within(qp_views(data, n, m, p), tol, max_systems, s, point)
