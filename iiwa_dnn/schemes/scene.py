@@ -284,7 +284,7 @@ def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArr
         kinematics.update(q)
         write_end_rates(constants, kinematics.jacobian, kinematics.placements, rates)
     itself = [[Pair.of(row).speed > 0.0] for row in scene.pairs]
-    moved = (rates > UNMOVED) | np.reshape(itself, (-1, 1))
+    moved = (rates > UNMOVED) | np.array(itself, dtype=bool).reshape(-1, 1)
     return np.array(moved & scene.moves.any(axis=1, keepdims=True))
 
 
