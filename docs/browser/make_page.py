@@ -1,4 +1,4 @@
-"""Make the page on which the exported heart runs in the reader's browser.
+"""Make the page on which the exported controller runs in the reader's browser.
 
     python docs/browser/make_page.py
 
@@ -9,6 +9,7 @@ code, and what is needed to draw the arm. It is kept in the repository, and `mak
 
 import base64
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -20,19 +21,37 @@ import pinocchio as pin
 
 import iiwa_dnn
 from iiwa_dnn.files import write_text
+from iiwa_dnn.robot.collision import collision_model
+from iiwa_dnn.robot.shapes import visual_shapes
 
 HERE = Path(__file__).parent
 PAGE = HERE.parent / "heart.html"
-EXPORTED = ("q", "dq", "target", "begin", "step")
+TABLE = "plan_arrays_constants"
+"""Table of the C in which the ball's center lies; the page writes there when a hand moves it."""
+
+EXPORTED = ("q", "dq", "target", "begin", "step", TABLE)
 FLAGS = ("--target=wasm32", "-std=c99", "-Os", "-nostdlib", "-nostdlibinc", "-fno-math-errno")
+BALL = (0.52, -0.0625, 0.6875)
+RADIUS = 0.08
+DISTANCE = 0.02
+"""Center, radius and least distance of the ball [m]."""
+
+JERK = 500.0  # [rad/s^3]
 
 
 def heart_controller() -> tuple[iiwa_dnn.Controller, np.ndarray]:
-    """Return the controller of the heart at 1 ms, and where it begins, (7,) [rad]."""
-    robot = iiwa_dnn.load_robot("iiwa7")
+    """Return the controller of a heart at 1 ms, and where it begins, (7,) [rad]."""
+    robot = iiwa_dnn.load_robot("iiwa7").with_limits(jerk=JERK)
     q0 = np.array(robot.start_posture())
-    heart = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(robot, q0))
-    return iiwa_dnn.Controller(robot, iiwa_dnn.DoubleIndicator(), heart, dt=1e-3), q0
+    heart = iiwa_dnn.Heart(scale=7e-3, period=8.0).anchored(iiwa_dnn.Configuration(robot, q0))
+    ball = iiwa_dnn.Sphere(BALL, RADIUS)
+    limits = (
+        iiwa_dnn.AccelerationLimits(),
+        iiwa_dnn.JerkLimits(),
+        iiwa_dnn.CollisionAvoidance([ball], self_collision=False, distance=DISTANCE),
+    )
+    scheme = iiwa_dnn.DoubleIndicator(extra_limits=limits)
+    return iiwa_dnn.Controller(robot, scheme, heart, dt=1e-3), q0
 
 
 def compiled(controller: iiwa_dnn.Controller, q0: np.ndarray) -> bytes:
@@ -40,6 +59,10 @@ def compiled(controller: iiwa_dnn.Controller, q0: np.ndarray) -> bytes:
     with tempfile.TemporaryDirectory() as place:
         folder = iiwa_dnn.export.c99(controller, place, q0)
         result = folder / "controller.wasm"
+        code = (folder / "controller.c").read_text()
+        code, found = re.subn(rf"static const (double {TABLE}\[)", r"\1", code)
+        assert found == 1, f"{TABLE} is not in the exported C"
+        (folder / "controller.c").write_text(code)
         sources = (folder / "controller.c", HERE / "page.c")
         linked = (
             "no-entry",
@@ -75,10 +98,47 @@ def drawn(controller: iiwa_dnn.Controller, q0: np.ndarray) -> dict[str, Any]:
         "joints": joints,
         "tip": model.frames[robot.frame_id(robot.tip)].placement.translation.tolist(),
         "start": q0.tolist(),
+        "lower": robot.q_lower.tolist(),
+        "upper": robot.q_upper.tolist(),
         "limits": robot.dq_max.tolist(),
+        "acceleration": robot.ddq_max.tolist(),
+        "jerk": robot.dddq_max.tolist(),
         "dt": controller.dt,
         "path": [path.at(t).position.round(5).tolist() for t in times],
+        "ball": {"center": BALL, "radius": RADIUS, "distance": DISTANCE},
+        "shapes": shapes(robot),
+        "capsules": capsules(robot),
     }
+
+
+def shapes(robot: iiwa_dnn.Robot) -> list[dict[str, Any]]:
+    """List what the arm is drawn with: cylinders, capsules and balls along an axis of a joint."""
+    listed = []
+    for each in visual_shapes(robot).geometryObjects:
+        body = each.geometry
+        half = float(getattr(body, "halfLength", 0.0))
+        axis = half * each.placement.rotation[:, 2]
+        ends = (each.placement.translation - axis, each.placement.translation + axis)
+        listed.append(
+            {
+                "joint": each.parentJoint,
+                "round": type(body).__name__ != "Cylinder",
+                "radius": float(body.radius),
+                "ends": [end.round(6).tolist() for end in ends],
+                "color": each.meshColor[:3].round(3).tolist(),
+            }
+        )
+    return listed
+
+
+def capsules(robot: iiwa_dnn.Robot) -> list[dict[str, Any]]:
+    """List the capsules that the limits know, in the frames of their joints."""
+    listed = []
+    for each in collision_model(robot).capsules:
+        frame = robot.model.frames[robot.frame_id(each.link)]
+        ends = [frame.placement.act(np.array(end)).round(6).tolist() for end in (each.a, each.b)]
+        listed.append({"joint": frame.parentJoint, "ends": ends, "radius": each.radius})
+    return listed
 
 
 def main() -> int:
@@ -86,6 +146,7 @@ def main() -> int:
     controller, q0 = heart_controller()
     code = compiled(controller, q0)
     text = (HERE / "heart.in.html").read_text()
+    text = text.replace("@TABLE@", TABLE).replace("@NEAR@", f"{1e3 * DISTANCE:g}")
     text = text.replace("@SIZE@", f"{len(code) / 1e3:.0f}")
     text = text.replace("@MODEL@", json.dumps(drawn(controller, q0)))
     text = text.replace("@WASM@", base64.b64encode(code).decode())
