@@ -19,41 +19,45 @@ those of a product J^T J in double precision; of single precision they are refus
 variables passes as rounding at n times as much, relative to the sum of its absolute terms."""
 
 LONG = 16
-"""Terms of a product from which on it is summed in four parts; those of one arm are fewer."""
+"""Terms of a product from which on it is summed in `PARTS`; those of one arm are fewer."""
+PARTS = 4
+"""Sums, of each fourth term, that a processor forms at once; rows that one pass takes off."""
+
+
+@compiled
+def dot(start: float, a: Vector, b: Vector) -> float:
+    """Add the product of a vector (k,) and the first k entries of another one to a number."""
+    if a.size >= LONG:
+        return _long_dot(start, a, b)
+    value = start
+    for k in range(a.size):
+        value += a[k] * b[k]
+    return value
+
+
+@compiled
+def _long_dot(start: float, a: Vector, b: Vector) -> float:
+    """Compute `dot` in `PARTS` sums, which are added at last."""
+    one = start
+    two = 0.0
+    three = 0.0
+    four = 0.0
+    for part in range(a.size // PARTS):
+        i = PARTS * part
+        one += a[i] * b[i]
+        two += a[i + 1] * b[i + 1]
+        three += a[i + 2] * b[i + 2]
+        four += a[i + 3] * b[i + 3]
+    value = (one + two) + (three + four)
+    for k in range(a.size - a.size % PARTS, a.size):
+        value += a[k] * b[k]
+    return value
 
 
 @compiled
 def row_dot(rows: Matrix, j: int, x: Vector) -> float:
-    """Compute the product of row j of a matrix (k, n) and the first n entries of x.
-
-    From `LONG` terms on four sums are added, of each fourth term: a processor forms them at once.
-    """
-    row = rows[j]
-    own = x[: row.size]
-    if row.size >= LONG:
-        return _long_dot(row, own)
-    value = 0.0
-    for k in range(row.size):
-        value += row[k] * own[k]
-    return value
-
-
-@compiled
-def _long_dot(row: Vector, x: Vector) -> float:
-    """Compute `row_dot` of a row (n,) in four parts."""
-    one = 0.0
-    two = 0.0
-    three = 0.0
-    four = 0.0
-    for k in range(row.size // 4):
-        one += row[4 * k] * x[4 * k]
-        two += row[4 * k + 1] * x[4 * k + 1]
-        three += row[4 * k + 2] * x[4 * k + 2]
-        four += row[4 * k + 3] * x[4 * k + 3]
-    value = (one + two) + (three + four)
-    for k in range(row.size - row.size % 4, row.size):
-        value += row[k] * x[k]
-    return value
+    """Compute the product of row j of a matrix (k, n) and the first n entries of x."""
+    return dot(0.0, rows[j], x[: rows.shape[1]])
 
 
 @compiled
@@ -88,15 +92,19 @@ def cholesky_factor(K: Matrix) -> bool:
     """
     size = K.shape[0]
     for i in range(size):
-        for pair in range(i // 2):
-            one = K[2 * pair, i]
-            two = K[2 * pair + 1, i]
+        for part in range(i // PARTS):
+            j = PARTS * part
+            one = K[j, i]
+            two = K[j + 1, i]
+            three = K[j + 2, i]
+            four = K[j + 3, i]
             for k in range(i, size):
-                K[i, k] = K[i, k] - one * K[2 * pair, k] - two * K[2 * pair + 1, k]
-        if i % 2 == 1:
-            last = K[i - 1, i]
+                K[i, k] = K[i, k] - one * K[j, k] - two * K[j + 1, k]
+                K[i, k] = K[i, k] - three * K[j + 2, k] - four * K[j + 3, k]
+        for last in range(i - i % PARTS, i):
+            factor = K[last, i]
             for k in range(i, size):
-                K[i, k] -= last * K[i - 1, k]
+                K[i, k] -= factor * K[last, k]
         if not K[i, i] > 0.0:
             return False
         K[i, i] = 1.0 / np.sqrt(K[i, i])  # a division costs many products
@@ -117,9 +125,8 @@ def factor_solve(K: Matrix, rhs: Vector, out: Vector) -> None:
             out[k] -= out[i] * K[i, k]
     for back in range(size):
         row = size - 1 - back
-        for k in range(row + 1, size):
-            out[row] -= K[row, k] * out[k]
-        out[row] *= K[row, row]
+        value = dot(-out[row], K[row, row + 1 :], out[row + 1 : size])
+        out[row] = (0.0 - value) * K[row, row]
 
 
 @compiled
