@@ -51,7 +51,8 @@ def _number(argument: str, value: object, kind: str, fits: Callable[[float], boo
 
 def integer(argument: str, value: object, least: int) -> int:
     """Return a whole number of at least `least` as an int; refuse any other value."""
-    if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
+    # An int first, as above.
+    if isinstance(value, bool) or not isinstance(value, (int, Integral)) or int(value) < least:
         raise InvalidInputError(
             argument, f"must be a whole number of at least {least}, not {value!r}", value
         )

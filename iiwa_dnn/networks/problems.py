@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from iiwa_dnn import checks
@@ -28,8 +29,8 @@ def solve_problem(
         problem: Dense or sparse; n variables, p equalities, m inequalities, bounds.
         tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
         solver: Network and integrator to use; the default integrates the paper's network
-            implicitly. Its state is reset first, and its own settings replace `tol`, `eps_rel` and
-            `max_iter`.
+            implicitly. Its warm start is not used, and its own settings replace `tol`, `eps_rel`
+            and `max_iter`.
         sharpen: Take a few more steps down to rounding, for about a third more time
             (`DNNSolver.sharpen`).
         eps_rel: Tolerance on each entry of a residual, relative to the sum of its absolute terms.
@@ -49,14 +50,22 @@ def solve_problem(
         problem = problem.to_qpsolvers()
     else:
         qp = QP.from_qpsolvers(problem)
-    qp.check_values()
+    qp.check_numbers()
     if solver is None:
-        solver = DNNSolver(tol=tol, eps_rel=eps_rel, settler=ImplicitEuler(max_steps=max_iter))
-    checks.instance("solver", solver, DNNSolver).reset()
-    solution = solver.solve(qp)
-    if sharpen:
-        solution = solver.sharpen(qp, solution)
+        try:
+            solver = default_solver(tol, eps_rel, max_iter)
+        except TypeError:  # no number: it is refused by its name
+            solver = default_solver.__wrapped__(tol, eps_rel, max_iter)
+    solution = checks.instance("solver", solver, DNNSolver).solve_cold(qp, sharpen)
+    if not solution.found:
+        qp.check_values()  # an answer that was found belongs to a convex program
     return solution.to_qpsolvers(problem)
+
+
+@lru_cache(typed=True)
+def default_solver(tol: float, eps_rel: float, max_iter: int) -> DNNSolver:
+    """Return the solver with these settings, the same one each time: making it takes time."""
+    return DNNSolver(tol=tol, eps_rel=eps_rel, settler=ImplicitEuler(max_steps=max_iter))
 
 
 SOLVE.append(solve_problem)

@@ -150,6 +150,26 @@ class DNNSolver:
             the linear systems of all attempts, at most those of the settler.
         """
         state = self._take(qp)
+        solution = self._solve(qp, state)
+        # Without a solution the state is not kept: the multipliers grow without bound then, and
+        # would spoil every later call.
+        if solution.found:
+            self._keep(qp.sizes, state)
+        return solution
+
+    def solve_cold(self, qp: QP, sharpen: bool = False) -> Solution:
+        """Solve a program from the network's initial state; the warm start stays as it is.
+
+        Args:
+            qp: The program; its values are taken as checked (`QP.check_values`).
+            sharpen: Whether to `sharpen` the solution.
+        """
+        state = self._fresh(qp)
+        solution = self._solve(qp, state)
+        return self._sharpened(qp, solution, state) if sharpen else solution
+
+    def _solve(self, qp: QP, state: Vector) -> Solution:
+        """Make the attempts of a `solve` from a state (size,), which is advanced."""
         plan = _COSTS if is_projection(self.network) else _COSTS[:1]
         if not is_ordinary(qp.data, *qp.sizes):
             qp = QP(*qp.views)  # P becomes symmetric
@@ -166,10 +186,6 @@ class DNNSolver:
             time += solution.network_time
             if solution.status not in _OPEN or taken >= self.settler.max_steps:
                 break
-        # Without a solution the state is not kept: the multipliers grow without bound then, and
-        # would spoil every later call.
-        if solution.found:
-            self._keep(qp.sizes, state)
         if taken > solution.iterations:
             solution = solution._replace(iterations=taken, network_time=time)
         return solution
@@ -231,7 +247,16 @@ class DNNSolver:
             A solution with smaller residuals, or the same if no step had any.
         """
         state = self._warm.get(qp.sizes)
-        if state is None or not solution.found or not is_projection(self.network):
+        if state is None:
+            return solution
+        own = state.copy()
+        solution = self._sharpened(qp, solution, own)
+        self._keep(qp.sizes, own)
+        return solution
+
+    def _sharpened(self, qp: QP, solution: Solution, state: Vector) -> Solution:
+        """Sharpen the solution that a state (size,) stands for, and advance that."""
+        if not solution.found or not is_projection(self.network):
             return solution
         for most, is_steep in product(SHARPENING, (True, False)):
             left = min(most, self.settler.max_steps - solution.iterations)
@@ -241,12 +266,11 @@ class DNNSolver:
             scaling = steep(qp) if is_steep else None
             sharper = self._attempt(qp, scaling, new, SHARPENED, left)
             if sharper.found and sharper.residuals.largest < solution.residuals.largest:
-                state = new
+                state[:] = new
                 solution = sharper._replace(
                     iterations=solution.iterations + sharper.iterations,
                     network_time=solution.network_time + sharper.network_time,
                 )
-        self._keep(qp.sizes, state)
         return solution
 
     def advance(self, qp: QP, duration: float) -> Solution:
@@ -287,13 +311,18 @@ class DNNSolver:
         """Take the warm state, or make one; nobody else has it until it is kept."""
         state = self._warm.pop(checks.instance("qp", qp, QP).sizes, None)
         if state is None or not all_finite(state, 0, state.size):
-            state = np.zeros(checks.integer("state_size", self.network.state_size(qp), 0))
-            if not is_projection(self.network):
-                check_size(
-                    f"rates of {type(self.network).__name__}",
-                    np.asarray(self.network.rates(qp, state)),
-                    state.size,
-                )
+            state = self._fresh(qp)
+        return state
+
+    def _fresh(self, qp: QP) -> Vector:
+        """Make the network's initial state (size,)."""
+        state = np.zeros(checks.integer("state_size", self.network.state_size(qp), 0))
+        if not is_projection(self.network):
+            check_size(
+                f"rates of {type(self.network).__name__}",
+                np.asarray(self.network.rates(qp, state)),
+                state.size,
+            )
         return state
 
     def _keep(self, sizes: Sizes, state: Vector) -> None:

@@ -9,7 +9,6 @@ Compiled code takes a quadratic program as `QP.data` with its sizes n, m, p, and
 Its loops are plain on purpose: for seven joints a BLAS call costs more than its work.
 """
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -46,13 +45,6 @@ def offsets(n: int, m: int, p: int) -> tuple[int, int, int, int]:
     at_G = at_q + n
     at_A = at_G + m * n + m
     return at_q, at_G, at_A, at_A + p * n + p
-
-
-@lru_cache
-def field_shapes(sizes: Sizes) -> list[tuple[int, ...]]:
-    """Return the shape of each of the eight fields of a program, in their order."""
-    n, m, p = sizes
-    return [(n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,)]
 
 
 class QPViews(NamedTuple):

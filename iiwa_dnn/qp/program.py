@@ -31,8 +31,8 @@ from iiwa_dnn.qp.layout import (
     Sizes,
     Vector,
     check_size,
+    copied,
     data_size,
-    field_shapes,
     offsets,
     qp_views,
 )
@@ -51,14 +51,12 @@ FIELDS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
 
 
 @lru_cache
-def places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
+def places(sizes: Sizes) -> list[tuple[slice, tuple[int, ...]]]:
     """Return place and shape of each field in `QP.data`."""
-    shapes = field_shapes(sizes)
-    ends = np.cumsum([math.prod(shape) for shape in shapes]).tolist()
-    return tuple(
-        (slice(start, end), shape)
-        for start, end, shape in zip([0, *ends], ends, shapes, strict=False)
-    )
+    n, m, p = sizes
+    shapes: list[tuple[int, ...]] = [(n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,)]
+    ends = np.cumsum([0, *map(math.prod, shapes)]).tolist()
+    return [(slice(*ends[k : k + 2]), shape) for k, shape in enumerate(shapes)]
 
 
 @lru_cache
@@ -141,11 +139,16 @@ class QP:
             absent if argument is None else real_array(name, argument)
             for name, argument, absent in zip(FIELDS, arguments, absent_fields(n), strict=True)
         ]
-        self.sizes = sizes = n, arrays[3].size, arrays[5].size
-        if n == 0 or [v.shape for v in arrays] != field_shapes(sizes):  # rarely
-            self.sizes = _check_shapes((P, q, G, h, A, b), arrays)
-        self.data = np.concatenate(arrays, axis=None)
-        symmetrize(self.data[: n * n].reshape(n, n))
+        self.sizes = n, arrays[3].size, arrays[5].size
+        self.data = np.empty(data_size(*self.sizes))
+        try:
+            is_packed = pack(QPViews(*arrays), self.data)
+        except TypeError:  # an array has gaps, or stands for a matrix of one row
+            is_packed = False
+        if not is_packed:
+            self.sizes = _check_shapes(arguments, arrays)
+            self.data = np.concatenate(arrays, axis=None)
+            symmetrize(self.P)
 
     @classmethod
     def from_data(cls, data: Vector, sizes: Sizes) -> QP:
@@ -225,9 +228,9 @@ class QP:
                 1e-5 sqrt(P_ii P_jj) and 4e-15 n times the largest entry, or its symmetric part is
                 not positive semidefinite to the latter.
         """
-        if _well_formed(self.data, *self.sizes):
-            return
         self.check_numbers()
+        if is_convex(self.P, np.empty_like(self.P)):
+            return
         if not is_symmetric(self.P, float(np.abs(self.P).max())):
             raise InvalidInputError("P", "is not symmetric")
         smallest = float(np.linalg.eigvalsh(0.5 * (self.P + self.P.T))[0])
@@ -242,6 +245,8 @@ class QP:
             InvalidInputError: A value is NaN, a coefficient is infinite, or a lower bound exceeds
                 its upper bound. The message names the argument.
         """
+        if has_numbers(self.data, *self.sizes):
+            return
         limitless = {"h": np.inf, "lb": -np.inf, "ub": np.inf}
         for name in FIELDS:
             value = getattr(self, name)
@@ -253,19 +258,44 @@ class QP:
 
 
 @compiled
-def _well_formed(data: Vector, n: int, m: int, p: int) -> bool:
-    """Check in one pass over the numbers that `QP.check_values` would find nothing."""
-    _, _, at_A, at_lb = offsets(n, m, p)
-    if not (all_finite(data, 0, at_A - m) and all_finite(data, at_A, at_lb)):
+def pack(fields: QPViews, data: Vector) -> bool:
+    """Copy the fields of a program into its flat array (size,), and `symmetrize` P there.
+
+    Returns:
+        False if their shapes do not fit one another.
+    """
+    n = fields.q.size
+    m = fields.h.size
+    p = fields.b.size
+    are_rows = fields.P.shape[0] == n and fields.G.shape[0] == m and fields.A.shape[0] == p
+    are_columns = fields.P.shape[1] == n and fields.G.shape[1] == n and fields.A.shape[1] == n
+    are_bounds = fields.lb.size == n and fields.ub.size == n
+    if n == 0 or not (are_rows and are_columns and are_bounds):
         return False
     qp = qp_views(data, n, m, p)
+    copied(data, fields.P.reshape(n * n))
+    copied(qp.q, fields.q)
+    copied(qp.G.reshape(m * n), fields.G.reshape(m * n))
+    copied(qp.h, fields.h)
+    copied(qp.A.reshape(p * n), fields.A.reshape(p * n))
+    copied(qp.b, fields.b)
+    copied(qp.lb, fields.lb)
+    copied(qp.ub, fields.ub)
+    symmetrize(qp.P)
+    return True
+
+
+@compiled
+def has_numbers(data: Vector, n: int, m: int, p: int) -> bool:
+    """Check in one pass over the numbers that `QP.check_numbers` would find nothing."""
+    _, _, at_A, at_lb = offsets(n, m, p)
+    fits = all_finite(data, 0, at_A - m) and all_finite(data, at_A, at_lb)
+    qp = qp_views(data, n, m, p)
     for j in range(m):
-        if not qp.h[j] > -np.inf:
-            return False
+        fits = fits and qp.h[j] > -np.inf
     for i in range(n):
-        if not (qp.lb[i] <= qp.ub[i] and qp.lb[i] < np.inf and qp.ub[i] > -np.inf):
-            return False
-    return is_convex(qp.P, np.empty((n, n)))
+        fits = fits and qp.lb[i] <= qp.ub[i] and qp.lb[i] < np.inf and qp.ub[i] > -np.inf
+    return fits
 
 
 def _check_shapes(given: Sequence[object], arrays: Sequence[NDArray[np.float64]]) -> Sizes:
@@ -274,7 +304,7 @@ def _check_shapes(given: Sequence[object], arrays: Sequence[NDArray[np.float64]]
     if n == 0:
         raise InvalidInputError("q", "is empty", given[1])
     _, m, p = (_rows(name, array, n) for name, array in zip("PGA", arrays[:5:2], strict=True))
-    for name, array, shape in zip(FIELDS, arrays, field_shapes((n, m, p)), strict=True):
+    for name, array, (_, shape) in zip(FIELDS, arrays, places((n, m, p)), strict=True):
         if array.size != math.prod(shape):
             raise InvalidInputError(
                 name, f"has shape {array.shape}, not {shape}; q has {n} entries"

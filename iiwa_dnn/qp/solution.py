@@ -153,7 +153,8 @@ class Solution(NamedTuple):
             "dual_residual": self.dual,
             "duality_gap": self.gap,
         }
-        x = self.x
+        n, m, p = self.sizes
+        x = self.point[:n]
         if not self.found:
             if self.certificate is not None:
                 extras["certificate"] = self.certificate
@@ -165,9 +166,9 @@ class Solution(NamedTuple):
             True,
             float(0.5 * x.dot(problem.P.dot(x)) + x.dot(problem.q)),
             x,
-            self.y,
-            self.z,
-            self.z_box if bounded else np.empty(0),
+            self.point[n : n + p],
+            self.point[n + p : n + p + m],
+            self.point[n + p + m :] if bounded else np.empty(0),
         )
 
 

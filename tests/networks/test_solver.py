@@ -1,11 +1,14 @@
 """The network as a solver: against known solutions, two other solvers, and its own promises."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 import qpsolvers
 from qpsolvers import problems
 
 import iiwa_dnn as d
+import programs
 from helpers_qp import known_qp
 from iiwa_dnn.networks.integrators.base import enter_answer
 
@@ -109,7 +112,7 @@ def test_a_sharpened_answer_is_never_worse() -> None:
 
 
 @pytest.mark.parametrize("n", [2, 150])
-def test_programs_without_a_choice_are_judged(n: int) -> None:
+def test_madewithout_a_choice_are_judged(n: int) -> None:
     one = np.ones(n)
     qp = d.QP(np.eye(n), -2.0 * one, A=one[np.newaxis], b=[float(n)], lb=one, ub=one)
     solution = d.DNNSolver().solve(qp)
@@ -191,3 +194,25 @@ def test_a_network_that_diverges_says_so() -> None:
     assert d.Status.DIVERGED in seen
     assert not d.DNNSolver().advance(qp, 1e-5).found
     assert seen.index(d.Status.DIVERGED) < seen.index(d.Status.NOT_FINITE)
+
+
+def test_solve_problem_starts_cold_and_leaves_a_solvers_warm_start_alone() -> None:
+    made = [programs.strictly_convex(np.random.default_rng([59, k]), 7)[0] for k in range(20)]
+    cold = [d.DNNSolver().solve(qp).x for qp in made]
+    solver = d.DNNSolver()
+    solver.solve(made[0])
+    state = solver.state
+    with ThreadPoolExecutor(4) as pool:  # all calls share the solver of the default settings
+        shared = list(pool.map(lambda qp: d.solve_problem(qp).x, made * 5))
+    own = [d.solve_problem(qp, solver=solver).x for qp in made]
+    np.testing.assert_array_equal(shared, cold * 5)
+    np.testing.assert_array_equal(own, cold)
+    np.testing.assert_array_equal(solver.state, state)
+
+
+@pytest.mark.parametrize("setting", ["tol", "eps_rel", "max_iter"])
+def test_solve_problem_refuses_settings_that_are_no_numbers(setting: str) -> None:
+    qp = d.QP(np.eye(2), np.ones(2))
+    for value in ([1e-9], np.ones(2), "1", None, True, -1):
+        with pytest.raises(d.InvalidInputError):
+            d.solve_problem(qp, **{setting: value})

@@ -238,3 +238,13 @@ def test_the_symmetric_part_of_a_cost_decides() -> None:
     # A program whose data was written into, too.
     qp.P[:] = flat + skew
     np.testing.assert_allclose(solve_problem(qp, sharpen=True).x, [1e6, -1e6], rtol=1e-8)
+
+
+def test_arrays_with_gaps_and_single_rows_are_packed_as_others() -> None:
+    rng = np.random.default_rng(59)
+    root = rng.standard_normal((5, 5))
+    G = rng.standard_normal((1, 5))
+    plain = QP(root @ root.T, rng.standard_normal(5), G, np.ones(1), 2.0 * G, np.ones(1))
+    twice = [np.repeat(each, 2, axis=-1)[..., ::2] for each in (plain.P, plain.q, plain.A)]
+    other = QP(np.asfortranarray(twice[0]), twice[1], G[0], [1], twice[2], np.ones((1, 1)))
+    np.testing.assert_array_equal(other.data, plain.data)
