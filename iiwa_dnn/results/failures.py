@@ -6,7 +6,7 @@ from typing import Any
 
 from iiwa_dnn.files import percent
 from iiwa_dnn.naming import DONE, KINDS, describe
-from iiwa_dnn.results.metrics import GAPS, JOINT_LIMITS, compute_metrics
+from iiwa_dnn.results.metrics import GAPS, JOINT_LIMITS, PROGRAMS, compute_metrics
 from iiwa_dnn.results.record import Record
 
 LIMIT_SLACK = 1e-9
@@ -38,8 +38,9 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
         *_crosscheck(check, run["steps"]),
         *_broken_limits(run),
     ]
-    if not reasons and any(steps for kind, steps in check["kinds"].items() if kind != "own"):
-        return [programs_checked(check)]
+    others = any(steps for kind, steps in check["kinds"].items() if kind != PROGRAMS[0])
+    if not reasons and others:
+        return [f"not all commands are the nominal program's: {command_kinds(check)}"]
     return reasons
 
 
@@ -63,20 +64,27 @@ def unlimited(metrics: Mapping[str, Any], named: bool) -> Iterator[str]:
             )
 
 
-def programs_checked(check: Mapping[str, Any]) -> str:
-    """State which programs were checked, ``736 own, 9,264 softened programs checked``.
+def command_kinds(check: Mapping[str, Any]) -> str:
+    """Count the commands by the program that they answer, ``736 nominal, 9,264 relaxed``.
 
-    Of a step held back the command is checked for its bounds alone, of a stopped step nothing is.
+    A rate-limited command is checked for its bounds, its program's answer by the references.
     """
-    kinds = dict(check["kinds"])
-    held = kinds.pop("held")
-    stopped = kinds.pop("stopped")
-    answered = ", ".join(f"{steps:,} {kind}" for kind, steps in kinds.items() if steps)
-    return (
-        f"{answered or 'no'} programs checked"
-        + f", {held:,} commands held back by acceleration, jerk or braking" * bool(held)
-        + f", {stopped:,} stopped" * bool(stopped)
-    )
+    kinds = check["kinds"].items()
+    return ", ".join(f"{steps:,} {kind.replace('_', '-')}" for kind, steps in kinds if steps)
+
+
+def qps_checked(metrics: Mapping[str, Any]) -> str:
+    """State how many programs the references judged, ``9 of 10 QPs verified by proxqp``."""
+    check = metrics["crosscheck"]
+    checked = check["steps_checked"]
+    if not checked:
+        return "no QPs checked"
+    is_right = check["judged"] and not (check["disagreements"] or check["reference_failures"])
+    verb = "verified by" if is_right else "compared with"
+    judges = " or ".join(check["judged_by"]) or check["solver"]
+    kinds = "" if check["kinds"][PROGRAMS[0]] == checked else f": {command_kinds(check)}"
+    lag = "" if check["judged"] else ", not judged"
+    return f"{checked:,} of {metrics['steps']:,} QPs {verb} {judges}{kinds}{lag}"
 
 
 def completed(metrics: Mapping[str, Any]) -> str:
@@ -132,23 +140,31 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
     if not done:
         return
     counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items())
-    pose = (
-        "no bound: a singular pose, a path out of reach or tasks against each other; another start "
-        "(--q0) may help"
-    )
     unblocked = incidents["unblocked_steps"]
     limits = [limit for limit in incidents["blocking"][:3] if limit["steps"] >= unblocked]
-    blocking = ", ".join(map(describe, limits)) or pose
+    blocking = ", ".join(map(describe, limits)) or (
+        "no bound, but a singular posture, a path out of reach or conflicting tasks; another start "
+        "(--q0) may help"
+    )
     kind = limits[0].get("limit") if limits else None
-    advice = "; more time for the path (--period, --stretch) may help" * (kind in KINDS[1:])
-    if kind in KINDS[2:] and incidents["first"]["step"] == 0 and _is_abrupt(metrics):
-        advice = "; the arm starts at rest, the path at speed or elsewhere (heart, line: at rest)"
-    if kind in KINDS[2:] and "slowed" in done:
-        advice = f"; held back joint by joint, the tip leaves the path{advice}"
     yield (
         f"{counted(sum(done.values()))} without a solution ({counts}), the first at "
-        f"{_at(incidents['first'])}; most often in the way: {blocking}{advice}"
+        f"{_at(incidents['first'])}; limited most often by {blocking}{_advice(metrics, kind)}"
     )
+
+
+def _advice(metrics: Mapping[str, Any], kind: str | None) -> str:
+    """Advise on a path whose commands are limited most often by a limit of this kind."""
+    if kind not in KINDS[1:]:
+        return ""
+    incidents = metrics["incidents"]
+    advice = "; more time for the path (--period, --stretch) may help"
+    if kind == "velocity":
+        return advice
+    if incidents["first"]["step"] == 0 and _is_abrupt(metrics):
+        advice = "; the arm starts at rest, the path at speed or elsewhere (heart, line: at rest)"
+    leaves = "; each joint is limited by itself, so the tip leaves the path" + advice
+    return leaves if incidents["slow_steps"] else advice
 
 
 def _is_abrupt(metrics: Mapping[str, Any]) -> bool:

@@ -12,10 +12,10 @@ from iiwa_dnn.files import plain
 from iiwa_dnn.naming import ACTIONS, in_the_way
 from iiwa_dnn.results.record import OWN_LIMITS, RATES, Record
 
-PROGRAMS = ("own", "scaled", "softened", "held", "stopped")
+PROGRAMS = ("nominal", "scaled", "relaxed", "rate_limited", "stopped")
 """Kinds of a step by their codes in `Record.kind`."""
 
-*_, _HELD, _STOPPED = range(len(PROGRAMS))
+*_, _RATE_LIMITED, _STOPPED = range(len(PROGRAMS))
 
 EXCESS_TOLERANCE = 1e-9
 """Excess of a command over the bounds and rows of its own step that is rounding."""
@@ -293,7 +293,7 @@ def _crosscheck(record: Record) -> dict[str, Any]:
         "solver": "+".join(check["solvers"]) or "none",
         "steps_checked": checked.sum(),
         "kinds": {
-            name: ((kind == code) & (checked | (code >= _HELD))).sum()
+            name: ((kind == code) & (checked | (code >= _RATE_LIMITED))).sum()
             for code, name in enumerate(PROGRAMS)
         },
         "judged_by": _judged_by(record, asked),

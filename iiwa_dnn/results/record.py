@@ -28,6 +28,10 @@ OWN_LIMITS = {
 """Setting of a run's limit by what is limited; the robot's own has ``robot_`` before its name."""
 
 
+NEEDED = {"robot", "joints", "mode", "dt", "duration", "status", "tol", "check"}
+"""Settings that metrics and reports read of each run."""
+
+
 class Column(NamedTuple):
     """An array of a record.
 
@@ -199,8 +203,8 @@ class Record:
     kind: Annotated[
         CodeArray,
         Column(
-            "Program that each step answered: 0 its own, 1 the scaled one (A x = s b), 2 the "
-            "softened one, 3 held back from it by acceleration, jerk or braking, 4 stopped",
+            "Program that each command answers: 0 the nominal one, 1 the scaled one (A x = s b), 2 "
+            "the relaxed one, 3 the nominal one, rate-limited on the way to its answer, 4 stopped",
             ("N",),
             np.int8,
         ),
@@ -209,7 +213,7 @@ class Record:
         Array,
         Column(
             "Largest excess of each command over the bounds of its own step, and, unless it is "
-            "held back, over its inequality rows",
+            "rate-limited, over its inequality rows",
             ("N",),
         ),
     ] = ABSENT
@@ -344,8 +348,6 @@ class Record:
         Raises:
             FileError: If the file is missing, damaged or not a record of this version.
         """
-        from iiwa_dnn.results.failures import failures
-
         try:
             # Not np.load, which takes any file that is no archive for a pickled object.
             with Path(path).open("rb") as file:
@@ -357,9 +359,9 @@ class Record:
                 arrays["dq_solver"] = arrays["dq"]
             if len(arrays["rotation_desired"]) == 1:
                 arrays["rotation_desired"] = arrays["rotation_desired"].repeat(len(arrays["t"]), 0)
-            record = cls(settings=settings, **arrays)
-            failures(record)  # lest settings of another version fail later
-            return record
+            if missing := NEEDED - settings.keys():
+                raise KeyError(f"settings without {', '.join(sorted(missing))}")
+            return cls(settings=settings, **arrays)
         except Exception as error:  # whatever NumPy, zip and JSON meet in a damaged file
             raise FileError(path, f"cannot be read as a record: {one_line(error)}") from error
 

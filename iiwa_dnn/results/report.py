@@ -18,7 +18,7 @@ from iiwa_dnn.results.failures import (
     completed,
     counted,
     failures,
-    programs_checked,
+    qps_checked,
     unlimited,
 )
 from iiwa_dnn.results.metrics import JOINT_LIMITS, compute_metrics
@@ -32,12 +32,12 @@ _RESULTS = (
     ("joint drift, start to end", "joint_drift_rad", "rad"),
     ("largest kinetic index", "max_kinetic_index", "rad²/s² (J with kinetic = inertia)"),
     ("wall time", "wall_time_s", "s"),
-    ("time simulated / wall time", "realtime_factor", ""),
+    ("real-time factor", "realtime_factor", ""),
     ("largest KKT residual", "max_kkt_residual", ""),
     ("steps with an active bound or row", "active_limit_steps", ""),
-    *((f"beyond {kind} limits", name, unit) for name, (kind, unit) in JOINT_LIMITS.items()),
-    ("network steps in a control period, mean", "network_iterations.mean", ""),
-    ("network steps in a control period, most", "network_iterations.max", ""),
+    *((f"{kind} limit violation", name, unit) for name, (kind, unit) in JOINT_LIMITS.items()),
+    ("network iterations per step, mean", "network_iterations.mean", ""),
+    ("network iterations per step, largest", "network_iterations.max", ""),
     ("largest gap to the reference", "crosscheck.max_solution_gap", "rad/s"),
     ("largest residual of a reference", "crosscheck.max_reference_residual", ""),
     ("largest position error, settled", "physics.max_position_error_settled_m", "m"),
@@ -137,10 +137,7 @@ def rows(
 
     Numbers that do not exist are left out, and counts of no steps.
     """
-    check = metrics["crosscheck"]
-    judges = " or ".join(check["judged_by"]) or check["solver"]
-    checked = f"{judges}: {programs_checked(check)}"
-    yield "cross-check", checked if check["judged"] else f"{checked}, not judged", ""
+    yield "cross-check", qps_checked(metrics), ""
     yield "path completed", completed(metrics), ""
     for name, place, unit in _RESULTS:
         value = _at(metrics, place)
@@ -155,11 +152,11 @@ def rows(
 
 
 def _limits(incidents: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    """Yield the limits that were active and those that were in the way, as `rows` does."""
-    for verb, key in (("active", "active"), ("in the way", "blocking")):
+    """Yield the active limits, and those that left no solution, as `rows` does."""
+    for effect, key in (("active", "active"), ("leaves no solution", "blocking")):
         for limit in incidents[key][:_MOST]:
             since = f"{counted(limit['steps'])}, from {_text(limit['time_s'])} s on"
-            yield f"{describe(limit)} {verb}", since, ""
+            yield f"{describe(limit)} {effect}", since, ""
 
 
 def _at(metrics: Mapping[str, Any], place: str) -> Any:

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from helpers_records import make_record
 from iiwa_dnn import Record
 from iiwa_dnn.results.failures import failures, unlimited
-from iiwa_dnn.results.metrics import compute_metrics, orientation_error, position_error
+from iiwa_dnn.results.metrics import PROGRAMS, compute_metrics, orientation_error, position_error
 
 ROWS = [
     {"part": "Obstacle", "row": 1},
@@ -209,7 +209,7 @@ def test_crosscheck_counts_only_what_is_believed():
     assert compute_metrics(record)["crosscheck"] == {
         "solver": "proxqp+osqp",
         "steps_checked": 5,
-        "kinds": {"own": 5, "scaled": 0, "softened": 0, "held": 0, "stopped": 0},
+        "kinds": dict(zip(PROGRAMS, (5, 0, 0, 0, 0), strict=True)),
         "judged_by": {"proxqp": 4, "osqp": 6},
         "disagreements": 1,
         "reference_failures": 2,
@@ -231,7 +231,7 @@ def test_crosscheck_counts_only_what_is_believed():
         "1 step of 6 not checked",
     ]
     nobody = check_of(solvers=(), kind=KINDS)
-    assert nobody["kinds"] == {"own": 0, "scaled": 0, "softened": 0, "held": 3, "stopped": 1}
+    assert nobody["kinds"] == dict(zip(PROGRAMS, (0, 0, 0, 3, 1), strict=True))
     assert (nobody["solver"], nobody["steps_checked"], nobody["judged"]) == ("none", 0, False)
     assert nobody["max_solution_gap"] is nobody["max_reference_residual"] is None
     assert failures(make_record(solvers=())) == []
@@ -287,14 +287,18 @@ def test_each_kind_of_program_is_counted_and_a_stopped_step_has_nothing_to_check
     gap = np.full((10, 1), 1e-9)
     gap[9] = 1.0  # of the stopped step: nobody is to be asked there
     check = check_of(kind=KINDS, solution_gap=gap)
-    assert check["kinds"] == {"own": 2, "scaled": 1, "softened": 3, "held": 3, "stopped": 1}
+    assert check["kinds"] == {
+        "nominal": 2,
+        "scaled": 1,
+        "relaxed": 3,
+        "rate_limited": 3,
+        "stopped": 1,
+    }
     assert (check["steps_checked"], check["disagreements"]) == (9, 0)
-    said = (
-        "2 own, 1 scaled, 3 softened programs checked, 3 commands held back by acceleration, jerk"
-    )
-    said += " or braking, 1 stopped"
+    said = "not all commands are the nominal program's: "
+    said += "2 nominal, 1 scaled, 3 relaxed, 3 rate-limited, 1 stopped"
     assert failures(make_record(kind=KINDS)) == [said]
-    gap[7] = 1e-3  # the velocity that was wanted at a step held back
+    gap[7] = 1e-3  # the velocity that was wanted at a rate-limited step
     wrong = check_of(kind=KINDS, solution_gap=gap)
     assert (wrong["disagreements"], wrong["first_disagreement"]["step"]) == (1, 7)
 
@@ -342,8 +346,8 @@ def test_the_policies_are_named_with_their_steps():
     action = np.array([0, 0, 0, 2, 3, 4, 2, 0, 0, 0])
     assert failures(make_record(action=action, fraction=np.ones(10))) == [
         "4 steps without a solution (2 slowed, 1 relaxed, 1 stopped), the first at step 3 "
-        "(t = 0.3 s); most often in the way: no bound: a singular pose, a path out of "
-        "reach or tasks against each other; another start (--q0) may help",
+        "(t = 0.3 s); limited most often by no bound, but a singular posture, a path out of "
+        "reach or conflicting tasks; another start (--q0) may help",
     ]
     blocking = np.zeros((10, 7), int)
     for joint in range(5):
@@ -352,14 +356,14 @@ def test_the_policies_are_named_with_their_steps():
     limits = "joint 1 upper velocity limit, joint 2 upper velocity limit, "
     limits += "joint 3 upper velocity limit"
     advice = "more time for the path (--period, --stretch) may help"
-    assert failures(half)[1].endswith(f"in the way: {limits}; {advice}")
+    assert failures(half)[1].endswith(f"limited most often by {limits}; {advice}")
     held = slowed([0.4] * 8 + [1.0] * 2, blocking=np.where(blocking, 3, 0))
-    assert "; held back joint by joint, the tip leaves the path" in failures(held)[1]
-    assert "held back" not in failures(half)[1]
+    assert "; each joint is limited by itself, so the tip leaves the path" in failures(held)[1]
+    assert "leaves the path" not in failures(half)[1]
     out_of_reach = slowed([0.4] * 8 + [1.0] * 2, blocking=np.minimum(blocking, 1))
     assert failures(out_of_reach)[1].endswith("joint 3 upper position limit")
     seldom = slowed([0.4] * 10, blocking=np.where(np.arange(10)[:, None] < 4, blocking, 0))
-    assert "in the way: no bound: " in failures(seldom)[1]  # of 6 steps, and limits of 4
+    assert "limited most often by no bound, " in failures(seldom)[1]  # of 6 steps, and limits of 4
     at_speed = slowed([0.4] * 10, blocking=2 * blocking)
     assert failures(at_speed)[1].endswith("path at speed or elsewhere (heart, line: at rest)")
     too_quick = slowed([0.4] * 10, blocking=2 * blocking, settings={"start_speed": 0.0})
@@ -426,8 +430,8 @@ def test_clipped_steps_and_limits_in_the_way():
     assert (incidents["clipped_steps"], incidents["relax_steps"]) == (3, 1)
     assert incidents["first"] == {"steps": 1, "step": 6, "time_s": pytest.approx(0.6)}
     assert failures(record) == [
-        "1 step without a solution (1 relaxed), the first at step 6 (t = 0.6 s); most often in the "
-        "way: row 1 of Obstacle, arm_a upper position limit, arm_a upper velocity limit"
+        "1 step without a solution (1 relaxed), the first at step 6 (t = 0.6 s); limited most "
+        "often by row 1 of Obstacle, arm_a upper position limit, arm_a upper velocity limit"
     ]
 
 

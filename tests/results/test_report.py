@@ -11,8 +11,7 @@ from iiwa_dnn.results.report import markdown_table, report, save_run, summary, v
 from iiwa_dnn.studies.paper import published
 
 KIND = np.array([0, 0, 1, 2, 2, 2, 3, 3, 3, 4])
-KINDS = "2 own, 1 scaled, 3 softened programs checked, "
-KINDS += "3 commands held back by acceleration, jerk or braking, 1 stopped"
+KINDS = "2 nominal, 1 scaled, 3 relaxed, 3 rate-limited, 1 stopped"
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +51,7 @@ def test_the_reports_numbers_are_the_metrics(run):
     heart = {"robot": "iiwa7", "scheme": {"weight": 0.2}, "reference": d.Heart().settings()}
     assert published(heart)
     assert published(heart | {"motion": "physics"}) == published(heart | {"noise": 0.01}) == {}
-    assert table["cross-check"][0] == ("proxqp or osqp: 500 own programs checked")
+    assert table["cross-check"][0] == "500 of 500 QPs verified by proxqp or osqp"
     assert table["q_upper"] == ["3 (all 7)"]
     assert table["scheme"] == ["name = DoubleIndicator, weight = 0.2, kinetic = identity"]
     assert re.search(r"- date: \d{4}-\d\d-\d\d \d\d:\d\d UTC\n", text)
@@ -77,17 +76,18 @@ def test_the_summary_has_the_reports_rows_in_ascii(run):
 @pytest.mark.parametrize(
     ("changes", "row", "said"),
     [
-        ({}, "proxqp: 10 own programs checked",
+        ({}, "10 of 10 QPs verified by proxqp",
          "all 10 steps solved, within all limits and in agreement with proxqp"),
         # Where another solver stood in, row and verdict name it.
-        ({"judge": [[1]] * 3 + [[0]] * 7}, "proxqp or osqp: 10 own programs checked",
+        ({"judge": [[1]] * 3 + [[0]] * 7}, "10 of 10 QPs verified by proxqp or osqp",
          "all 10 steps solved, within all limits and in agreement with proxqp or osqp"),
-        ({"solvers": ()}, "none: no programs checked, not judged",
+        ({"solvers": ()}, "no QPs checked",
          "completed within all limits; not judged by a reference"),
-        ({"settings": {"mode": "continuous"}}, "proxqp: 10 own programs checked, not judged",
+        ({"settings": {"mode": "continuous"}}, "10 of 10 QPs compared with proxqp, not judged",
          "completed within all limits; not judged by a reference"),
-        ({"kind": KIND}, f"proxqp: {KINDS}", KINDS),
-        ({"steps": 1}, "proxqp: 1 own programs checked",
+        ({"kind": KIND}, f"9 of 10 QPs verified by proxqp: {KINDS}",
+         f"not all commands are the nominal program's: {KINDS}"),
+        ({"steps": 1}, "1 of 1 QPs verified by proxqp",
          "all 1 step solved, within all limits and in agreement with proxqp"),
     ],
 )  # fmt: skip
@@ -113,9 +113,9 @@ def test_what_was_not_limited_comes_first_and_no_row_is_of_a_limit_that_is_not_t
     assert second == "all 10 steps solved, within all other limits and in agreement with proxqp"
     text = report(metrics)
     assert f"- {first}\n- {second}\n" in text
-    assert {row for row in rows_of(text) if row.startswith("beyond")} == {
-        "beyond position limits",
-        "beyond velocity limits",
+    assert {row for row in rows_of(text) if row.endswith("limit violation")} == {
+        "position limit violation",
+        "velocity limit violation",
     }
 
 
@@ -140,7 +140,7 @@ def test_active_and_blocking_limits_have_rows(tmp_path):
     )
     table = rows_of(report(d.compute_metrics(record)))
     assert table["row 3 of CollisionAvoidance active"][0] == "6 steps, from 0 s on"
-    assert table["row 2 of CollisionAvoidance in the way"][0] == "1 step, from 0.8 s on"
+    assert table["row 2 of CollisionAvoidance leaves no solution"][0] == "1 step, from 0.8 s on"
     assert table["steps relaxed"][0] == "1"
     assert "steps slowed" not in table
 

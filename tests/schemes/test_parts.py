@@ -53,13 +53,13 @@ def test_a_soft_task_is_a_term_of_the_cost() -> None:
         (CROSSED, "iiwa7_joint_1 lower position limit or bound"),
         (
             own(d.Task, 1, equations=(0.0 * ROW, [1.0])),
-            "no bound: a singular pose, a path out of reach or tasks against each other",
+            "no bound, but a singular posture, a path out of reach or conflicting tasks",
         ),
     ],
 )
 def test_a_part_that_nothing_fulfils_is_named(part, blamed, policy, capfd) -> None:
     record = run(beside(part), duration=0.01, check=d.CrossCheck(("osqp",)), policy=policy)
-    assert any(f"in the way: {blamed}" in reason for reason in d.failures(record))
+    assert any(f"limited most often by {blamed}" in reason for reason in d.failures(record))
     assert capfd.readouterr().out == ""  # OSQP has its own words for such programs
     # A row that asks for motion is followed as far as the joints can; bounds that contradict each
     # other stop the arm.
