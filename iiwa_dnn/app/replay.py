@@ -12,7 +12,7 @@ from tyro.conf import Positional
 
 from iiwa_dnn import InvalidInputError, Record, Robot, compute_metrics
 from iiwa_dnn.app.command_line import SETTINGS_FILE, shown
-from iiwa_dnn.app.track import load
+from iiwa_dnn.app.settings import load
 from iiwa_dnn.errors import import_extra
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.naming import ACTIONS, describe, in_the_way

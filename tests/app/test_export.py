@@ -20,7 +20,7 @@ def test_the_settings_of_a_run_become_c(tmp_path, capsys, monkeypatch) -> None:
     exported = load(folder)
     assert (exported.dof, exported.frames, exported.dt) == (7, 1, 2e-3)
     assert "circle" in (folder / "README.md").read_text(encoding="utf-8")
-    assert call(*words, "--filter-window", "5") == 2
+    assert call(*words, "--set", "run.filter_window=5") == 2
     assert "is no part of a controller" in capsys.readouterr().err
     # A folder that holds another controller is not overwritten unasked.
     assert call(*words, "--weight", "0.5") == 2

@@ -56,6 +56,8 @@ def test_help_names_the_quantity_of_every_word_and_the_unit_of_every_number(
         (("track", "--q0", "0", "up"), ("--q0", "'up'")),
         (("paper", "--table", "3"), ("--table", "'3'")),
         (("view",), ("PATH",)),
+        (("export", "--push", "0", "1", "0"), ("--push",)),  # a controller has no plant
+        (("export", "--noise", "0.1"), ("--noise",)),
     ],
 )
 def test_a_wrong_word_is_named_with_the_nearest_option(words, said, tmp_path, capsys, monkeypatch):
