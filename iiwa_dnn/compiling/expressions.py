@@ -472,7 +472,7 @@ class Expressions:
 
     def _address(self, value: Value, node: ast.expr) -> str:
         """Return the address of a struct."""
-        if isinstance(node, ast.Call):
+        if any(isinstance(each, ast.Call) for each in ast.walk(node)):
             value = self._keep(value, node)
         return value.pointer or f"&{value.text}"
 

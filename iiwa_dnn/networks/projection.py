@@ -25,6 +25,7 @@ from typing import TypeGuard
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record
 from iiwa_dnn.networks.base import Network, kkt_product
 from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, times
 from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, larger
@@ -110,11 +111,17 @@ def mark_active(qp: QPViews, s: Vector, rates: Vector, active: Vector) -> None:
         active[k] = 1.0 if k < qp.b.size or s[n + k] + rates[n + k] > 0.0 else 0.0
 
 
+class ProjectionConstants(Record):
+    """Whether x goes through its bounds."""
+
+    projects: bool
+
+
 @compiled
 def projection_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
-    """Write the rates (size,); `constants` (1,) is [1] if x goes through its bounds, else [0]."""
+    """Write the rates (size,)."""
     field(qp, state, rates)
-    if constants[0] != 0.0:
+    if ProjectionConstants.of(constants).projects:
         for i in range(qp.q.size):
             rates[i] = min(max(state[i] + rates[i], qp.lb[i]), qp.ub[i]) - state[i]
 
@@ -160,8 +167,8 @@ class ProjectionNetwork(Network):
     compiled_rates = staticmethod(projection_rates)
 
     def constants(self, sizes: Sizes) -> Vector:
-        """Return whether x goes through its bounds, as 1 or 0, (1,)."""
-        return np.array([float(self.primal_projection)])
+        """Return `ProjectionConstants`."""
+        return ProjectionConstants.make(projects=self.primal_projection).numbers
 
     def state_size(self, qp: QP) -> int:
         """Count the states: n + p + m + 2n, 28 for seven joints and the paper's seven rows."""

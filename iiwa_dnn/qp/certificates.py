@@ -175,18 +175,19 @@ def _radius(factors: Vector, weights: Vector, residual: float) -> float:
     return value / residual if residual != 0.0 else np.inf
 
 
-def _products(rows: Matrix, vector: Vector) -> Matrix:
-    """Compute the product of rows (k, n) and a vector (n,), and bound its rounding, (2, k)."""
-    result = np.empty((2, len(rows)))
-    dot_twice(np.ascontiguousarray(rows), vector, result)
-    return result
+def _products(rows: Matrix, vector: Vector) -> tuple[Vector, Vector]:
+    """Compute the product of rows (k, n) and a vector (n,), and bound its rounding, (k,) each."""
+    products = np.empty(len(rows))
+    rounding = np.empty(len(rows))
+    dot_twice(np.ascontiguousarray(rows), vector, products, rounding)
+    return products, rounding
 
 
 @compiled
-def dot_twice(rows: Matrix, vector: Vector, result: Matrix) -> None:
-    """Write the product of rows (k, n) and a vector (n,) in twice the precision, (2, k).
+def dot_twice(rows: Matrix, vector: Vector, products: Vector, rounding: Vector) -> None:
+    """Write the product of rows (k, n) and a vector (n,) in twice the precision, (k,).
 
-    The second row bounds the rounding: it is 0 where no digit was lost, NaN where a term overflows.
+    The bound on its rounding (k,) is 0 where no digit was lost, NaN where a term overflows.
     """
     for j in range(rows.shape[0]):
         total = 0.0
@@ -207,9 +208,9 @@ def dot_twice(rows: Matrix, vector: Vector, result: Matrix) -> None:
             loss += abs(rest)
             if abs(term) < _UNDERFLOW and a != 0.0 and b != 0.0:
                 loss += _TINY
-        result[0, j] = total + lost
-        bound = _EPS * (abs(result[0, j]) + 2.0 * rows.shape[1] * loss)
-        result[1, j] = bound if loss != 0.0 else 0.0
+        products[j] = total + lost
+        bound = _EPS * (abs(products[j]) + 2.0 * rows.shape[1] * loss)
+        rounding[j] = bound if loss != 0.0 else 0.0
 
 
 def _is_carried(qp: QP, w: Vector) -> NDArray[np.bool_]:

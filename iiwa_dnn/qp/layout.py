@@ -77,6 +77,7 @@ def qp_views(data: Vector, n: int, m: int, p: int) -> QPViews:
     at_q, at_G, at_A, at_lb = offsets(n, m, p)
     at_h = at_G + m * n
     at_b = at_A + p * n
+    at_ub = at_lb + n
     return QPViews(
         data[:at_q].reshape(n, n),
         data[at_q:at_G],
@@ -84,8 +85,8 @@ def qp_views(data: Vector, n: int, m: int, p: int) -> QPViews:
         data[at_h:at_A],
         data[at_A:at_b].reshape(p, n),
         data[at_b:at_lb],
-        data[at_lb : at_lb + n],
-        data[at_lb + n : at_lb + 2 * n],
+        data[at_lb:at_ub],
+        data[at_ub : at_ub + n],
     )
 
 

@@ -65,18 +65,12 @@ def combined(a: float, u: Vector3, b: float, v: Vector3) -> Vector3:
 
 
 @compiled
-def added(u: Vector3, v: Vector3) -> Vector3:
-    """Compute u + v."""
-    return u[0] + v[0], u[1] + v[1], u[2] + v[2]
-
-
-@compiled
 def rotated(vector: Vector3, v: Vector3) -> Vector3:
     """Compute exp[vector] v."""
     square = dot(vector, vector)
     a, b = coefficients(square)
     once = cross(vector, v)
-    return added(v, combined(1.0 - b * square, once, a, cross(vector, once)))
+    return combined(1.0, v, 1.0, combined(1.0 - b * square, once, a, cross(vector, once)))
 
 
 @compiled
@@ -84,7 +78,7 @@ def left_jacobian(vector: Vector3, v: Vector3) -> Vector3:
     """Compute J(vector) v: the angular velocity of a rotation vector with the rate v."""
     a, b = coefficients(dot(vector, vector))
     once = cross(vector, v)
-    return added(v, combined(a, once, b, cross(vector, once)))
+    return combined(1.0, v, 1.0, combined(a, once, b, cross(vector, once)))
 
 
 @compiled
@@ -107,7 +101,7 @@ def turn_target(target: TargetData, vector: Vector3, rate: Vector3) -> None:
         for i in range(3):
             target.rotation[i, j] = column[i]
     before = rotated(vector, triple(target.angular_velocity))
-    after = added(left_jacobian(vector, rate), before)
+    after = combined(1.0, left_jacobian(vector, rate), 1.0, before)
     for i in range(3):
         target.angular_velocity[i] = after[i]
 

@@ -29,7 +29,7 @@ from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.references.base import Reference
-from iiwa_dnn.references.rotations import added, combined, scaled, triple, turn_target
+from iiwa_dnn.references.rotations import combined, scaled, triple, turn_target
 from iiwa_dnn.references.splines import (
     Spline,
     smoothed,
@@ -61,12 +61,21 @@ class WaypointsConstants(Record):
     pieces: Array = part()
 
 
+class Cubic(Record):
+    """Coefficients of a cubic of vectors."""
+
+    third: Array = part(3)
+    second: Array = part(3)
+    first: Array = part(3)
+    offset: Array = part(3)
+
+
 class Piece(Record):
-    """Start of a piece [s], and cubics of displacement and turn: x^3, x^2, x and 1, row by row."""
+    """Start of a piece [s], and the cubics of its displacement and its turn."""
 
     start: float
-    move: Matrix = part(4, 3)
-    turn: Matrix = part(4, 3)
+    move: Cubic = part(Cubic)
+    turn: Cubic = part(Cubic)
 
 
 @compiled
@@ -84,17 +93,17 @@ def _piece(pieces: Matrix, t: float) -> int:
 
 
 @compiled
-def _cubic(powers: Matrix, x: float) -> Vector3:
-    """Compute a x^3 + b x^2 + c x of coefficients (4, 3)."""
-    first = combined(x, triple(powers[0]), 1.0, triple(powers[1]))
-    return scaled(x, combined(x, first, 1.0, triple(powers[2])))
+def _change(own: Cubic, x: float) -> Vector3:
+    """Compute a cubic less its offset."""
+    inner = combined(x, triple(own.third), 1.0, triple(own.second))
+    return scaled(x, combined(x, inner, 1.0, triple(own.first)))
 
 
 @compiled
-def _slope(powers: Matrix, x: float) -> Vector3:
-    """Compute the derivative of `_cubic` by x."""
-    first = combined(3.0 * x, triple(powers[0]), 2.0, triple(powers[1]))
-    return combined(x, first, 1.0, triple(powers[2]))
+def _slope(own: Cubic, x: float) -> Vector3:
+    """Compute the derivative of a cubic."""
+    inner = combined(3.0 * x, triple(own.third), 2.0, triple(own.second))
+    return combined(x, inner, 1.0, triple(own.first))
 
 
 @compiled
@@ -107,14 +116,14 @@ def waypoints_path(t: float, constants: Array, target: TargetData) -> None:
     moves = 1.0 if repeats or inside == t else 0.0
     piece = Piece.of(pieces[_piece(pieces, inside)])
     x = inside - piece.start
-    moved = added(_cubic(piece.move, x), triple(piece.move[3]))
+    moved = combined(1.0, _change(piece.move, x), 1.0, triple(piece.move.offset))
     velocity = _slope(piece.move, x)
     for i in range(3):
         target.position[i] += moved[i]
         target.linear_velocity[i] += moves * velocity[i]
-    turn_target(target, triple(piece.turn[3]), (0.0, 0.0, 0.0))
+    turn_target(target, triple(piece.turn.offset), (0.0, 0.0, 0.0))
     rate = scaled(moves, _slope(piece.turn, x))
-    turn_target(target, _cubic(piece.turn, x), rate)
+    turn_target(target, _change(piece.turn, x), rate)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

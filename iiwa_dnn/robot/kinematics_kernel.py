@@ -13,30 +13,51 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.checks import Array, Matrix
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import sin_cos
+from iiwa_dnn.robot.kinematics import Placement, Twist
 from iiwa_dnn.robot.robot import Robot
 
 IntVector = NDArray[np.int64]
-IntMatrix = NDArray[np.int64]
+
+AXIS = 2
+"""Axis that a joint turns about or slides along: z."""
 
 CYCLE = (0, 1, 2, 0, 1)
 """Axes, so that those after one are the next two."""
 
 
+class JointKind(Record):
+    """Kind of a joint: 1 and 0 if it slides, 0 and 1 if it turns."""
+
+    slides: float
+    turns: float
+
+
+class PrincipalAxes(Record):
+    """Placement of a body's principal axes, and roots of its mass along and its moment about each.
+
+    The placement is in the frame of the joint that carries the body.
+    """
+
+    placement: Placement = part(Placement)
+    roots: Array = part(6)
+
+
 class ModelTables(NamedTuple):
     """Tables of a robot of n joints, each of which turns about its z axis or slides along it.
 
-    Pinocchio's joints with other axes are turned so, with all that they carry. A placement has 12
-    numbers: the rotation's columns, then the position [m].
+    Pinocchio's joints with other axes are turned so, with all that they carry.
 
     Attributes:
         parents: For each joint the number of the one that carries it, from 1; 0: the world, (n,).
-        joints: Placement of each joint at 0 in the frame of its parent, (n, 12).
-        kinds: For each joint 1 and 0 if it slides, 0 and 1 if it turns, (n, 2).
-        frames: For each frame its row among the placements, and the joint that carries it, (k, 2).
-        offsets: Placement of each frame in its joint's, (k, 12).
-        bodies: For what each joint carries the placement of its principal axes, and for each of
-            them the root of its mass, then of its moment, (n, 18); none without the inertia matrix.
+        joints: `Placement` of each joint at 0 in the frame of its parent, (n, 12).
+        kinds: `JointKind` of each joint, (n, 2).
+        frames: For each frame its row among the placements, (k,).
+        carriers: For each frame the joint that carries it, (k,).
+        offsets: `Placement` of each frame in its joint's, (k, 12).
+        bodies: `PrincipalAxes` of what each joint carries, (n, 18); none without the inertia
+            matrix.
         supports: 1 where joint j moves body i, else 0, (n, n); none with them.
         armature: Inertia of the motors [kg m^2], (n,).
     """
@@ -44,7 +65,8 @@ class ModelTables(NamedTuple):
     parents: IntVector
     joints: Matrix
     kinds: Matrix
-    frames: IntMatrix
+    frames: IntVector
+    carriers: IntVector
     offsets: Matrix
     bodies: Matrix
     supports: Matrix
@@ -70,7 +92,8 @@ def model_tables(robot: Robot, frames: Sequence[int], dynamics: bool = False) ->
             ]
         ),
         np.asarray(axes.any(axis=2), dtype=np.float64),
-        np.array([[k, model.frames[k].parentJoint] for k in frames], dtype=np.int64),
+        np.array(frames, dtype=np.int64),
+        np.array([model.frames[k].parentJoint for k in frames], dtype=np.int64),
         np.array([_flat(turn.actInv(frame.placement)) for frame, turn in carriers]),
         np.reshape(bodies, (-1, 18)),
         np.reshape(supports, (-1, model.nv)),
@@ -109,59 +132,71 @@ def write_kinematics(
         placements: Frame placements by frame index, (frames, 12): rows of the model's frames.
         inertia: Joint-space inertia matrix [kg m^2], (n, n), overwritten if the model has bodies.
     """
-    placed = np.zeros((q.size + 1, 12))
-    start = np.empty(12)
+    placed = np.zeros((q.size + 1, Placement.width()))
+    world = Placement.of(placed[0])
     for i in range(3):
-        placed[0, 4 * i] = 1.0
+        world.axes[i, i] = 1.0
+    start = Placement.of(np.empty(Placement.width()))
     for j in range(q.size):
-        compose(placed[model.parents[j]], model.joints[j], start)
-        _move(start, model.kinds[j], q[j], placed[j + 1])
-        _write_twist(placed[j + 1], 2, model.kinds[j, 0], model.kinds[j, 1], jacobian[j])
-    for k in range(len(model.frames)):
-        carrier = placed[model.frames[k, 1]]
-        compose(carrier, model.offsets[k], placements[model.frames[k, 0]])
+        kind = JointKind.of(model.kinds[j])
+        here = Placement.of(placed[j + 1])
+        compose(Placement.of(placed[model.parents[j]]), Placement.of(model.joints[j]), start)
+        _move(start, kind, q[j], here)
+        _write_twist(here, AXIS, kind.slides, kind.turns, Twist.of(jacobian[j]))
+    for k in range(model.frames.size):
+        carrier = Placement.of(placed[model.carriers[k]])
+        frame = Placement.of(placements[model.frames[k]])
+        compose(carrier, Placement.of(model.offsets[k]), frame)
     if len(model.bodies) > 0:
         _write_inertia(model, placed, jacobian, inertia)
 
 
 @compiled
-def compose(first: Array, second: Array, product: Array) -> None:
-    """Write the product (12,) of two placements (12,)."""
-    for k in range(4):
-        for i in range(3):
-            product[3 * k + i] = (
-                first[i] * second[3 * k]
-                + first[3 + i] * second[3 * k + 1]
-                + first[6 + i] * second[3 * k + 2]
-            )
+def compose(first: Placement, second: Placement, product: Placement) -> None:
+    """Write the product of two placements."""
+    for k in range(3):
+        _turn_into(first.axes, second.axes[k], product.axes[k])
+    _turn_into(first.axes, second.position, product.position)
     for i in range(3):
-        product[9 + i] += first[9 + i]
+        product.position[i] += first.position[i]
 
 
 @compiled
-def _move(start: Array, kind: Array, q: float, moved: Array) -> None:
-    """Write the placement (12,) at position q of a joint of a kind (2,) from that at 0, (12,)."""
-    sine, cosine = sin_cos(kind[1] * q)
+def _turn_into(axes: Matrix, v: Array, turned: Array) -> None:
+    """Write a vector (3,), given along the axes of a frame (3, 3), along the world's."""
     for i in range(3):
-        moved[i] = start[i] * cosine + start[3 + i] * sine
-        moved[3 + i] = start[3 + i] * cosine - start[i] * sine
-        moved[6 + i] = start[6 + i]
-        moved[9 + i] = start[9 + i] + start[6 + i] * (kind[0] * q)
+        turned[i] = axes[0, i] * v[0] + axes[1, i] * v[1] + axes[2, i] * v[2]
 
 
 @compiled
-def _write_twist(placement: Array, axis: int, slides: float, turns: float, twist: Array) -> None:
-    """Write the twist (6,) about the world's origin of sliding along and turning about an axis.
+def _move(start: Placement, kind: JointKind, q: float, moved: Placement) -> None:
+    """Write the placement at position q of a joint from that at 0."""
+    sine, cosine = sin_cos(kind.turns * q)
+    for i in range(3):
+        x = start.axes[0, i]
+        y = start.axes[1, i]
+        z = start.axes[2, i]
+        moved.axes[0, i] = x * cosine + y * sine
+        moved.axes[1, i] = y * cosine - x * sine
+        moved.axes[2, i] = z
+        moved.position[i] = start.position[i] + z * (kind.slides * q)
 
-    The axis is one of a placement (12,), by its number.
+
+@compiled
+def _write_twist(
+    placement: Placement, axis: int, slides: float, turns: float, twist: Twist
+) -> None:
+    """Write the twist about the world's origin of sliding along and turning about an axis.
+
+    The axis is one of a placement, by its number.
     """
-    direction = placement[3 * axis : 3 * axis + 3]
-    position = placement[9:]
+    direction = placement.axes[axis]
+    position = placement.position
     for i in range(3):
-        twist[3 + i] = turns * direction[i]
+        twist.angular[i] = turns * direction[i]
         moment = position[CYCLE[i + 1]] * direction[CYCLE[i + 2]]
         moment -= position[CYCLE[i + 2]] * direction[CYCLE[i + 1]]
-        twist[i] = slides * direction[i] + turns * moment
+        twist.linear[i] = slides * direction[i] + turns * moment
 
 
 @compiled
@@ -172,22 +207,24 @@ def _write_inertia(model: ModelTables, placed: Matrix, jacobian: Matrix, inertia
     mass and moments. No joint after the body's own moves it.
     """
     n = len(inertia)
-    own = np.empty(12)
-    line = np.empty(6)
+    own = Placement.of(np.empty(Placement.width()))
+    line = Twist.of(np.empty(Twist.width()))
     speeds = np.empty(n)
     for i in range(n):
         for j in range(n):
             inertia[i, j] = model.armature[i] if i == j else 0.0
     for body in range(n):
-        compose(placed[body + 1], model.bodies[body, :12], own)
-        for k in range(6):
+        principal = PrincipalAxes.of(model.bodies[body])
+        compose(Placement.of(placed[body + 1]), principal.placement, own)
+        for k in range(principal.roots.size):
             along = 1.0 if k < 3 else 0.0
             _write_twist(own, k % 3, 1.0 - along, along, line)
             for j in range(body + 1):
+                twist = Twist.of(jacobian[j])
                 speed = 0.0
                 for i in range(3):
-                    speed += line[3 + i] * jacobian[j, i] + line[i] * jacobian[j, 3 + i]
-                speeds[j] = model.supports[body, j] * model.bodies[body, 12 + k] * speed
+                    speed += line.angular[i] * twist.linear[i] + line.linear[i] * twist.angular[i]
+                speeds[j] = model.supports[body, j] * principal.roots[k] * speed
             for i in range(body + 1):
                 for j in range(body + 1):
                     inertia[i, j] += speeds[i] * speeds[j]

@@ -13,6 +13,7 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Configuration, Robot
@@ -34,16 +35,23 @@ class WeightedCost(Cost):
     weight: float = 1.0
 
 
+class KineticConstants(Record):
+    """Weight of `KineticEnergy`, and whether G is the inertia matrix."""
+
+    weight: float
+    is_inertia: bool
+
+
 @compiled
 def add_kinetic_energy(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
-    """Add w G(q) to P; the constants are those of `KineticEnergy`."""
-    weight = constants[0]
+    """Add w G(q) to P, for `KineticEnergy`."""
+    own = KineticConstants.of(constants)
     for i in range(step.q.size):
-        if constants[1] == 0.0:
-            P[i, i] += weight
-        else:
+        if own.is_inertia:
             for j in range(step.q.size):
-                P[i, j] += weight * step.inertia[i, j]
+                P[i, j] += own.weight * step.inertia[i, j]
+        else:
+            P[i, i] += own.weight
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,18 +73,25 @@ class KineticEnergy(WeightedCost):
     kinetic: Kinetic = "identity"
 
     def constants(self, robot: Robot) -> Vector:
-        """Return the weight and 1 for the inertia matrix, (2,)."""
-        return np.array([self.weight, float(self.kinetic == "inertia")])
+        """Return `KineticConstants`."""
+        return KineticConstants.make(weight=self.weight, is_inertia=self.kinetic == "inertia")
+
+
+class CyclicConstants(Record):
+    """Weight, gain m [1/s] and home [rad] of `CyclicMotion`."""
+
+    weight: float
+    gain: float
+    home: Vector = part()
 
 
 @compiled
 def add_cyclic_motion(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
-    """Add w I to P and w m (q - home) to the linear term; constants of `CyclicMotion`."""
-    weight = constants[0]
-    gain = constants[1]
+    """Add w I to P and w m (q - home) to the linear term, for `CyclicMotion`."""
+    own = CyclicConstants.of(constants)
     for i in range(step.q.size):
-        P[i, i] += weight
-        q[i] += weight * gain * (step.q[i] - constants[2 + i])
+        P[i, i] += own.weight
+        q[i] += own.weight * own.gain * (step.q[i] - own.home[i])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,7 +123,7 @@ class CyclicMotion(WeightedCost):
         return self if self.home is not None else replace(self, home=tuple(conf.q.tolist()))
 
     def constants(self, robot: Robot) -> Vector:
-        """Return weight, gain and home, (2 + n,).
+        """Return `CyclicConstants`.
 
         Raises:
             InvalidInputError: `home` has another length than the robot has joints.
@@ -116,7 +131,7 @@ class CyclicMotion(WeightedCost):
         home = (0.0,) * robot.dof if self.home is None else self.home
         if len(home) != robot.dof:
             raise InvalidInputError("home", f"has {len(home)} values for {robot.dof} joints")
-        return np.array([self.weight, self.gain, *home])
+        return CyclicConstants.make(weight=self.weight, gain=self.gain, home=home)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -439,7 +439,8 @@ class MotionLimits(Limit):
             row = rates[limit.row - 2]
             np.minimum(row, limit.of(robot), out=row)
         for coupling in self.couplings * len(self.couplings):  # of chains too
-            shares = np.abs(coupling.constants(robot)[1 : 1 + robot.dof])
+            (relation,) = coupling.relations(robot)
+            shares = np.abs(relation.coefficients)
             joints = np.flatnonzero(shares)
             for i in joints:
                 others = joints[joints != i]

@@ -357,7 +357,7 @@ class StepProgram:
         first = 0
         for part in parts:
             rows = part.row_count(robot)
-            own: Vector = part.constants(robot)
+            own: Vector = np.asarray(part.constants(robot))
             if part.copies:
                 own = np.zeros(answer_size(part, n, rows))
             name = part.frame_name(robot)

@@ -11,20 +11,17 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Vector3, read_only
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record
 from iiwa_dnn.errors import NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Target
-from iiwa_dnn.references.rotations import added, combined, cross, dot, scaled, triple
+from iiwa_dnn.references.rotations import combined, cross, dot, scaled, triple
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.configuration import FrameState
 from iiwa_dnn.robot.kinematics import Kinematics, Placement, Twist
 
 TARGET_SIZE = 18
 """Length of `Target.data`."""
-
-FRAME, GAIN, BASE, OWN = range(4)
-"""Constants of a task of a frame: its index, the gain [1/s], the index of the frame that it is seen
-from (0: the world's), and the first of the task's own."""
 
 
 class StepViews(NamedTuple):
@@ -132,12 +129,26 @@ class Step:
         return read_only(np.array(Configuration(self.robot, self.q).inertia))
 
 
+class FrameConstants(Record):
+    """Constants that those of a task of a frame begin with.
+
+    Attributes:
+        frame: Index of the frame.
+        gain: Rate at which the error decays [1/s].
+        relative_to: Index of the frame that it is seen from; 0: the world's.
+    """
+
+    frame: int
+    gain: float
+    relative_to: int
+
+
 @compiled
 def axis_at(placement: Placement, axis: Vector3) -> Vector3:
     """Turn a direction in a frame's own coordinates, by its placement, into the world's."""
     x = scaled(axis[0], triple(placement.axes[0]))
     y = triple(placement.axes[1])
-    return added(x, combined(axis[1], y, axis[2], triple(placement.axes[2])))
+    return combined(1.0, x, 1.0, combined(axis[1], y, axis[2], triple(placement.axes[2])))
 
 
 @compiled
@@ -155,7 +166,7 @@ def point_rate(jacobian: Matrix, j: int, point: Vector3) -> Vector3:
     A joint with angular velocity w and velocity v of the world's origin moves it with v + w x p.
     """
     twist = Twist.of(jacobian[j])
-    return added(triple(twist.linear), cross(triple(twist.angular), point))
+    return combined(1.0, triple(twist.linear), 1.0, cross(triple(twist.angular), point))
 
 
 @compiled
@@ -166,21 +177,17 @@ def rate_along(jacobian: Matrix, j: int, point: Vector3, normal: Vector3) -> flo
 
 @compiled
 def write_velocity(
-    step: StepViews, constants: Vector, point: Vector3, axis: Vector3, row: Vector
+    step: StepViews, own: FrameConstants, point: Vector3, axis: Vector3, row: Vector
 ) -> None:
     """Write the velocity along an axis of a frame's point as seen from its base, a row (n,)."""
-    frame = int(constants[FRAME])
-    base = int(constants[BASE])
     for j in range(step.q.size):
-        sign = step.moves[frame, j] - step.moves[base, j]
+        sign = step.moves[own.frame, j] - step.moves[own.relative_to, j]
         row[j] = sign * rate_along(step.jacobian, j, point, axis)
 
 
 @compiled
-def write_spin(step: StepViews, constants: Vector, axis: Vector3, row: Vector) -> None:
+def write_spin(step: StepViews, own: FrameConstants, axis: Vector3, row: Vector) -> None:
     """Write the angular velocity about an axis of a frame as seen from its base, a row (n,)."""
-    frame = int(constants[FRAME])
-    base = int(constants[BASE])
     for j in range(step.q.size):
-        sign = step.moves[frame, j] - step.moves[base, j]
+        sign = step.moves[own.frame, j] - step.moves[own.relative_to, j]
         row[j] = sign * dot(axis, triple(Twist.of(step.jacobian[j]).angular))

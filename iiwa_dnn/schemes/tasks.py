@@ -17,14 +17,13 @@ from functools import partial
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references.rotations import (
-    added,
     column_of,
     combined,
     cross,
@@ -32,15 +31,12 @@ from iiwa_dnn.references.rotations import (
     rotation_log,
     triple,
 )
-from iiwa_dnn.references.targets import TargetData
+from iiwa_dnn.references.targets import Target, TargetData
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Placement
 from iiwa_dnn.schemes.parts import Checks, Task
 from iiwa_dnn.schemes.step import (
-    BASE,
-    FRAME,
-    GAIN,
-    OWN,
+    FrameConstants,
     StepViews,
     axis_at,
     seen_from,
@@ -65,15 +61,16 @@ def position_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write the rows of a frame's position as seen from its base, three."""
-    gain = min(constants[GAIN], step.rate)
-    base = Placement.of(step.placements[int(constants[BASE])])
-    point = triple(Placement.of(step.placements[int(constants[FRAME])]).position)
+    own = FrameConstants.of(constants[: FrameConstants.width()])
+    gain = min(own.gain, step.rate)
+    base = Placement.of(step.placements[own.relative_to])
+    point = triple(Placement.of(step.placements[own.frame]).position)
     offset = combined(1.0, point, -1.0, triple(base.position))
     for i in range(3):
         axis = triple(base.axes[i])
         missing = target.position[i] - dot(axis, offset)
         b[i] = target.linear_velocity[i] + gain * missing
-        write_velocity(step, constants, point, axis, A[i])
+        write_velocity(step, own, point, axis, A[i])
 
 
 @compiled
@@ -81,9 +78,10 @@ def rotation_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write the rows of a frame's orientation as seen from its base, three."""
-    gain = min(constants[GAIN], step.rate)
-    base = Placement.of(step.placements[int(constants[BASE])])
-    placement = Placement.of(step.placements[int(constants[FRAME])])
+    own = FrameConstants.of(constants[: FrameConstants.width()])
+    gain = min(own.gain, step.rate)
+    base = Placement.of(step.placements[own.relative_to])
+    placement = Placement.of(step.placements[own.frame])
     missing = np.empty((3, 3))
     error = np.empty(3)
     for i in range(3):
@@ -93,7 +91,7 @@ def rotation_rows(
     rotation_log(missing, error)
     for i in range(3):
         b[i] = target.angular_velocity[i] + gain * error[i]
-        write_spin(step, constants, triple(base.axes[i]), A[i])
+        write_spin(step, own, triple(base.axes[i]), A[i])
 
 
 @compiled
@@ -101,15 +99,16 @@ def block_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write the rows of `OrientationTask` in the form ``block``, four."""
-    gain = min(constants[GAIN], step.rate)
-    placement = Placement.of(step.placements[int(constants[FRAME])])
+    own = FrameConstants.of(constants)
+    gain = min(own.gain, step.rate)
+    placement = Placement.of(step.placements[own.frame])
     for i in range(4):
         unit = (1.0, 0.0, 0.0) if i < 2 else (0.0, 1.0, 0.0)
         here = triple(placement.axes[i % 2])
         there = column_of(target.rotation, i % 2)
         b[i] = gain * dot(unit, combined(1.0, there, -1.0, here))
         b[i] += dot(cross(there, unit), triple(target.angular_velocity))
-        write_spin(step, constants, cross(here, unit), A[i])
+        write_spin(step, own, cross(here, unit), A[i])
     project_on_range(placement.axes, b)
 
 
@@ -137,8 +136,16 @@ def project_on_range(axes: Matrix, b: Vector) -> None:
 @compiled
 def pose_rows(step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector) -> None:
     """Write the rows of a frame's position and orientation as seen from its base, six."""
-    position_rows(step, constants, target, A[:3], b[:3])
-    rotation_rows(step, constants, target, A[3:], b[3:])
+    half = b.size // 2
+    position_rows(step, constants, target, A[:half], b[:half])
+    rotation_rows(step, constants, target, A[half:], b[half:])
+
+
+class HeldPoseConstants(Record):
+    """Frame, gain and base of `RelativePoseTask`, and the pose that is kept, at rest."""
+
+    task: FrameConstants = part(FrameConstants)
+    pose: TargetData = part(TargetData)
 
 
 @compiled
@@ -146,7 +153,7 @@ def held_pose_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write the rows of a pose that is among the constants, six."""
-    pose_rows(step, constants, TargetData.of(constants[OWN:]), A, b)
+    pose_rows(step, constants, HeldPoseConstants.of(constants).pose, A, b)
 
 
 def feedback_gain(argument: str, value: float) -> float:
@@ -184,23 +191,23 @@ class FrameTask(GainTask):
         """Name of the frame that this one is seen from; None stands for the world."""
         return getattr(self, "base", None)
 
-    def _own(self) -> ArrayLike:
-        """Return the constants beside `FRAME`, `GAIN` and `BASE`, (k,)."""
-        return ()
-
     def extra_frames(self, robot: Robot) -> tuple[str, ...]:
         """Return the name of the frame that this one is seen from, if it is a robot's."""
         return () if self._base is None else (self._base,)
 
-    def constants(self, robot: Robot) -> Vector:
-        """Return `FRAME`, `GAIN`, `BASE` and, from `OWN` on, the task's own, (3 + k,).
+    def frame_constants(self, robot: Robot) -> FrameConstants:
+        """Return the constants that the task's begin with.
 
         Raises:
             NotFoundError: The robot has no such frame.
         """
-        frame = robot.frame_id(self.frame_name(robot))
         base = 0 if self._base is None else robot.frame_id(self._base)
-        return np.array([frame, self.gain, base, *np.ravel(self._own())])
+        frame = robot.frame_id(self.frame_name(robot))
+        return FrameConstants.make(frame=frame, gain=self.gain, relative_to=base)
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return the task's constants, (k,)."""
+        return self.frame_constants(robot)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -314,18 +321,37 @@ class RelativePoseTask(FrameTask):
         pose = np.linalg.inv(conf.frame(self.base).pose) @ conf.frame(self.frame).pose
         return replace(self, pose=pose.tolist())
 
-    def _own(self) -> ArrayLike:
+    def constants(self, robot: Robot) -> Vector:
+        """Return `HeldPoseConstants`."""
         pose = np.eye(4) if self.pose is None else np.array(self.pose)
-        return [*pose[:3, 3], *pose[:3, :3].ravel(), *np.zeros(6)]
+        target = Target(pose[:3, 3], pose[:3, :3]).data
+        return HeldPoseConstants.make(task=self.frame_constants(robot), pose=target)
+
+
+class AxisConstants(Record):
+    """Constants of `AxisTask`.
+
+    Attributes:
+        task: Frame and gain.
+        axis: The axis in the frame's own coordinates.
+        normals: Two directions normal to it and to each other.
+        direction: Desired direction in the world; zero for the target's.
+    """
+
+    task: FrameConstants = part(FrameConstants)
+    axis: Vector = part(3)
+    normals: Matrix = part(2, 3)
+    direction: Vector = part(3)
 
 
 @compiled
 def axis_rows(step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector) -> None:
     """Write the rows of `AxisTask`, two."""
-    placement = Placement.of(step.placements[int(constants[FRAME])])
-    axis = triple(constants[OWN:])
+    own = AxisConstants.of(constants)
+    placement = Placement.of(step.placements[own.task.frame])
+    axis = triple(own.axis)
     spin = (0.0, 0.0, 0.0)
-    wanted = triple(constants[OWN + 9 :])
+    wanted = triple(own.direction)
     if dot(wanted, wanted) == 0.0:
         spin = triple(target.angular_velocity)
         x = dot(triple(target.rotation[0]), axis)
@@ -336,11 +362,11 @@ def axis_rows(step: StepViews, constants: Vector, target: TargetData, A: Matrix,
     sine = np.sqrt(dot(turn, turn))
     angle = math.atan2(sine, dot(here, wanted))
     factor = angle / sine if sine > 1e-12 else 1.0
-    rate = combined(1.0, spin, min(constants[GAIN], step.rate) * factor, turn)
+    rate = combined(1.0, spin, min(own.task.gain, step.rate) * factor, turn)
     for i in range(2):
-        normal = axis_at(placement, triple(constants[OWN + 3 + 3 * i :]))
+        normal = axis_at(placement, triple(own.normals[i]))
         b[i] = dot(normal, rate)
-        write_spin(step, constants, normal, A[i])
+        write_spin(step, own.task, normal, A[i])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -369,9 +395,29 @@ class AxisTask(FrameTask):
         super().__post_init__()
         self._set(tracks=self.direction is None)
 
-    def _own(self) -> ArrayLike:
+    def constants(self, robot: Robot) -> Vector:
+        """Return `AxisConstants`."""
         direction = (0.0, 0.0, 0.0) if self.direction is None else self.direction
-        return [*self.axis, *_normals(self.axis).ravel(), *direction]
+        return AxisConstants.make(
+            task=self.frame_constants(robot),
+            axis=self.axis,
+            normals=_normals(self.axis),
+            direction=direction,
+        )
+
+
+class RemoteCenterConstants(Record):
+    """Constants of `RemoteCenterTask`.
+
+    Attributes:
+        task: Frame, gain, and the frame that carries the point.
+        normals: Two directions normal to the shaft and to each other.
+        point: The point, seen from the origin of the frame that carries it [m].
+    """
+
+    task: FrameConstants = part(FrameConstants)
+    normals: Matrix = part(2, 3)
+    point: Vector = part(3)
 
 
 @compiled
@@ -379,14 +425,15 @@ def remote_center_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write the rows of `RemoteCenterTask`, two."""
-    placement = Placement.of(step.placements[int(constants[FRAME])])
-    carrier = Placement.of(step.placements[int(constants[BASE])])
-    point = added(triple(carrier.position), triple(constants[OWN + 6 :]))
+    own = RemoteCenterConstants.of(constants)
+    placement = Placement.of(step.placements[own.task.frame])
+    carrier = Placement.of(step.placements[own.task.relative_to])
+    point = combined(1.0, triple(carrier.position), 1.0, triple(own.point))
     offset = combined(1.0, point, -1.0, triple(placement.position))
     for i in range(2):
-        normal = axis_at(placement, triple(constants[OWN + 3 * i :]))
-        b[i] = min(constants[GAIN], step.rate) * dot(normal, offset)
-        write_velocity(step, constants, point, normal, A[i])
+        normal = axis_at(placement, triple(own.normals[i]))
+        b[i] = min(own.task.gain, step.rate) * dot(normal, offset)
+        write_velocity(step, own.task, point, normal, A[i])
 
 
 @dataclass(frozen=True)
@@ -424,9 +471,12 @@ class RemoteCenterTask(FrameTask):
     def _base(self) -> str | None:
         return self.point if isinstance(self.point, str) else None
 
-    def _own(self) -> ArrayLike:
+    def constants(self, robot: Robot) -> Vector:
+        """Return `RemoteCenterConstants`."""
         point = (0.0, 0.0, 0.0) if isinstance(self.point, str) else self.point
-        return [*_normals(self.axis).ravel(), *point]
+        return RemoteCenterConstants.make(
+            task=self.frame_constants(robot), normals=_normals(self.axis), point=point
+        )
 
 
 def _normals(axis: Sequence[float]) -> Matrix:
@@ -437,17 +487,34 @@ def _normals(axis: Sequence[float]) -> Matrix:
     return np.stack([first, np.cross(axis, first)])
 
 
+class JointConstants(Record):
+    """Gain [1/s] of a task of joints, and its relations one after another."""
+
+    gain: float
+    relations: Vector = part()
+
+
+class Relation(Record):
+    """A linear relation between joints: its c [rad], and its row of C."""
+
+    offset: float
+    coefficients: Vector = part()
+
+
 @compiled
 def joint_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
-    """Write the rows of a task of joints: its constants are gain, C (rows, dof) and c (rows,)."""
+    """Write the rows of a task of joints."""
     dof = step.q.size
-    gain = min(constants[0], step.rate)
+    own = JointConstants.of(constants)
+    relations = own.relations.reshape(b.size, dof + 1)
+    gain = min(own.gain, step.rate)
     for i in range(b.size):
-        missing = constants[1 + dof * b.size + i]
+        relation = Relation.of(relations[i])
+        missing = relation.offset
         for j in range(dof):
-            A[i, j] = constants[1 + dof * i + j]
+            A[i, j] = relation.coefficients[j]
             missing -= A[i, j] * step.q[j]
         b[i] = gain * missing
 
@@ -474,20 +541,27 @@ class JointTask(GainTask):
         """Return the number of relations."""
         return len(self._relations())
 
-    def constants(self, robot: Robot) -> Vector:
-        """Return gain, C (rows, n) and c (rows,).
+    def relations(self, robot: Robot) -> list[Relation]:
+        """Return the relations between the n joints of a robot.
 
         Raises:
             NotFoundError: The robot has no joint of a name.
         """
-        relations = self._relations()
-        C = np.zeros((len(relations), robot.dof))
-        for row, (coefficients, _) in zip(C, relations, strict=True):
-            for name, coefficient in coefficients.items():
+        relations = []
+        for named, offset in self._relations():
+            relation = Relation.zeros(robot.dof)
+            relation.offset = offset
+            for name, coefficient in named.items():
                 if name not in robot.joint_names:
                     raise NotFoundError("joint", name, robot.joint_names)
-                row[robot.joint_names.index(name)] = coefficient
-        return np.array([self.gain, *C.ravel(), *(wanted for _, wanted in relations)])
+                relation.coefficients[robot.joint_names.index(name)] = coefficient
+            relations.append(relation)
+        return relations
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return `JointConstants`."""
+        relations = np.ravel(self.relations(robot))
+        return JointConstants.make(gain=self.gain, relations=relations)
 
 
 @dataclass(frozen=True)
@@ -532,5 +606,5 @@ class JointCouplingTask(JointTask):
 
     def missing(self, robot: Robot, q: Vector) -> float:
         """Return what the relation lacks at joint positions q (n,), c_0 - c^T q [rad]."""
-        constants = self.constants(robot)
-        return float(constants[-1] - constants[1:-1] @ q)
+        (relation,) = self.relations(robot)
+        return float(relation.offset - relation.coefficients @ q)

@@ -257,9 +257,9 @@ def test_a_kernel_as_the_page_of_schemes_shows_it_is_exported(
 ) -> None:
     """It has no annotations: its types are those with which it is entered."""
     page = (Path(__file__).parents[2] / "docs" / "schemes.md").read_text(encoding="utf-8")
-    source = re.search(r"\ndef clearance_row\(.*?\n\n", page, re.DOTALL)
+    source = re.search(r"\n(from iiwa_dnn\.compiling\..*?)class CompiledClearance", page, re.DOTALL)
     assert source
-    (tmp_path / "page_kernel.py").write_text(f"import math\n{source[0]}", encoding="utf-8")
+    (tmp_path / "page_kernel.py").write_text(f"import math\n{source[1]}", encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)
     limit = Page(importlib.import_module("page_kernel").clearance_row)
     controller, q0 = drawing(with_limits(limit))
@@ -269,6 +269,8 @@ def test_a_kernel_as_the_page_of_schemes_shows_it_is_exported(
     for k in range(50):
         command = controller.step(q0, k * controller.dt)
         assert exported.step(q0, command.targets).dq.tobytes() == command.dq.tobytes()
+    code = (tmp_path / "folder" / "controller.c").read_text(encoding="utf-8")
+    assert "h.data[0] = own.at->gain * (d - own.at->distance);" in code
 
 
 class Page(iiwa_dnn.Limit):
