@@ -149,7 +149,7 @@ def test_products_in_twice_the_precision_against_fractions() -> None:
         whole = rng.integers(-9, 10, 6).astype(float)
         for x in (vector, whole):
             result = np.empty((2, 3))
-            certificates.dot_twice(rows, x, result)
+            certificates.dot_twice(rows, x, *result)
             for row, value, bound in zip(rows, *result, strict=True):
                 exact = sum(map(mul, map(Fraction, row), map(Fraction, x)))
                 assert abs(Fraction(value) - exact) <= Fraction(bound)
