@@ -123,9 +123,11 @@ def joint_positions(argument: str, value: ArrayLike, dof: int) -> Array:
 
     Kernels take their sines to the last digits up to there.
     """
-    q = finite_array(argument, value, (dof,))
-    if np.abs(q).max(initial=0.0) > LARGEST:
-        raise InvalidInputError(argument, f"must be within ±{LARGEST:.0f} rad", value)
+    q = array(argument, value, (dof,))
+    if not q @ q <= LARGEST * LARGEST:  # rarely, and at NaN
+        finite_array(argument, q, (dof,))
+        if np.abs(q).max() > LARGEST:
+            raise InvalidInputError(argument, f"must be within ±{LARGEST:.0f} rad", value)
     return q
 
 

@@ -118,6 +118,7 @@ class LogLayout(NamedTuple):
         dq: Columns of the command.
         names: Names of the limits; None where nobody asks for them.
         periods: Control periods of the steps; commands keep those of theirs.
+        reasons: Reasons beside limits for a command that need not be what is asked.
     """
 
     sizes: ProgramSizes
@@ -125,6 +126,7 @@ class LogLayout(NamedTuple):
     dq: slice
     names: Any
     periods: Periods
+    reasons: tuple[str, ...] = ()
 
     @property
     def qp_sizes(self) -> Sizes:
@@ -195,29 +197,26 @@ class Command:
         row: The numbers of its `log`, (width,), which the properties are views of.
         dq: Joint velocity [rad/s], (n,), within the limits.
         action: The action taken; ``Action.NONE`` where the network's answer was taken.
-        reasons: Reasons beside limits for a command that need not be what is asked.
     """
 
-    __slots__ = ("_layout", "action", "dq", "reasons", "row")
+    __slots__ = ("_layout", "action", "dq", "row")
 
-    def __init__(
-        self,
-        row: Vector,
-        layout: LogLayout,
-        action: Action = Action.NONE,
-        reasons: tuple[str, ...] = (),
-    ) -> None:
-        """Take a log (width,), which is not copied, its layout, the action taken and reasons."""
+    def __init__(self, row: Vector, layout: LogLayout, action: Action = Action.NONE) -> None:
+        """Take a log (width,), which is not copied, its layout and the action taken."""
         self.row = row
         self.dq = row[layout.dq]
         self.action = action
-        self.reasons = reasons
         self._layout = layout
 
     @property
     def log(self) -> StepLog:
         """The log of the step, a view."""
         return log_of(self.row, self._layout.sizes)
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Reasons beside limits for a command that need not be what is asked."""
+        return self._layout.reasons
 
     @property
     def next_q(self) -> Vector:

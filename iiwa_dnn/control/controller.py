@@ -263,9 +263,8 @@ class Controller:
         state = self._state
         if step is None or not state.begun:
             step = self._prepare(q, t, target is None)
-        reasons: tuple[str, ...] = ()
         if dt is not elapsed or not self.dt == step.steady == state.dt:
-            reasons = self._take_periods(step, dt, elapsed)
+            self._take_periods(step, dt, elapsed)
         layout = step.layout
         program = step.program
         if not _is_plain(q, step.shape):
@@ -292,28 +291,25 @@ class Controller:
             checks.joint_positions("q", q, self.robot.dof)
             checks.finite_array("target", log_of(row, layout.sizes).targets, (-1, TARGET_SIZE))
         state.next_numbers = next_numbers
-        return Command(row, layout, _ACTIONS[action], reasons)
+        return Command(row, layout, _ACTIONS[action])
 
-    def _take_periods(
-        self, step: ControlStep, dt: float | None, elapsed: float | None
-    ) -> tuple[str, ...]:
-        """Take the periods that a step states; return the reason that one is too long."""
+    def _take_periods(self, step: ControlStep, dt: float | None, elapsed: float | None) -> None:
+        """Take the periods that a step states; one that is too long is a reason."""
         longest = self.longest_period
         if elapsed is None and dt == step.steady == self._state.dt:
-            return ()
+            return
         periods = stated_periods(self.dt, longest, dt, elapsed)
         self._state.set_period(periods.dt)
         if elapsed is not None:
             self._state.book(elapsed)
-        step.set_periods(self.dt if dt is None else periods.hold, periods)
         found = dt or elapsed or 0.0
-        if longest is None or found <= longest * (1.0 + SLACK):
-            return ()
-        if not self._state.exceeded:
+        exceeded = longest is not None and found > longest * (1.0 + SLACK)
+        hold = self.dt if dt is None else periods.hold
+        step.set_periods(hold, periods, (EXCEEDED,) if exceeded else ())
+        if exceeded and not self._state.exceeded:
             self._state.exceeded = True
             problem = f"a period of {found:g} s is above the longest, {longest:g} s"
             warnings.warn(f"{problem}: limits may be passed", stacklevel=4)
-        return (EXCEEDED,)
 
     def is_clear(self, q: Vector, dq: Vector) -> bool:
         """Test whether a velocity brings no pair nearer than promised, or too near.

@@ -615,7 +615,7 @@ class Shield:
         elapsed: float | None,
     ) -> ShieldCommand:
         """Take a step with a request, or none."""
-        measured = checks.joint_positions("q", q, self.robot.dof).copy()
+        measured = checks.joint_positions("q", q, self.robot.dof)
         periods = self._periods
         settings = self.settings
         if self.longest_period is not None or dt is not None or elapsed is not None:
@@ -628,7 +628,7 @@ class Shield:
         kind, seen, t, _, sent = self._memory
         if settings.delay > 0.0:
             way, sent = under_way(sent, settings.delay)
-            measured += way
+            measured = measured + way
         if self.longest_period is not None and dt is None and elapsed is None:
             # Nobody says for how long the last command was held.
             copied(self._state.positions, measured)
@@ -716,7 +716,7 @@ class Shield:
         )
         targets = np.zeros((len(frames), TARGET_SIZE))
         targets.reshape(-1)[: aim.size] = aim
-        return dict(zip(frames, map(Target.from_data, targets), strict=True))
+        return {name: Target.from_data(targets[i]) for i, name in enumerate(frames)}
 
     def _cut_twist(self, frame: str) -> Vector:
         """Return the twist that is requested of a frame, (6,), cut where no joints can do it."""

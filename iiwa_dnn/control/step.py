@@ -191,16 +191,17 @@ class ControlStep:
         self._varies = longest is not None
         self.set_periods(dt, constant_periods(dt))
 
-    def set_periods(self, dt: float, periods: Periods) -> None:
+    def set_periods(self, dt: float, periods: Periods, reasons: tuple[str, ...] = ()) -> None:
         """Take other control periods, without laying anything out anew.
 
         Args:
             dt: Period that the next command is for [s].
             periods: Periods as limits count them.
+            reasons: Reasons why limits may be passed in them.
         """
         self.dt = dt
         self.steady = math.nan if self._varies else dt
-        self.layout = self.layout._replace(periods=periods)
+        self.layout = self.layout._replace(periods=periods, reasons=reasons)
         arrays = self.plan.arrays._replace(rate=1.0 / dt)
         paths = self.plan.paths._replace(period=dt)
         yielding = self.plan.yielding._replace(dt=dt, periods=periods)
