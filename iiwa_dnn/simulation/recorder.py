@@ -27,6 +27,7 @@ class Recorder:
 
     Attributes:
         arrays: Columns by name; an optional one once there is something to put in.
+        outcomes: Outcomes that are not in the arrays yet.
         last_step: Step at which the run ended early; None: it has not.
         layout: Columns of the commands' rows.
         infeasible: A step of the continuous mode that was shown to have no solution; None: none.
@@ -46,7 +47,7 @@ class Recorder:
         further = program.target_frames[1:]
         self._frame_ids = [program.robot.frame_id(name) for name in further]
         self._kinematics = Kinematics(program.robot, program.target_frames)
-        self._outcomes: list[Outcome] = []
+        self.outcomes: list[Outcome] = []
         self.last_step: int | None = None
         self.layout = controller.control_step.layout
         self.infeasible: int | None = None
@@ -59,14 +60,9 @@ class Recorder:
 
     def observe(self, k: int, outcome: Outcome) -> None:
         """Take in the outcome of step k."""
-        self._outcomes.append(outcome)
+        self.outcomes.append(outcome)
         if outcome.ends:
             self.last_step = k
-
-    @property
-    def waiting(self) -> int:
-        """Number of outcomes that are not in the arrays yet."""
-        return len(self._outcomes)
 
     def flush(self) -> Matrix:
         """Put the collected outcomes into the arrays.
@@ -74,8 +70,8 @@ class Recorder:
         Returns:
             Rows of their commands, stage by stage, (k, width).
         """
-        outcomes = self._outcomes
-        self._outcomes = []
+        outcomes = self.outcomes
+        self.outcomes = []
         count = len(outcomes)
         rows = np.array([command.row for each in outcomes for command in each.commands])
         steps = slice(self._done, self._done + count)

@@ -156,7 +156,7 @@ def simulate(
                 break
     except KeyboardInterrupt as stop:
         interrupt = stop
-        if recorder.waiting:
+        if recorder.outcomes:
             hand_over()
     agreement = pool.finish().worst_of(stages)
     columns = recorder.finish(len(agreement.judge))  # without what was on its way to the check
