@@ -115,12 +115,18 @@ class Reason(IntEnum):
     HALTED = 4
 
 
+class JointsConstants(Record):
+    """Number of the first joint of a `JointVelocityTask`, from 0."""
+
+    first: int
+
+
 @compiled
 def wished_velocity(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write A = I and b = w for some joints; the target (18,) begins with their velocities w."""
-    first = int(constants[0])
+    first = JointsConstants.of(constants).first
     for i in range(b.size):
         A[i, first + i] = 1.0
         b[i] = target.numbers[i]
@@ -145,8 +151,8 @@ class JointVelocityTask(Task):
         return min(TARGET_SIZE, robot.dof - self.first)
 
     def constants(self, robot: Robot) -> Vector:
-        """Return the first joint, (1,)."""
-        return np.array([float(self.first)])
+        """Return `JointsConstants`."""
+        return JointsConstants.make(first=self.first)
 
 
 @compiled

@@ -44,6 +44,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import row_dot, times
 from iiwa_dnn.qp.layout import QPViews, copied
 from iiwa_dnn.qp.residuals import point_residuals, within
+from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.limits import MotionNumbers, braking, constant_periods
 from iiwa_dnn.schemes.program import (
@@ -269,7 +270,9 @@ def _is_path(targets: Matrix) -> bool:
     """Test whether a target (k, 18) has a velocity."""
     fastest = 0.0
     for k in range(targets.shape[0]):
-        fastest = max(fastest, largest_entry(targets[k, 12:]))
+        target = TargetData.of(targets[k])
+        fastest = max(fastest, largest_entry(target.linear_velocity))
+        fastest = max(fastest, largest_entry(target.angular_velocity))
     return fastest > 0.0
 
 

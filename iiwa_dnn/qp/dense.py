@@ -143,9 +143,9 @@ def extreme_eigenvalues(K: Matrix) -> tuple[float, float]:
                 # An entry of that size moves an eigenvalue in second order.
                 if abs(K[i, k]) > 1e-13 * (abs(K[i, i]) + abs(K[k, k])):
                     _rotate(K, i, k)
-    smallest = K[0, 0]
-    largest = K[0, 0]
-    for i in range(1, n):
+    smallest = np.inf
+    largest = -np.inf
+    for i in range(n):
         smallest = min(smallest, K[i, i])
         largest = larger(largest, K[i, i])
     return smallest, largest
