@@ -7,6 +7,7 @@ from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.posing import PoseSolution, solve_pose
 from iiwa_dnn.control.shield import Shield
+from iiwa_dnn.control.shields import Shields, ShieldsCommand
 from iiwa_dnn.errors import (
     FileError,
     IiwaDnnError,
@@ -101,6 +102,7 @@ __all__ = [
     "OrientationTask", "PoseSolution", "PoseTask", "PositionTask", "PostureTask",
     "PrimalDualNetwork", "ProjectionNetwork", "Proof", "PseudoInverse", "Record", "Reference",
     "RelativePoseTask", "RemoteCenterTask", "Residuals", "Robot", "Scheme", "Shield",
+    "Shields", "ShieldsCommand",
     "SimplifiedDualNetwork", "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task",
     "Tilting", "TipSpeedLimit", "TrackingSolver", "Waypoints", "ZeroingNetwork",
     "available_robots", "compute_metrics", "failures", "load_robot", "prove",

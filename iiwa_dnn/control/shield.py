@@ -40,11 +40,13 @@ from iiwa_dnn.control.state import ControllerState
 from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import all_finite
-from iiwa_dnn.qp.layout import copied
+from iiwa_dnn.qp.dense import all_finite, cholesky_factor, factor_solve
+from iiwa_dnn.qp.layout import QPViews, copied, qp_views
 from iiwa_dnn.references import Target
+from iiwa_dnn.references.rotations import triple
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot.kinematics import Placement, Twist
 from iiwa_dnn.schemes import (
     CollisionAvoidance,
     JointLimits,
@@ -70,8 +72,15 @@ from iiwa_dnn.schemes.limits import (
     joint_rates,
     stated_periods,
 )
-from iiwa_dnn.schemes.step import TARGET_SIZE, StepViews
-from iiwa_dnn.schemes.tasks import pose_rows
+from iiwa_dnn.schemes.program import StepProgram
+from iiwa_dnn.schemes.step import (
+    TARGET_SIZE,
+    FrameConstants,
+    StepViews,
+    point_rate,
+    write_spin,
+    write_velocity,
+)
 
 DAMPING = 0.02
 """Lambda of a twist's program [m/rad]: near a singular pose the joints do not race."""
@@ -106,13 +115,18 @@ SINGULAR = "singular posture"
 
 
 class Reason(IntEnum):
-    """Reasons why a request to rest counts."""
+    """Reasons beside limits for another command than the request: those to rest come first."""
 
     NONE = 0
     NO_REQUEST = 1
     TIMED_OUT = 2
     NOT_FINITE = 3
     HALTED = 4
+    Q_NOT_FINITE = 5
+    RESYNCHRONISED = 6
+    CUT = 7
+    PERIOD_EXCEEDED = 8
+    SINGULAR = 9
 
 
 class JointsConstants(Record):
@@ -160,7 +174,15 @@ def twist_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write A = W J and b = W v = v; W leaves v as it is and weighs what is beside it."""
-    pose_rows(step, constants, target, A, b)
+    own = FrameConstants.of(constants[: FrameConstants.width()])
+    base = Placement.of(step.placements[own.relative_to])
+    point = triple(Placement.of(step.placements[own.frame]).position)
+    for i in range(3):
+        axis = triple(base.axes[i])
+        write_velocity(step, own, point, axis, A[i])
+        write_spin(step, own, axis, A[3 + i])
+        b[i] = target.linear_velocity[i]
+        b[3 + i] = target.angular_velocity[i]
     square = 0.0
     for k in range(b.size):
         square += b[k] * b[k]
@@ -317,6 +339,66 @@ def come_nearer(
         dq[i] = wanted
 
 
+@compiled
+def cut_twist(
+    twist: Vector, jacobian: Matrix, placement: Placement, moves: Vector, limits: MotionNumbers
+) -> bool:
+    """Cut a twist (6,) in place to `CUT` times what the joints can do.
+
+    Args:
+        twist: The twist of a frame.
+        jacobian: `Kinematics.jacobian`, (n, 6).
+        placement: The frame's.
+        moves: 1 for the joints that move it, (n,).
+        limits: Limits of the joints.
+
+    Returns:
+        Whether it was larger.
+    """
+    n = moves.size
+    size = 0.0
+    for i in range(TWIST):
+        size = max(size, abs(twist[i]))
+    if size <= CUT:
+        return False
+    point = triple(placement.position)
+    most = 1.0
+    for i in range(TWIST):
+        total = 0.0
+        for j in range(n):
+            linear = point_rate(jacobian, j, point)
+            angular = triple(Twist.of(jacobian[j]).angular)
+            rate = linear[i % 3] if i < 3 else angular[i % 3]
+            total += abs(moves[j] * rate) * min(limits.velocity[j], FASTEST)
+        most = max(most, total)
+    if size <= CUT * most:
+        return False
+    for i in range(TWIST):
+        twist[i] *= CUT * most / size
+    return True
+
+
+@compiled
+def falls_short(qp: QPViews, twist: Vector) -> bool:
+    """Test whether the damping alone keeps a twist (6,) from being fulfilled by `SHORT` of it.
+
+    |W (J x - v)|^2 at the least of the cost of a twist's program, whose P is (W J)^T W J +
+    DAMPING^2 I.
+    """
+    n = qp.q.size
+    K = qp.P.copy()
+    x = np.zeros(n)
+    if cholesky_factor(K):
+        factor_solve(K, qp.q, x)
+    square = 0.0
+    for i in range(TWIST):
+        square += twist[i] * twist[i]
+    missing = square
+    for i in range(n):
+        missing -= x[i] * (qp.q[i] + DAMPING * DAMPING * x[i])
+    return missing > SHORT * SHORT * square
+
+
 def under_way(sent: Matrix, delay: float) -> tuple[Vector, Matrix]:
     """Compute the way of the commands of the last `delay` seconds.
 
@@ -407,10 +489,7 @@ class ShieldCommand(NamedTuple):
         if self.wish is not None or not v.any():
             return False
         qp = self.command.qp
-        x = np.linalg.solve(qp.P, -qp.q)
-        # |W (J x - v)|^2, as P = (W J)^T W J + DAMPING^2 I
-        missing = x @ qp.P @ x - DAMPING**2 * (x @ x) + 2.0 * (qp.q @ x) + v @ v
-        return bool(missing > SHORT**2 * (v @ v))
+        return bool(falls_short(qp_views(qp.data, *qp.sizes), v))
 
     @property
     def stopping_time(self) -> float:
@@ -623,15 +702,14 @@ class Shield:
         """Take a step with a request, or none."""
         measured = checks.joint_positions("q", q, self.robot.dof)
         periods = self._periods
-        settings = self.settings
         if self.longest_period is not None or dt is not None or elapsed is not None:
             periods = stated_periods(self.dt, self.longest_period, dt, elapsed)
             if elapsed is not None:
                 self._book(periods.dt)
-            self._kept.set_period(periods.dt)
-            settings = settings.copy()
-            settings.period = self._memory.period
-        kind, seen, t, _, sent = self._memory
+        self._kept.set_period(periods.dt)
+        kind, seen, t, period, sent = self._memory
+        settings = self.settings.copy()
+        settings.period = period
         if settings.delay > 0.0:
             way, sent = under_way(sent, settings.delay)
             measured = measured + way
@@ -709,7 +787,7 @@ class Shield:
         program = controller.program
         frames = program.target_frames
         if kind == "twist":
-            v = self._cut_twist(frames[0])
+            v = self._cut_twist(program)
             return {frames[0]: Target(np.zeros(3), linear_velocity=v[:3], angular_velocity=v[3:])}
         # From here a network that has nothing to do hands the aim out as it is.
         state = controller.solver.state_for(program.sizes)
@@ -724,16 +802,16 @@ class Shield:
         targets.reshape(-1)[: aim.size] = aim
         return {name: Target.from_data(targets[i]) for i, name in enumerate(frames)}
 
-    def _cut_twist(self, frame: str) -> Vector:
-        """Return the twist that is requested of a frame, (6,), cut where no joints can do it."""
+    def _cut_twist(self, program: StepProgram) -> Vector:
+        """Return the twist that is requested, (6,), cut where no joints can do it."""
         v = self._state.request[:TWIST].copy()
-        size = np.abs(v).max()
         self._state.flags.is_cut = False
-        if size > CUT:
-            jacobian = Configuration(self.robot, self._state.positions).frame(frame).jacobian
-            fastest = np.minimum(self.robot.dq_max, FASTEST)
-            most = CUT * max((np.abs(jacobian) @ fastest).max(), 1.0)
-            if size > most:
-                v *= most / size
-                self._state.flags.is_cut = True
+        if np.abs(v).max() > CUT:
+            own = program.kinematics
+            own.update(self._state.positions)
+            at = self.robot.frame_id(program.target_frames[0])
+            moves = self.robot.moves[at]
+            placement = Placement.of(own.placements[at])
+            cuts = cut_twist(v, own.jacobian, placement, moves, self.motion)
+            self._state.flags.is_cut = cuts
         return v

@@ -32,6 +32,7 @@ from iiwa_dnn.schemes.limits import (
     MotionLimits,
     Periods,
     RateLimits,
+    Rates,
     approach,
     joint_rates,
     merged,
@@ -264,9 +265,6 @@ class ProgramArrays(NamedTuple):
 
 
 POSITION, VELOCITY, ACCELERATION, JERK = range(1, 5)
-
-_KINDS = (JERK, ACCELERATION, VELOCITY)
-"""Kinds that a bound may have beside that of a position; of several the last counts."""
 
 _CLOSE = 1e-9
 """Difference of two bounds that is rounding, in units of the velocity limit."""
@@ -644,34 +642,51 @@ class LimitNames:
         Returns:
             Places in `naming.KINDS`, from 1, negative for lower bounds; 0 where `sides` is, (n,).
         """
-        dof = past.shape[1]
-        sign = np.sign(sides[:dof])
-        lower, upper = bounds[:, :dof]
-        value = np.where(sign > 0.0, upper, -lower)
-        kinds = np.full(dof, POSITION)
-        # Crossed bounds are others' than the robot's.
-        close = np.where(lower > upper, -1.0, _CLOSE * self._limits.velocity)
-        with np.errstate(invalid="ignore"):  # joints without limits
-            for kind, candidate in zip(_KINDS, self._candidates(sign * past, periods), strict=True):
-                kinds[np.abs(candidate - value) <= close] = kind
-        return np.asarray(sign * kinds, np.int8)
+        codes = np.zeros(past.shape[1], np.int8)
+        for i in np.flatnonzero(sides[: codes.size]).tolist():
+            rates = joint_rates(self._limits, i)
+            own = (bounds[0, i], bounds[1, i])
+            kind = bound_kind(own, past[1, i], past[2, i], sides[i], rates, periods)
+            codes[i] = kind if sides[i] > 0.0 else -kind
+        return codes
 
-    def _candidates(self, past: Matrix, periods: Periods) -> list[Vector]:
-        """Return the upper bounds that the limit of each of `_KINDS` alone makes, (n,) [rad/s].
 
-        Args:
-            past: Joint positions [rad], last command and the one before [rad/s], (3, n); of the
-                joints whose lower bounds are meant they have the other sign.
-            periods: Periods of the step.
-        """
-        _, last, before = past
-        limits = self._limits
-        dt, _, longest, _, vary = periods
-        rates = [joint_rates(limits, i) for i in range(last.size)]
-        unit = dt**2 * np.array([usable_jerk(own, longest) for own in rates])
-        ways = zip((limits.velocity - last) / unit, vary | (limits.lag > 0.0), strict=True)
-        room = [approach(x, own) for x, own in ways]
+@compiled
+def bound_kind(
+    bounds: tuple[float, float],
+    last: float,
+    before: float,
+    side: float,
+    rates: Rates,
+    periods: Periods,
+) -> int:
+    """Find the kind of the limit that bounds a joint: velocity before acceleration and jerk.
+
+    Args:
+        bounds: Its lower and upper bound [rad/s].
+        last: Its last command [rad/s].
+        before: Its command before that [rad/s].
+        side: Above 0 for the upper bound, below for the lower one.
+        rates: Its limits.
+        periods: Periods of the step.
+    """
+    lower, upper = bounds
+    sign = 1.0 if side > 0.0 else -1.0
+    value = upper if side > 0.0 else -lower
+    # Crossed bounds are others' than the robot's.
+    close = -1.0 if lower > upper else _CLOSE * rates.velocity
+    dt = periods.dt
+    speed = rates.velocity
+    if rates.jerk < np.inf:
         # The velocity after which the acceleration can still be taken back in time.
-        fastest = np.where(limits.jerk < np.inf, last + unit * room, limits.velocity)
-        by_jerk = 2.0 * last - before + dt**2 * limits.jerk
-        return [by_jerk, last + dt * limits.acceleration, fastest]
+        unit = dt * dt * usable_jerk(rates, periods.longest)
+        room = (rates.velocity - sign * last) / unit
+        speed = sign * last + unit * approach(room, periods.vary or rates.lag > 0.0)
+    kind = POSITION
+    if abs(sign * (2.0 * last - before) + dt * dt * rates.jerk - value) <= close:
+        kind = JERK
+    if abs(sign * last + dt * rates.acceleration - value) <= close:
+        kind = ACCELERATION
+    if abs(speed - value) <= close:
+        kind = VELOCITY
+    return kind

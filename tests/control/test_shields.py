@@ -1,0 +1,235 @@
+"""Shields of many arms: each is a `Shield`, to the last bit given the same kinematics."""
+
+import copy
+import multiprocessing
+import pickle
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+import iiwa_dnn
+from iiwa_dnn import InvalidInputError, Robot, Shield, Shields, Sphere, load_robot
+from iiwa_dnn.control.shield import Reason
+from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
+
+DT = 1e-3
+START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
+PLAIN = load_robot("iiwa7")
+SMOOTH = PLAIN.with_limits(acceleration=10.0, jerk=500.0)
+BALL = Sphere([0.36, 0.16, 0.64], 0.05)
+
+
+@pytest.fixture
+def kernels_kinematics(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the kernel compute the kinematics of shields at the desk too, not Pinocchio."""
+
+    def update(self: Any, q: np.ndarray) -> None:
+        tables = vars(self).setdefault("tables", model_tables(self.robot, self.frame_ids))
+        joints = np.ascontiguousarray(q)
+        write_kinematics(tables, joints, self.jacobian, self.placements, self.inertia)
+
+    monkeypatch.setattr(Kinematics, "update", update)
+
+
+def requests(kind: str, steps: int) -> Iterator[dict[str, np.ndarray]]:
+    """Requests that are held, jump, are far too large, fall silent, or are not finite."""
+    random = np.random.default_rng(0)
+    size = 6 if kind == "twist" else 7
+    own: dict[str, np.ndarray] = {}
+    for k in range(steps):
+        if k % 40 == 0:
+            large = 1e4 if k % 200 == 0 else 1.0
+            own = {kind: random.standard_normal(size) * np.exp(random.standard_normal()) * large}
+        elif k % 120 == 1:
+            own = {}
+        elif k % 250 == 2:
+            own = {kind: np.full(size, np.nan)}
+        if kind == "position" and kind in own and k % 40 == 0:
+            own[kind] = START + 0.3 * own[kind] / large
+        yield own
+
+
+def periods(k: int, longest: float | None) -> dict[str, float]:
+    """Periods that are stated now and then, one of them too long."""
+    if longest is None:
+        return {"dt": 2.0 * DT} if k % 7 == 3 else {}
+    spread = DT * (0.2 + k * 0.37 % 3.3)
+    return [{}, {"dt": min(spread, longest)}, {"elapsed": spread}][k % 3]
+
+
+@pytest.mark.usefixtures("kernels_kinematics")
+@pytest.mark.parametrize("longest", [None, 3e-3])
+@pytest.mark.parametrize("kind", ["dq", "twist", "position"])
+@pytest.mark.parametrize("robot", [PLAIN, SMOOTH])
+def test_each_arm_is_a_shield(robot: Robot, kind: str, longest: float | None) -> None:
+    settings: dict[str, Any] = {
+        "dt": DT,
+        "obstacles": [BALL],
+        "timeout": 0.02,
+        "longest_period": longest,
+    }
+    shield = Shield(robot, **settings)
+    shields = Shields(robot, 3, **settings)
+    q = START.copy()
+    limited = 0
+    for k, own in enumerate(requests(kind, 500)):
+        told = periods(k, longest)
+        with np.testing.suppress_warnings() as warned:
+            warned.filter(UserWarning, "a period of")
+            command = shield.step(q, **own, **told)
+        rows = {name: np.tile(value, (3, 1)) for name, value in own.items()}
+        many = shields.step(np.tile(q, (3, 1)), **rows, **told)
+        for i in range(3):
+            assert many.dq[i].tobytes() == command.dq.tobytes()
+            assert many.next_q[i].tobytes() == command.next_q.tobytes()
+        assert many.clipped.tolist() == [command.clipped] * 3
+        if k % 10 == 0:
+            assert many.active_limits(1) == command.limits
+            assert shields.stopping_time(2) == command.stopping_time
+            assert shields.margin(0) == pytest.approx(command.margin, abs=1e-15)
+        limited += bool(command.limits)
+        q = command.next_q
+        if k == 300:
+            q = q + 0.05  # farther than the tracking error
+        if k == 400:
+            shield.halt()
+            shields.halt()
+    assert limited > 100
+    assert many.reason[0] == Reason.HALTED
+
+
+def stepped(shields: Shields, steps: int, seed: int = 0) -> np.ndarray:
+    """Let arms follow their commands under random requests; return all commands."""
+    random = np.random.default_rng(seed)
+    q = np.tile(START, (shields.count, 1))
+    found = []
+    for _ in range(steps):
+        command = shields.step(q, 3.0 * random.standard_normal(q.shape))
+        q = command.next_q
+        found.append(command.dq)
+    return np.array(found)
+
+
+def test_threads_change_nothing() -> None:
+    one, two = (Shields(SMOOTH, 200, dt=DT, obstacles=[BALL], threads=k) for k in (1, 3))
+    np.testing.assert_array_equal(stepped(one, 20), stepped(two, 20))
+
+
+def test_an_arm_whose_numbers_are_not_finite_brakes_alone() -> None:
+    shields = Shields(PLAIN.with_limits(acceleration=10.0), 3, dt=DT)
+    request = np.ones((3, 7))
+    q = np.tile(START, (3, 1))
+    for k in range(160):
+        command = shields.step(q, request)
+        q = command.next_q.copy()
+        if k == 50:
+            request[1, 4] = np.inf
+        if k >= 50:
+            q[2, 0] = np.nan
+    assert command.reason.tolist() == [Reason.NONE, Reason.NOT_FINITE, Reason.Q_NOT_FINITE]
+    assert command.dq[0] == pytest.approx(1.0)
+    assert not command.dq[1:].any()
+    assert command.active_limits(2) == ("q not finite",)
+    q[2] = shields.step(q, request).next_q[2]
+    assert shields.step(q, request).dq[2, 0] > 0.0
+
+
+def test_arms_without_a_new_request_go_on_until_theirs_is_too_old() -> None:
+    shields = Shields(PLAIN, 2, dt=DT, timeout=0.01)
+    single = Shields(PLAIN, 1, dt=DT, timeout=0.01)
+    q = np.tile(START, (2, 1))
+    shields.step(q, np.full((2, 7), 0.1))
+    single.step(q[:1], np.full((1, 7), 0.1))
+    for _ in range(12):
+        command = shields.step(q, np.full((2, 7), 0.2), given=[True, False])
+        alone = single.step(q[:1])
+    assert (command.dq[0] > 0.07).all()
+    np.testing.assert_array_equal(command.dq[1], alone.dq[0])
+    assert command.reason[1] == alone.reason[0] == Reason.TIMED_OUT
+
+
+def test_an_episode_that_begins_anew_repeats() -> None:
+    shields = Shields(SMOOTH, 4, dt=DT, obstacles=[BALL])
+    done = np.array([False, True, False, True])
+    first = stepped(shields, 30)
+    shields.reset(done)
+    second = stepped(shields, 30)
+    np.testing.assert_array_equal(first[:, done], second[:, done])
+    assert (first[:, ~done] != second[:, ~done]).any()
+    shields.reset(q=np.tile(START, (4, 1)))
+    np.testing.assert_array_equal(stepped(shields, 30), first)
+
+
+def test_obstacles_may_differ_from_arm_to_arm() -> None:
+    balls = [[0.36, 0.16, 0.64], [0.4, 0.0, 0.7], [2.0, 2.0, 2.0]]
+    shields = Shields(SMOOTH, 3, dt=DT, obstacles=[BALL])
+    places = np.array(balls)[:, np.newaxis]
+    q = np.tile(START, (3, 1))
+    singles = [Shields(SMOOTH, 1, dt=DT, obstacles=[Sphere(ball, 0.05)]) for ball in balls]
+    for k in range(150):
+        command = shields.step(q, np.full((3, 7), 0.5), obstacles=places if k == 0 else None)
+        for i, own in enumerate(singles):
+            alone = own.step(q[i : i + 1], np.full((1, 7), 0.5))
+            np.testing.assert_array_equal(command.dq[i], alone.dq[0])
+        q = command.next_q
+    assert len({shields.margin(i).distance for i in range(3)}) == 3
+
+
+def test_a_wrong_input_changes_no_arm() -> None:
+    shields = Shields(SMOOTH, 3, dt=DT, obstacles=[BALL])
+    expected = stepped(copy.deepcopy(shields), 10)
+    q = np.tile(START, (3, 1))
+    wrong: list[dict[str, Any]] = [
+        {"dq": np.ones((2, 7))},
+        {"dq": np.ones(7)},
+        {"twist": np.ones((3, 7))},
+        {"dq": np.ones((3, 7)), "position": q},
+        {"dq": np.ones((3, 7)), "given": np.ones(3)},
+        {"dq": np.ones((3, 7)), "obstacles": np.zeros((2, 3))},
+        {"dq": np.ones((3, 7)), "obstacles": [[0.0, np.nan, 0.0]]},
+        {"dq": np.ones((3, 7)), "elapsed": 1e-3},
+        {"dq": np.ones((3, 7)), "dt": -1.0},
+        {"dq": [["a"] * 7] * 3},
+    ]
+    for own in wrong:
+        with pytest.raises(InvalidInputError):
+            shields.step(q, **own)
+    np.testing.assert_array_equal(stepped(shields, 10), expected)
+
+
+def test_what_is_given_to_be_overwritten_is() -> None:
+    shields = Shields(PLAIN, 2, dt=DT)
+    q = np.tile(START, (2, 1))
+    first = shields.step(q, np.full((2, 7), 0.001))
+    found = shields.step(q.astype(np.float32)[::-1], np.full((2, 7), 0.003), out=first)
+    assert found is first
+    assert first.dq == pytest.approx(0.003)
+
+
+def _commands(shields: Shields) -> np.ndarray:
+    return stepped(shields, 20, seed=3)
+
+
+def test_copies_pickles_and_forks_carry_the_state() -> None:
+    shields = Shields(SMOOTH, 130, dt=DT, obstacles=[BALL], threads=2)
+    stepped(shields, 10)
+    copies = [copy.deepcopy(shields), pickle.loads(pickle.dumps(shields))]
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        forked = pool.apply(_commands, [shields])
+    expected = _commands(shields)
+    for found in [*map(_commands, copies), forked]:
+        np.testing.assert_array_equal(found, expected)
+
+
+def test_an_arm_with_a_ball_takes_at_most_8000_bytes() -> None:
+    assert Shields(SMOOTH, 1, dt=DT, obstacles=[BALL])._memories.nbytes <= 8000
+
+
+def test_what_is_for_one_shield_is_refused() -> None:
+    with pytest.raises(InvalidInputError, match="delay"):
+        Shields(PLAIN, 2, delay=0.01)
+    with pytest.raises(iiwa_dnn.NotFoundError):
+        Shields(PLAIN, 2, frame="elbow")
