@@ -347,6 +347,87 @@ def league() -> Figure:
     return made
 
 
+# Solver and network ----------------------------------------------------------------------------
+
+
+@figure
+def settling() -> Figure:
+    """Draw the way of the paper's network to rest from multipliers that are far away."""
+    made, axes = panels(1, 2.3)
+    qp = iiwa_dnn.QP([[1.0]], [0.0], A=[[1.0]], b=[0.0], lb=[-1.0], ub=[1.0])
+    rates = iiwa_dnn.ProjectionNetwork().flow(qp).rates
+    for far, color in ((10.0, GREEN), (40.0, BLUE), (80.0, PURPLE)):
+        state, step = np.array([0.0, -far, 0.0, 0.0]), 5e-3
+        away = []
+        for _ in range(round((far + 32.0) / step)):
+            away.append(np.linalg.norm(state))
+            state = state + step * rates(state)
+        t = step * np.arange(len(away))
+        axes.semilogy(t[::20], away[::20], color=color, label=f"D = {far:g}")
+    axes.axhline(1e-6, color=GREY, lw=1.0, ls=":")
+    axes.set(xlabel="time [ρ]", ylabel="distance from rest")
+    put_legend(axes)
+    return made
+
+
+SIZES = (7, 14, 30, 50, 100)
+"""Numbers of variables of the programs of a figure."""
+
+
+def random_program(n: int, active: int, random: np.random.Generator) -> iiwa_dnn.QP:
+    """Draw a program of n variables with so many active rows among n."""
+    root = random.standard_normal((n, n))
+    x, z = random.standard_normal(n), np.zeros(n)
+    G = random.standard_normal((n, n))
+    z[:active] = random.uniform(0.5, 2.0, active)
+    h = G @ x + np.where(np.arange(n) < active, 0.0, random.uniform(0.5, 2.0, n))
+    P = root @ root.T / n + np.eye(n)
+    return iiwa_dnn.QP(P, -P @ x - G.T @ z, G=G, h=h)
+
+
+def quickest(solve: Callable[[], Any]) -> float:
+    """Measure the least of some times of a call [s]."""
+    times = []
+    for _ in range(7):
+        began = time.perf_counter()
+        solve()
+        times.append(time.perf_counter() - began)
+    return min(times)
+
+
+@figure
+def solvers() -> Figure:
+    """Draw the time of a cold solution in units of DAQP's, over size and active rows."""
+    import qpsolvers
+
+    made, axes = panels(1, 2.4)
+    iiwa_dnn.qp.register()
+    for share, color in ((0.1, BLUE), (0.5, ORANGE)):
+        direct, public = [], []
+        for n in SIZES:
+            random = np.random.default_rng(n)
+            ratios = []
+            for _ in range(5):
+                qp = random_program(n, round(share * n), random)
+                problem = qp.to_qpsolvers()
+                others = quickest(lambda p=problem: qpsolvers.solve_problem(p, "daqp"))
+                ours = quickest(lambda p=problem: qpsolvers.solve_problem(p, "iiwa_dnn"))
+                alone = quickest(lambda p=qp: iiwa_dnn.DNNSolver().solve(p))
+                ratios.append((alone / others, ours / others))
+            one, two = np.median(ratios, axis=0)
+            direct.append(one)
+            public.append(two)
+        label = f"{100 * share:.0f} % of rows active"
+        axes.plot(SIZES, public, "o-", color=color, ms=5, label=f"qpsolvers, {label}")
+        axes.plot(SIZES, direct, "s--", color=color, ms=4, label=f"solve, {label}")
+    axes.axhline(1.0, color=GREY, lw=1.0)
+    axes.set(xlabel="variables, as many rows", ylabel="time, in DAQP's", xscale="log", ylim=0.0)
+    axes.set_xticks(SIZES, [str(n) for n in SIZES])
+    axes.minorticks_off()
+    put_legend(axes, 2)
+    return made
+
+
 # Motions to rest -------------------------------------------------------------------------------
 
 

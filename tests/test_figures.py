@@ -40,11 +40,16 @@ def test_every_image_of_the_pages_has_its_script() -> None:
 def test_a_figure_is_drawn_in_the_readers_colors(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in {"shield": ("ruckig", "pylibfranka"), "push": ("mujoco",)}.get(name, ()):
+    for module in {
+        "shield": ("ruckig", "pylibfranka"),
+        "push": ("mujoco",),
+        "solvers": ("daqp",),
+    }.get(name, ()):
         pytest.importorskip(module)
     monkeypatch.setattr(figures, "PAPER_DT", 2e-3)
     monkeypatch.setattr(figures, "WORKS", (1e4,))
     monkeypatch.setattr(figures, "SHARES", (0.4,))
+    monkeypatch.setattr(figures, "SIZES", (7, 14))
     monkeypatch.setattr(figures, "GAINS", (10.0, 100.0))
     text = figures.save(name, tmp_path).read_text(encoding="utf-8")
     ElementTree.fromstring(text)

@@ -21,7 +21,7 @@ joints' way :math:`\Delta q`, still has at least
 
 .. math::  d + g \cdot \Delta q - \tfrac12 B - v_o T
 
-by inequality (1) of docs/theory.md. Along the motion :math:`g \cdot \Delta q` has its least
+by inequality (1) of docs/theory_braking.md. Along the motion :math:`g \cdot \Delta q` has its least
 value at rest, or where the sum of its terms changes sign. Up to any time the joints have gone at
 most a part :math:`\lambda` of their ways, that of the curve of :math:`x_0`, and B is at most
 :math:`\lambda^2 B`. Of an end that sets off away from the other body, with

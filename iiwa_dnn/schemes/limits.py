@@ -29,7 +29,7 @@ at either end. A joint needs a range to turn round in, with J' too (`check_range
 
 **Periods that vary** up to T (`Periods`): a velocity that may be held for h is within the distance
 d of a limit if :math:`v h + v^2 / (2 A) \le d`, and with a jerk limit if h v and the continuous way
-to rest after it are. That is kept whatever period comes next (docs/theory.md).
+to rest after it are. That is kept whatever period comes next (docs/theory_limits.md).
 
 **Position-dependent velocity limits** (`Robot.ramps`) are zero at :math:`o^2 / (2 D)` before a
 position limit. At the distance x from there one admits v if :math:`v^2 / (2 D) + v\,o / D \le x`,
@@ -39,7 +39,7 @@ B the one that admits most counts, as a joint may go on with its own.
 
 Sources: A. Del Prete, "Joint position and velocity bounds in discrete-time acceleration/torque
 control of robot arms", IEEE Robotics and Automation Letters 3(1), 2018, for the second order. The
-third order is derived in docs/theory.md.
+third order is derived in docs/theory_limits.md.
 """
 
 import math

@@ -14,7 +14,7 @@ and what that lacks to be linear in the joints' (twice), are at most
     V = \sum_k \delta_k r_k, \qquad
     B = \sum_k r_k \delta_k \Bigl(\delta_k + 2 \sum_{j<k} \delta_j\Bigr)
 
-(docs/theory.md). A prismatic joint counts with :math:`r_k = 1`, turns nothing and has no
+(docs/theory_braking.md). A prismatic joint counts with :math:`r_k = 1`, turns nothing and has no
 :math:`\delta_k^2`. With velocities in place of ways they bound velocity and acceleration.
 """
 
