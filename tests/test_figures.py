@@ -15,6 +15,8 @@ from helpers_physics import needs_opengl
 DOCS = Path(__file__).parents[1] / "docs"
 SCREENS = {"viewer.png", "viewer_live.png"}  # of the browser, taken by hand
 
+NEEDS = {"shield": ("ruckig", "pylibfranka"), "push": ("mujoco",), "solvers": ("daqp",)}
+
 _spec = importlib.util.spec_from_file_location("figures", DOCS / "figures.py")
 assert _spec is not None
 assert _spec.loader is not None

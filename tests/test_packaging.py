@@ -32,7 +32,6 @@ def test_wheel_carries_the_package_its_robots_and_nothing_else(tmp_path: Path) -
     [
         ("pyproject.toml", r'^version = "([^"]+)"'),
         ("CITATION.cff", r"^version: (\S+)$"),
-        ("README.md", r"note   = \{Version (\S+)\}"),
         ("CHANGELOG.md", r"^## \[(\d[^]]*)\]"),  # the newest release, under Unreleased
     ],
 )
