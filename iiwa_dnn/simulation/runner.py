@@ -138,26 +138,7 @@ def simulate(
     progress(0)
     stages = MOTIONS[motion].stages
     pool = CheckPool(check, steps * stages)
-    layout = controller.control_step.layout
-
-    def hand_over() -> None:
-        """Pass the steps that were taken on to the record and to the check."""
-        rows = recorder.flush()
-        logs = log_of(rows, layout.sizes)
-        pool.submit(logs.program, layout.qp_sizes, logs.point)
-
-    interrupt = None
-    try:
-        for first in range(0, steps, BLOCK):
-            taken = loop.run(first, min(BLOCK, steps - first), recorder.observe)
-            hand_over()
-            progress(taken)
-            if recorder.last_step is not None:
-                break
-    except KeyboardInterrupt as stop:
-        interrupt = stop
-        if recorder.outcomes:
-            hand_over()
+    interrupt = _take(steps, loop, recorder, pool, progress)
     agreement = pool.finish().worst_of(stages)
     columns = recorder.finish(len(agreement.judge))  # without what was on its way to the check
     avoidance = avoidance_of(controller.scheme)
@@ -177,6 +158,36 @@ def simulate(
     if interrupt is None:
         return record
     raise RunInterrupted(*interrupt.args, record=record) if record.steps else interrupt
+
+
+def _take(
+    steps: int,
+    loop: Loop,
+    recorder: Recorder,
+    pool: CheckPool,
+    progress: Callable[[int], object],
+) -> KeyboardInterrupt | None:
+    """Take the steps of a run; return the interrupt that ended it before its time."""
+    layout = recorder.layout
+
+    def hand_over() -> None:
+        """Pass the steps that were taken on to the record and to the check."""
+        rows = recorder.flush()
+        logs = log_of(rows, layout.sizes)
+        pool.submit(logs.program, layout.qp_sizes, logs.point)
+
+    try:
+        for first in range(0, steps, BLOCK):
+            taken = loop.run(first, min(BLOCK, steps - first), recorder.observe)
+            hand_over()
+            progress(taken)
+            if recorder.last_step is not None:
+                break
+    except KeyboardInterrupt as interrupt:
+        if recorder.outcomes:
+            hand_over()
+        return interrupt
+    return None
 
 
 def count_steps(reference: References | None, dt: float, duration: float | None = None) -> int:
