@@ -9,9 +9,11 @@ from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
+import qpsolvers
 import scipy.sparse as spa
 
 from iiwa_dnn.errors import MissingDependencyError
+from iiwa_dnn.networks.problems import solve_problem
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.program import QP, Vector
 
@@ -205,4 +207,30 @@ class Osqp(Peer):
         return answer.x, answer.y[:p], answer.y[p : p + m], answer.y[p + m :]
 
 
+class Outside(Peer):
+    """A solver as qpsolvers calls it, from a cold start; this package's by its own function."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(False)
+        self.name = name
+
+    def convert(self, qp: QP) -> qpsolvers.Problem:
+        return qp.to_qpsolvers()
+
+    def solve(self, given: qpsolvers.Problem) -> qpsolvers.Solution:
+        if self.name == Network.name:
+            return solve_problem(given, tol=TOL)
+        return qpsolvers.solve_problem(given, self.name, **_OPTIONS[self.name])
+
+    def point(self, qp: QP, answer: qpsolvers.Solution) -> Point:
+        return answer.x, answer.y, answer.z, answer.z_box
+
+
+_GAP = {"eps_duality_gap_abs": TOL, "eps_duality_gap_rel": 0.0}
+_OPTIONS: dict[str, dict[str, Any]] = {
+    "daqp": {"primal_tol": TOL, "dual_tol": TOL},
+    "piqp": {"eps_abs": TOL, "eps_rel": 0.0, **_GAP},
+    "proxqp": {"eps_abs": TOL, "eps_rel": 0.0, "check_duality_gap": True, **_GAP},
+}
+OUTSIDE = (Network.name, *_OPTIONS)
 PEERS: tuple[type[Peer], ...] = (Network, Daqp, Piqp, Proxqp, Osqp)

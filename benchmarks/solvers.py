@@ -1,18 +1,19 @@
 """The network as a QP solver beside its peers: programs of control steps, and random ones.
 
-The clock runs over the Python call, and each peer has the program in its own layout before. They
-take turns, so that noise of the machine falls on all alike. The same residuals judge all answers.
+The thread's clock runs over the Python call, so that other processes do not count, and each peer has
+the program in its own layout before. They take turns, so that noise of the machine falls on all
+alike. The same residuals judge all answers.
 """
 
 import gc
 from collections.abc import Iterator
-from time import perf_counter
+from time import thread_time
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import iiwa_dnn
-from benchmarks.peers import PEERS, Peer
+from benchmarks.peers import OUTSIDE, PEERS, Outside, Peer
 from benchmarks.report import show
 from iiwa_dnn.qp import QP
 from iiwa_dnn.studies import paper
@@ -94,9 +95,57 @@ def streams(steps: int) -> Iterator[Stream]:
         yield Stream(f"Random programs of {n} variables, each from a cold start", made, False)
 
 
-def measure(stream: Stream) -> list[dict[str, Any]]:
+def moving(n: int, active: int, count: int) -> list[QP]:
+    """Return programs of n variables, n rows and wide bounds, of which some rows are active.
+
+    A signal is a row's multiplier while it is positive, and minus its slack else. A tenth of the
+    rows, at least one, goes to and fro.
+    """
+    rng = np.random.default_rng([10, 0, n, active])
+    root = rng.standard_normal((n, n))
+    P = root @ root.T / n + 0.1 * np.eye(n)
+    G = rng.standard_normal((n, n))
+    centre = np.where(np.arange(n) < active, 0.6, -0.6)
+    centre[rng.permutation(n)[: max(1, n // 10)]] = 0.0
+    phase = rng.uniform(0.0, 2.0 * np.pi, (2, n))
+    programs = []
+    for k in range(count):
+        x = np.sin(0.01 * k + phase[0])
+        signal = centre + 0.3 * np.sin(0.02 * k + phase[1])
+        q = -(P @ x + G.T @ np.maximum(signal, 0.0))
+        h = G @ x + np.maximum(-signal, 0.0)
+        programs.append(QP(P, q, G, h, lb=np.full(n, -2.0), ub=np.full(n, 2.0)))
+    return programs
+
+
+def report_sizes(count: int) -> None:
+    """Print a table by variables and active rows: through qpsolvers, and from a warm start."""
+    for warm in (False, True):
+        names = [peer.name for peer in PEERS[:4]] if warm else [*OUTSIDE]
+        columns = {name: f"{{{name}}}" for name in names}
+        how = "from the last answer" if warm else "through qpsolvers, each from a cold start"
+        title = f"Rows active and idle, {count} programs a line, {how}: median, p99 [µs]"
+        show(title, {"variables": "{n}", "active rows": "{active}", **columns}, sized(count, warm))
+
+
+def sized(count: int, warm: bool) -> Iterator[dict[str, Any]]:
+    """Measure programs of each size, and with few active rows and many."""
+    for n in (4, 7, 14, 18, 33, 50, 100):
+        for active in (max(1, n // 16), n // 2):
+            peers = (
+                [peer(True) for peer in PEERS[:4]] if warm else [Outside(name) for name in OUTSIDE]
+            )
+            rows = measure(Stream("", moving(n, active, count), warm), peers)
+            cells = {
+                row["name"]: "{median:.0f}, {p99:.0f}".format_map(row)
+                + f" ({row['failed']} failed)" * (row["failed"] > 0)
+                for row in rows
+            }
+            yield {"n": n, "active": active, **cells}
+
+
+def measure(stream: Stream, peers: list[Peer]) -> list[dict[str, Any]]:
     """Solve a stream with each peer, taking turns; return a row for each."""
-    peers = [peer(stream.warm) for peer in PEERS]
     times = np.empty((len(peers), len(stream.programs)))
     residuals = np.empty(times.shape)
     for begin in range(0, len(stream.programs), CHUNK):
@@ -119,9 +168,9 @@ def measure(stream: Stream) -> list[dict[str, Any]]:
 
 def solve_once(peer: Peer, qp: QP, given: Any) -> tuple[float, float]:
     """Return the time of a solve [s], and the largest residual of its answer; inf without one."""
-    start = perf_counter()
+    start = thread_time()
     answer = peer.solve(given)
-    seconds = perf_counter() - start
+    seconds = thread_time() - start
     x, *multipliers = peer.point(qp, answer)
     if x is None:
         return seconds, np.inf
@@ -134,4 +183,5 @@ def solve_once(peer: Peer, qp: QP, given: Any) -> tuple[float, float]:
 def report(steps: int) -> None:
     """Print a table for each stream."""
     for stream in streams(steps):
-        show(stream.name, _COLUMNS, measure(stream))
+        show(stream.name, _COLUMNS, measure(stream, [peer(stream.warm) for peer in PEERS]))
+    report_sizes(max(20, steps // 50))
