@@ -1,6 +1,6 @@
 """The network as a QP solver beside its peers: programs of control steps, and random ones.
 
-The thread's clock runs over the Python call, so that other processes do not count, and each peer has
+The clock of the thread runs over the Python call, so no other process counts, and each peer has
 the program in its own layout before. They take turns, so that noise of the machine falls on all
 alike. The same residuals judge all answers.
 """
