@@ -136,7 +136,11 @@ class QP:
         n = q.size if type(q) is np.ndarray else np.size(q)
         arguments = (P, q, G, h, A, b, lb, ub)
         arrays = [
-            absent if argument is None else real_array(name, argument)
+            absent
+            if argument is None
+            else argument  # at once: a call costs more than the rest
+            if type(argument) is np.ndarray and argument.dtype is _FLOAT
+            else real_array(name, argument)
             for name, argument, absent in zip(FIELDS, arguments, absent_fields(n), strict=True)
         ]
         self.sizes = n, arrays[3].size, arrays[5].size
@@ -314,8 +318,6 @@ def _check_shapes(given: Sequence[object], arrays: Sequence[NDArray[np.float64]]
 
 def real_array(name: str, value: Any) -> NDArray[np.float64]:
     """Convert an argument, dense or sparse, to a dense array of floats of its own shape."""
-    if type(value) is np.ndarray and value.dtype is _FLOAT:
-        return value
     if hasattr(value, "toarray"):  # scipy's sparse matrices
         value = value.toarray()
     try:
