@@ -29,8 +29,8 @@ def solve_problem(
         problem: Dense or sparse; n variables, p equalities, m inequalities, bounds.
         tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
         solver: Network and integrator to use; the default integrates the paper's network
-            implicitly. Its warm start is not used, and its own settings replace `tol`, `eps_rel`
-            and `max_iter`.
+            implicitly. Its state is reset first, and its own settings replace `tol`, `eps_rel` and
+            `max_iter`.
         sharpen: Take a few more steps down to rounding, for about a third more time
             (`DNNSolver.sharpen`).
         eps_rel: Tolerance on each entry of a residual, relative to the sum of its absolute terms.

@@ -158,15 +158,20 @@ class DNNSolver:
         return solution
 
     def solve_cold(self, qp: QP, sharpen: bool = False) -> Solution:
-        """Solve a program from the network's initial state; the warm start stays as it is.
+        """Solve a program from the network's initial state; threads do not disturb each other.
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).
             sharpen: Whether to `sharpen` the solution.
         """
+        self.reset()
         state = self._fresh(qp)
         solution = self._solve(qp, state)
-        return self._sharpened(qp, solution, state) if sharpen else solution
+        if sharpen:
+            solution = self._sharpened(qp, solution, state)
+        if solution.found:
+            self._keep(qp.sizes, state)
+        return solution
 
     def _solve(self, qp: QP, state: Vector) -> Solution:
         """Make the attempts of a `solve` from a state (size,), which is advanced."""
