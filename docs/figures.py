@@ -401,7 +401,6 @@ def solvers() -> Figure:
     import qpsolvers
 
     made, axes = panels(1, 2.4)
-    iiwa_dnn.qp.register()
     for share, color in ((0.1, BLUE), (0.5, ORANGE)):
         direct, public = [], []
         for n in SIZES:
@@ -411,14 +410,14 @@ def solvers() -> Figure:
                 qp = random_program(n, round(share * n), random)
                 problem = qp.to_qpsolvers()
                 others = quickest(lambda p=problem: qpsolvers.solve_problem(p, "daqp"))
-                ours = quickest(lambda p=problem: qpsolvers.solve_problem(p, "iiwa_dnn"))
+                ours = quickest(lambda p=problem: iiwa_dnn.solve_problem(p))
                 alone = quickest(lambda p=qp: iiwa_dnn.DNNSolver().solve(p))
                 ratios.append((alone / others, ours / others))
             one, two = np.median(ratios, axis=0)
             direct.append(one)
             public.append(two)
         label = f"{100 * share:.0f} % of rows active"
-        axes.plot(SIZES, public, "o-", color=color, ms=5, label=f"qpsolvers, {label}")
+        axes.plot(SIZES, public, "o-", color=color, ms=5, label=f"solve_problem, {label}")
         axes.plot(SIZES, direct, "s--", color=color, ms=4, label=f"solve, {label}")
     axes.axhline(1.0, color=GREY, lw=1.0)
     axes.set(xlabel="variables, as many rows", ylabel="time, in DAQP's", xscale="log", ylim=0.0)
