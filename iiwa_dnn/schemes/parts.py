@@ -109,7 +109,7 @@ class Part:
         return self.kernel is self._copy
 
     def constants(self, robot: Robot) -> Vector:
-        """Return the numbers that the kernel reads, (k,).
+        """Return the numbers that the kernel reads, (k,), a `Record` for example.
 
         Raises:
             InvalidInputError: A parameter does not fit the robot.
