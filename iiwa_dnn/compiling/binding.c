@@ -91,6 +91,23 @@ static inline bool is_tuple(PyObject *object, Py_ssize_t size)
     return false;
 }
 
+/* Whether a tuple is the one that was read last: then its struct is that of then. */
+static inline bool is_seen(PyObject *object, PyObject **seen, void *value, const void *kept, size_t size)
+{
+    if (object != *seen) return false;
+    memcpy(value, kept, size);
+    return true;
+}
+
+static inline bool keep(PyObject *object, PyObject **seen, const void *value, void *kept, size_t size)
+{
+    PyObject *before = *seen;
+    memcpy(kept, value, size);
+    *seen = Py_NewRef(object);
+    Py_XDECREF(before);
+    return true;
+}
+
 static inline PyObject *too_small(const char *name)
 {
     PyErr_Format(PyExc_ValueError, "%s: an array is too small for the other arguments", name);

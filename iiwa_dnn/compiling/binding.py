@@ -16,6 +16,9 @@ _MAKERS = {
     "bool": "PyBool_FromLong",
 }
 
+LARGE = 40
+"""Conditions of a named tuple above which the last one that was read is kept: nobody changes it."""
+
 
 def prelude(name: str) -> str:
     """Return a file of C beside this one."""
@@ -67,8 +70,14 @@ def _wrapper(own: Function) -> str:
     given = ["arena_here()", *("&" * kinds[name].is_named + f"a_{name}" for name in kinds)]
     call = f"{own.name}({', '.join(given)});"
     read = [f'!counted("{own.name}", count, {len(kinds)})']
+    kept = []
     for i, (name, kind) in enumerate(kinds.items()):
-        read += _read(kind, name, f"given[{i}]", own.written)
+        conditions = _read(kind, name, f"given[{i}]", own.written)
+        if len(conditions) > LARGE:
+            kept.append(f"    static PyObject *seen_{name};\n    static {kind.tag} kept_{name};")
+            place = f"given[{i}], &seen_{name}, &a_{name}, &kept_{name}, sizeof a_{name}"
+            conditions = [f"(!is_seen({place}) && ({' || '.join(conditions)} || !keep({place})))"]
+        read += conditions
     known = {name: known_of(kind, f"a_{name}") for name, kind in kinds.items()}
     needs = {} if own.translator.is_checked else Reading(own, known).needs
     if own.result is not VOID:
@@ -80,6 +89,7 @@ def _wrapper(own: Function) -> str:
     parameters = "PyObject *self, PyObject *const *given, Py_ssize_t count"
     lines = [
         f"static PyObject *py_{own.name}({parameters})\n{{",
+        *kept,
         *(f"    {kind.tag} a_{name};" for name, kind in kinds.items()),
         f"    if ({' || '.join(read)}) return NULL;",
         *(f'    if (!({need})) return too_small("{own.name}");' for need in needs),

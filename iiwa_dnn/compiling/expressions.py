@@ -428,15 +428,16 @@ class Expressions:
         return self._standard(name, values)
 
     def _record(self, kind: Kind, numbers: Value, *given: Value) -> Value:
-        """View an array as a record; one size follows from that of the array."""
+        """View an array as a record; the last size follows from that of the array."""
         fixed, *shared = kind.sizes.values()
         own = numbers.size.text
         sizes = [each.text for each in given]
-        if shared and not sizes:
-            sizes = [f"int_max(0, ({own} - {fixed}) / {shared[0]})"]
-        pairs = zip(sizes, shared, strict=True)
+        pairs = zip(sizes, shared, strict=False)
+        asked = " + ".join([str(fixed), *(f"{count} * ({size})" for size, count in pairs)])
+        if len(shared) == len(sizes) + 1:
+            sizes.append(f"int_max(0, ({own} - ({asked})) / {shared[-1]})")
+            asked += f" + {shared[-1]} * {sizes[-1]}"
         if self.translator.is_checked:
-            asked = " + ".join([str(fixed), *(f"{count} * ({size})" for size, count in pairs)])
             text = Value(INT, f"shaped({own}, {asked}, {own})")
             numbers = array(FLOAT, numbers.data, [text])._replace(places=numbers.places)
         views = {f".{name}": numbers.places for name in kind.members}

@@ -39,12 +39,11 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
     Attributes:
         members: Shape of each member; of a number ``()``.
         names: Names of the sizes.
-        sizes: Sizes of these names.
     """
 
     members: ClassVar[dict[str, tuple[Any, ...]]]
     names: ClassVar[tuple[str, ...]]
-    sizes: tuple[int, ...]
+    _sizes: tuple[int, ...] = ()
 
     def __init_subclass__(cls) -> None:
         """Lay the members out."""
@@ -57,9 +56,18 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
             made = _part(name, shape) if shape else property(_number(i, kind), _writer(i))
             setattr(cls, name, made)
 
-    def __array_finalize__(self, other: Any) -> None:
-        """Keep the sizes of the array that this one is a copy or a view of."""
-        self.sizes = getattr(other, "sizes", ())
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Sizes of the names."""
+        return self._sizes or self._with_last(self.shape[-1], ())
+
+    @classmethod
+    def _with_last(cls, count: int, sizes: tuple[int, ...]) -> tuple[int, ...]:
+        """Return the sizes of a record of so many numbers, whose last one follows from them."""
+        if len(sizes) != len(cls.names) - 1:
+            return sizes
+        fixed = cls.width(*sizes, 0)
+        return (*sizes, (count - fixed) // (cls.width(*sizes, 1) - fixed))
 
     @classmethod
     @cache
@@ -75,25 +83,25 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
         return found
 
     @classmethod
+    @cache
     def width(cls, *sizes: int) -> int:
-        """Count the numbers of a record."""
-        return max((own.stop for own in cls.columns(*sizes).values()), default=0)
+        """Count the numbers of a record; -1 if a size is below 0."""
+        ends = (own.stop for own in cls.columns(*sizes).values())
+        return max(ends, default=0) if min(sizes, default=0) >= 0 else -1
 
     @classmethod
     def of(cls: type[Own], numbers: np.ndarray[Any, Any], *sizes: int) -> Own:
-        """View an array's numbers by their names; one size follows from that of the array.
+        """View an array's numbers by their names; the last size follows from that of the array.
 
         Raises:
             ValueError: The array has not the size of such a record.
         """
-        count = numbers.shape[-1]
-        if not sizes and len(cls.names) == 1:
-            fixed = cls.width(0)
-            sizes = ((count - fixed) // (cls.width(1) - fixed),)
-        if min(sizes, default=0) < 0 or count != cls.width(*sizes):
+        sizes = cls._with_last(numbers.shape[-1], sizes)
+        if numbers.shape[-1] != cls.width(*sizes):
             raise ValueError(f"an array of shape {numbers.shape} is no {cls.__name__}")
         own = numbers.view(cls)
-        own.sizes = sizes
+        if len(sizes) > 1:
+            own._sizes = sizes
         return own
 
     @classmethod
@@ -121,6 +129,10 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
         for name, value in values.items():
             setattr(own, name, value)
         return own
+
+    def duplicate(self: Own) -> Own:
+        """Return a copy."""
+        return self.of(self.numbers.copy(), *self.sizes)
 
     @property
     def numbers(self) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -151,7 +163,8 @@ def _part(name: str, shape: tuple[Any, ...]) -> Any:
     """Return the property of a part."""
 
     def view(own: Any) -> Any:
-        found = own.numbers[..., own.columns(*own.sizes)[name]]
+        columns = own.columns(*own.sizes)[name]
+        found = own.numbers[columns] if own.ndim == 1 else own.numbers[..., columns]
         if len(shape) == 1:
             return shape[0].of(found) if hasattr(shape[0], "of") else found
         return found.reshape(*own.shape[:-1], -1, shape[-1])

@@ -128,6 +128,11 @@ class LogLayout(NamedTuple):
     periods: Periods
     reasons: tuple[str, ...] = ()
 
+    def targets(self, row: Vector) -> Matrix:
+        """Return the targets of a log, (k, 18), its last numbers, a view."""
+        frames = self.sizes.frames
+        return row[self.width - frames * TARGET_SIZE :].reshape(frames, TARGET_SIZE)
+
     @property
     def qp_sizes(self) -> Sizes:
         """Sizes ``(n, m, p)`` of the programs."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.command import Command, log_of
+from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.paths import (
     References,
     beyond_reach,
@@ -244,7 +244,7 @@ class Controller:
         with self._turn():
             state = self._state
             state.dt = state.dt or self.dt
-            motion = state.next_motion.copy()
+            motion = state.next_motion.duplicate()
             motion.before[:] = state.motion.last
             motion.last[:] = sent
             motion.stopping_periods = 0.0
@@ -274,14 +274,13 @@ class Controller:
         numbers = state.numbers
         samples = step.samples and target is None
         if not samples:
-            lag = state.motion.path_lag
-            log_of(row, layout.sizes).targets[:] = self.targets(t - lag, target, step.dt)
+            lag = state.motion.path_lag if target is None else 0.0
+            layout.targets(row)[:] = self.targets(t - lag, target, step.dt)
         if program.refreshed:
-            targets = log_of(row, layout.sizes).targets
-            program.refresh(q, state.motion.last, targets, t, step.dt)
+            program.refresh(q, state.motion.last, layout.targets(row), t, step.dt)
         next_numbers = np.empty(step.width)
         if state.halted:
-            motion = state.motion.copy()
+            motion = state.motion.duplicate()
             motion.halts = True
             numbers = motion.numbers
         network = self.solver.state_for(program.sizes) if step.has_network else row[:0]
@@ -289,7 +288,7 @@ class Controller:
         if action == INVALID:
             checks.finite("t", t)
             checks.joint_positions("q", q, self.robot.dof)
-            checks.finite_array("target", log_of(row, layout.sizes).targets, (-1, TARGET_SIZE))
+            checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
         state.next_numbers = next_numbers
         return Command(row, layout, _ACTIONS[action])
 

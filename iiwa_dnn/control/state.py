@@ -111,7 +111,7 @@ class ControllerState:
         """Go on in periods of another length [s]: accelerations and the time to rest stay."""
         if self.dt > 0.0 and dt != self.dt:
             ratio = dt / self.dt
-            motion = self.motion.copy()
+            motion = self.motion.duplicate()
             motion.before[:] = motion.last - ratio * (motion.last - motion.before)
             motion.stopping_periods /= ratio
             self.numbers = motion.numbers

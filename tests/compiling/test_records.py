@@ -147,6 +147,61 @@ def count_in(stats: Stats) -> None:
     stats.count += 1
 
 
+class Large(NamedTuple):
+    """A plan of many numbers."""
+
+    x0: float
+    x1: float
+    x2: float
+    x3: float
+    x4: float
+    x5: float
+    x6: float
+    x7: float
+    x8: float
+    x9: float
+    x10: float
+    x11: float
+    x12: float
+    x13: float
+    x14: float
+    x15: float
+    x16: float
+    x17: float
+    x18: float
+    x19: float
+    x20: float
+    x21: float
+    x22: float
+    x23: float
+    x24: float
+    x25: float
+    x26: float
+    x27: float
+    x28: float
+    x29: float
+    x30: float
+    x31: float
+    x32: float
+    x33: float
+    x34: float
+    x35: float
+    x36: float
+    x37: float
+    x38: float
+    x39: float
+    x40: float
+    x41: float
+    x42: float
+    x43: float
+    x44: float
+
+
+@compiled
+def last_of(large: Large) -> float:
+    return large.x44
+
+
 @entry
 def enter(address: int, plan: Plan, stats: Stats) -> float:
     """Enter a kernel with records."""
@@ -243,7 +298,7 @@ def test_sizes_of_several_names_are_stated(both: tuple[Any, Any]) -> None:
     assert log.limits.tolist() == [3.0, 5.0, 7.0, 9.0]
     assert log.targets.shape == (3, 3)
     assert log.targets[2, 1] == -1.0
-    assert log.copy().targets.tolist() == log.targets.tolist()
+    assert log.duplicate().targets.tolist() == log.targets.tolist()
     with pytest.raises(ValueError, match="is no Log"):
         python.Log.of(arrays[0], 4, 2, 2)
 
@@ -335,3 +390,15 @@ def test_what_is_no_number_of_a_record_is_not_written(
     (folder / "own.py").write_text(source)
     with pytest.raises(TranslationError, match=message):
         Translator(folder).all()
+
+
+def test_a_large_tuple_is_read_anew_where_it_is_another(both: tuple[Any, Any]) -> None:
+    _, library = both
+    first, second = (tuple(float(i + k) for i in range(45)) for k in (0, 1))
+    for large in (first, first, second, first):
+        assert library.own_last_of(large) == large[-1]
+    for k in range(100):  # a freed one leaves its place to the next
+        assert library.own_last_of((0.0,) * 44 + (float(k),)) == k
+    with pytest.raises(TypeError, match="must be real number"):
+        library.own_last_of((0.0,) * 44 + ("",))
+    assert library.own_last_of(first) == 44.0
