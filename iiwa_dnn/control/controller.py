@@ -274,8 +274,7 @@ class Controller:
         numbers = state.numbers
         samples = step.samples and target is None
         if not samples:
-            lag = state.motion.path_lag if target is None else 0.0
-            layout.targets(row)[:] = self.targets(t - lag, target, step.dt)
+            layout.targets(row)[:] = self.targets(self._clock(t, target), target, step.dt)
         if program.refreshed:
             program.refresh(q, state.motion.last, layout.targets(row), t, step.dt)
         next_numbers = np.empty(step.width)
@@ -309,6 +308,10 @@ class Controller:
             self._state.exceeded = True
             problem = f"a period of {found:g} s is above the longest, {longest:g} s"
             warnings.warn(f"{problem}: limits may be passed", stacklevel=4)
+
+    def _clock(self, t: float, target: Any) -> float:
+        """Return the time of the reference's clock at time t [s]; of a given target t itself."""
+        return t - self._state.motion.path_lag if target is None else t
 
     def is_clear(self, q: Vector, dq: Vector) -> bool:
         """Test whether a velocity brings no pair nearer than promised, or too near.

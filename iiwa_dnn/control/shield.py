@@ -417,7 +417,9 @@ def under_way(sent: Matrix, delay: float) -> tuple[Vector, Matrix]:
 
 def _words_of(flags: Flags) -> tuple[str, ...]:
     """Return the reasons that the flags of a state hold, in words."""
-    words = (REASONS[flags.reason], TAKEN_OVER * flags.resynchronised, IS_CUT * flags.is_cut)
+    numbers: Any = flags.tolist()
+    _, reason, _, resynchronised, is_cut = map(int, numbers)
+    words = (REASONS[reason], TAKEN_OVER * resynchronised, IS_CUT * is_cut)
     return tuple(filter(None, words))
 
 
@@ -708,8 +710,10 @@ class Shield:
                 self._book(periods.dt)
         self._kept.set_period(periods.dt)
         kind, seen, t, period, sent = self._memory
-        settings = self.settings.copy()
-        settings.period = period
+        settings = self.settings
+        if period != self.dt:
+            settings = settings.copy()
+            settings.period = period
         if settings.delay > 0.0:
             way, sent = under_way(sent, settings.delay)
             measured = measured + way
