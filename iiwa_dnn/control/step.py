@@ -233,6 +233,11 @@ def _compiled_paths(
         return None
     if any(isinstance(path, Ahead) and path.dt != dt for path in seen):
         return None
+    return _laid_out(paths, seen, dt)
+
+
+def _laid_out(paths: Sequence[Reference], seen: Sequence[Reference], dt: float) -> Paths:
+    """Lay compiled paths out, which are seen as they are or ahead."""
     constants = [np.concatenate([path.base, path.constants]) for path in paths]
     stops = np.cumsum([own.size for own in constants])
     rows = [
