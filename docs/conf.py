@@ -36,6 +36,8 @@ napoleon_numpy_docstring = False
 napoleon_use_ivar = True
 
 html_extra_path = ["heart.html"]
+html_static_path = ["static"]
+html_css_files = ["pages.css"]
 html_theme = "furo"
 # Lines of 95 characters without a scroll bar.
 FONT = {"code-font-size": "0.75rem"}

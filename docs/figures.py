@@ -416,7 +416,7 @@ def solvers() -> Figure:
             one, two = np.median(ratios, axis=0)
             direct.append(one)
             public.append(two)
-        label = f"{100 * share:.0f} % of rows active"
+        label = f"{100 * share:.0f} % active"
         axes.plot(SIZES, public, "o-", color=color, ms=5, label=f"solve_problem, {label}")
         axes.plot(SIZES, direct, "s--", color=color, ms=4, label=f"solve, {label}")
     axes.axhline(1.0, color=GREY, lw=1.0)
