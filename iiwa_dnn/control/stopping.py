@@ -61,6 +61,10 @@ GROWTH = 1.1
 SLACK = 1e-12
 """Relative excess of a limit that is rounding."""
 
+UNEVEN = 0.125
+"""Ways to rest differ by at most this part of b dt with the periods in which they are gone: 0.1,
+over all signs of velocity and acceleration (docs/theory_limits.md)."""
+
 
 class Motion(NamedTuple):
     """A motion to rest, or to a wanted velocity that is taken off.
@@ -70,17 +74,24 @@ class Motion(NamedTuple):
         bend: b of the cubic [rad/s], (n,); zero for straight lines in time.
         periods: M.
         cubic: Whether the velocities are cubic in time.
+        uneven: `UNEVEN` where periods vary, else 0.
     """
 
     first: Vector
     bend: Vector
     periods: float
     cubic: bool
+    uneven: float
 
 
 @compiled
-def bend_of(x: float, before: float, periods: float) -> float:
-    """Compute b of the cubic through x now and x before, which ends after so many periods."""
+def bend_of(x: float, before: float, periods: float, vary: bool) -> float:
+    """Compute b of the cubic through x now and x before, which ends after so many periods.
+
+    Where periods vary, they may be so short that x before is on its tangent.
+    """
+    if vary:
+        return periods * (x - before)
     u = 1.0 / periods
     return (x * (1.0 - 3.0 * u * u - 2.0 * u * u * u) - before) / (u * (1.0 + u) * (1.0 + u))
 
@@ -99,13 +110,19 @@ def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float
     """Compute the velocity after the first of so many periods on the way to zero [rad/s]."""
     if periods <= 1.0:  # a part of one where the control period has changed
         return 0.0
-    b = bend_of(x, before, periods) if cubic else 0.0
+    b = bend_of(x, before, periods, False) if cubic else 0.0
     return velocity_at(x, b, 1.0 / periods, cubic)
 
 
 @compiled
 def least_periods(
-    x: Vector, before: Vector, limits: MotionNumbers, dt: float, cubic: bool
+    x: Vector,
+    before: Vector,
+    limits: MotionNumbers,
+    dt: float,
+    cubic: bool,
+    vary: bool,
+    fewest: float,
 ) -> float:
     """Compute the number of periods in which velocities go to zero together.
 
@@ -117,21 +134,25 @@ def least_periods(
         limits: Acceleration and jerk limits.
         dt: Control period [s].
         cubic: Whether a jerk is limited.
+        vary: Whether the periods may be shorter.
+        fewest: The number that is tried first.
 
     Returns:
         M, 0 at rest; inf if no number is enough.
     """
     accelerations = limits.acceleration
     jerks = limits.jerk
-    periods = 0.0
+    periods = fewest
     for i in range(x.size):
-        fewest = math.ceil(abs(x[i]) / (accelerations[i] * dt) * (1.0 - SLACK))
-        periods = max(periods, fewest)
+        needed = abs(x[i]) / (accelerations[i] * dt) * (1.0 - SLACK)
+        if needed > periods:
+            periods = math.ceil(needed)
     i = 0
     while cubic and i < x.size:
         if periods > LONGEST:
             return np.inf
-        if within_rates(x[i], before[i], periods, accelerations[i] * dt, jerks[i] * dt * dt):
+        jerk = jerks[i] * dt * dt
+        if within_rates(x[i], before[i], periods, accelerations[i] * dt, jerk, vary):
             i += 1
         else:
             periods = max(1.0, math.ceil(GROWTH * periods))
@@ -140,11 +161,13 @@ def least_periods(
 
 
 @compiled
-def within_rates(x: float, before: float, periods: float, accel: float, jerk: float) -> bool:
+def within_rates(
+    x: float, before: float, periods: float, accel: float, jerk: float, vary: bool
+) -> bool:
     """Test whether a cubic keeps its limits per period of acceleration and jerk [rad/s]."""
     if periods < 0.5:
         return x == 0.0 and before == 0.0
-    b = bend_of(x, before, periods)
+    b = bend_of(x, before, periods, vary)
     u = 1.0 / periods
     # The first jerk, that of the last period, and that with which the joint is at rest for good.
     largest = max(abs(6.0 * x + 4.0 * b), abs(x * (6.0 - 12.0 * u) + b * (2.0 - 6.0 * u)))
@@ -264,6 +287,7 @@ def keeps_distances(
             way = way_along(motion, x, bend, M, dt)
             if x < max(bend / (3.0 * M), 0.0):
                 way = least_way(motion, x, bend, dt)
+            way -= motion.uneven * dt * abs(bend)
             change = min(change, height_of(end, contact) + min(way - lacking, 0.0))
         if left + change < min(kept, left):
             return False
@@ -286,10 +310,10 @@ def _along(
 
 
 @compiled
-def _write_bends(x: Vector, before: Vector, periods: float, bend: Vector) -> None:
+def _write_bends(x: Vector, before: Vector, periods: float, vary: bool, bend: Vector) -> None:
     """Write b (n,) of the cubics through x (n,) now and before, which end after so many periods."""
     for i in range(x.size):
-        bend[i] = bend_of(x[i], before[i], periods)
+        bend[i] = bend_of(x[i], before[i], periods, vary)
 
 
 @compiled
@@ -320,13 +344,14 @@ def stopping_time(
         for i in range(dq.size):
             before[i] = dq[i] - ratio * (dq[i] - before[i])
     moves = limits.lower.size > 0
-    periods = least_periods(dq, before, limits, dt, yielding.cubic) if moves else 1.0
+    vary = yielding.periods.vary
+    periods = least_periods(dq, before, limits, dt, yielding.cubic, vary, 0.0) if moves else 1.0
     if periods == np.inf:
         return -1.0
     if yielding.cubic and periods > 0.0:
-        _write_bends(dq, before, periods, bend)
+        _write_bends(dq, before, periods, vary, bend)
     # Where periods vary, the first may be the longest and the others as short as can be.
-    motion = Motion(dq, bend, periods + yielding.periods.vary, yielding.cubic)
+    motion = Motion(dq, bend, periods + vary, yielding.cubic, UNEVEN if vary else 0.0)
     dt = dt / yielding.periods.share
     if moves and not keeps_joint_limits(motion, q, limits, dt):
         return -1.0

@@ -35,6 +35,7 @@ from iiwa_dnn.control.relaxed import (
 )
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.stopping import (
+    LONGEST,
     least_periods,
     next_velocity,
     stopping_time,
@@ -354,7 +355,8 @@ def _step_straight(motion_state: MotionState, yielding: Yielding, x: Vector) -> 
     for i in range(dof):
         now[i] = motion_state.last[i] - x[i]
         before[i] = motion_state.before[i] - x[i]
-    periods = least_periods(now, before, yielding.limits, yielding.periods.dt, yielding.cubic)
+    dt = yielding.periods.dt
+    periods = least_periods(now, before, yielding.limits, dt, yielding.cubic, False, 0.0)
     for i in range(dof):
         if periods < np.inf:
             x[i] += next_velocity(now[i], before[i], periods, yielding.cubic)
@@ -443,10 +445,19 @@ def _brake(
     dof = motion_state.q.size
     dt = yielding.periods.dt
     periods = rest
-    if rest == 0.0:
+    # Where periods vary, the motion in hand takes longer if the next ones ask for more jerk.
+    if rest == 0.0 or (yielding.cubic and yielding.periods.vary):
         periods = least_periods(
-            motion_state.last, motion_state.before, yielding.limits, dt, yielding.cubic
+            motion_state.last,
+            motion_state.before,
+            yielding.limits,
+            dt,
+            yielding.cubic,
+            False,
+            rest,
         )
+    if rest > 0.0:
+        periods = min(periods, LONGEST)
     if periods < np.inf:
         _slow_down(motion_state, yielding, periods, dq)
     if rest > 0.0 and not yielding.periods.vary:
@@ -465,7 +476,7 @@ def _brake(
     braking = QPViews(limits.P, limits.q, limits.G, idle, limits.A, rates, lb, ub)
     nearest_within(braking, dq, yielding, log.stats)
     if rest > 0.0:
-        return max(rest - 1.0, 0.0)
+        return max(periods - 1.0, 0.0)
     return max(
         stopping_time(arrays, motion_state.q, motion_state.last, log.least, yielding, dq[:dof]), 0.0
     )

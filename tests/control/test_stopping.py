@@ -1,5 +1,6 @@
 """A command is given only if the arm can still stop from it, clear of all that is near."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ def limits_of(jerk: float) -> MotionNumbers:
 
 def way_to_rest(x: np.ndarray, before: np.ndarray, jerk: float, dt: float) -> np.ndarray:
     """Velocities from before x to rest, each from the two before it, as a controller has them."""
-    periods = stopping.least_periods(x, before, limits_of(jerk), dt, jerk < np.inf)
+    periods = stopping.least_periods(x, before, limits_of(jerk), dt, jerk < np.inf, False, 0.0)
     assert np.isfinite(periods)
     cubic = jerk < np.inf
     path = [before, x]
@@ -61,12 +62,14 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
     for _ in range(200):
         x = 10.0 ** random.uniform(-2.0, 0.0) * random.uniform(-2.0, 2.0, 3)
         before = x - random.uniform(-1.0, 1.0, 3) * min(10.0, 30.0 * jerk * dt) * dt
-        periods = stopping.least_periods(x, before, limits_of(jerk), dt, jerk < np.inf)
+        limits = limits_of(jerk)
+        periods = stopping.least_periods(x, before, limits, dt, jerk < np.inf, False, 0.0)
         least = float(np.ceil(np.abs(x).max() / (10.0 * dt)))
         if jerk < np.inf:
             pairs = list(zip(x, before, strict=True))
             while not all(
-                stopping.within_rates(*pair, least, 10.0 * dt, jerk * dt**2) for pair in pairs
+                stopping.within_rates(*pair, least, 10.0 * dt, jerk * dt**2, False)
+                for pair in pairs
             ):
                 least += 1.0
         ratios.append(periods / least)
@@ -77,7 +80,7 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
 
 @pytest.mark.parametrize("periods", [2.0, 3.0, 7.0, 40.0, 300.0])
 def test_what_sets_off_away_has_gone_the_square_of_the_joints_part(periods: float) -> None:
-    motion = stopping.Motion(np.ones(1), np.ones(1), periods, True)
+    motion = stopping.Motion(np.ones(1), np.ones(1), periods, True, 0.0)
     part, away = (
         np.array([stopping.way_along(motion, x, b, k, 1.0) for k in range(int(periods) + 1)])
         for x, b in ((1.0, 0.0), (1.0 / (3.0 * periods), 1.0))
@@ -91,12 +94,66 @@ def test_the_way_along_a_motion_is_the_sum_of_its_velocities(cubic: bool) -> Non
     for _ in range(300):
         M = float(random.integers(1, 40))
         x, before = random.standard_normal(2)
-        b = stopping.bend_of(x, before, M) if cubic else 0.0
-        motion = stopping.Motion(np.array([x]), np.array([b]), M, cubic)
+        b = stopping.bend_of(x, before, M, False) if cubic else 0.0
+        motion = stopping.Motion(np.array([x]), np.array([b]), M, cubic, 0.0)
         velocities = [stopping.velocity_at(x, b, u, cubic) for u in np.arange(M) / M]
         ways = np.append(0.0, np.cumsum(velocities)) * 1e-3
         assert stopping.least_way(motion, x, b, 1e-3) == pytest.approx(ways.min(), abs=1e-12)
         assert stopping.way_along(motion, x, b, M, 1e-3) == pytest.approx(ways[-1], abs=1e-12)
+
+
+def gone(periods: np.ndarray, x: Any, a: Any, time: float, says: bool) -> np.ndarray:
+    """Ways of joints at velocities x and accelerations a that come to rest in `time` [s].
+
+    They brake along the cubics through their last two velocities that end there, solved for here.
+    """
+    way = periods[0] * x
+    ways = [0.0 * x, way]
+    for last, period in pairwise(periods):
+        r = period if says else last
+        following = 0.0 * x
+        if r < time:
+            # v(t) = (t - time)^2 (c + k t), with v(0) = x and v(-r) = x - r a
+            c = x / time**2
+            k = (c - (x - r * a) / (r + time) ** 2) / r
+            following = (r - time) ** 2 * (c + k * r)
+        a = (following - x) / r
+        x = following
+        time = max(time - r, 0.0)
+        way = way + period * x
+        ways.append(way)
+    return np.array(ways)
+
+
+@pytest.mark.parametrize("says", [False, True])
+@pytest.mark.parametrize("M", [1.0, 2.0, 3.0, 7.0, 20.0])
+def test_the_way_to_rest_in_any_periods_is_no_less_than_the_checked_one(
+    M: float, says: bool
+) -> None:
+    """It is up to 0.94 periods of the velocity less than that in the longest periods."""
+    random = np.random.default_rng(7)
+    choices = np.array([1.0, 0.02, 0.1, 0.3, 0.6])
+    angles = np.linspace(0.0, 2.0 * np.pi, 145)
+    x = np.cos(angles)
+    a = 6.0 / M * np.sin(angles)
+    bounds = []
+    longest = []
+    for own, rate in zip(x, a, strict=True):
+        b = stopping.bend_of(own, own - rate, M, True)
+        motion = stopping.Motion(np.array([own]), np.array([b]), M + 1.0, True, stopping.UNEVEN)
+        bounds.append(stopping.least_way(motion, own, b, 1.0) - motion.uneven * abs(b))
+        b = stopping.bend_of(own, own - rate, M, False)
+        longest.append(stopping.least_way(motion, own, b, 1.0))
+    least = np.full(x.size, np.inf)
+    short = np.full(int(50 * M), 0.02)
+    runs = [np.append(short[::step], np.ones(25)) for step in range(1, 7)]
+    for _ in range(40):
+        blocks = [np.full(random.integers(1, 60), random.choice(choices)) for _ in range(30)]
+        runs.append(np.concatenate([*blocks, np.ones(25)]))
+    for periods in runs:
+        least = np.minimum(least, gone(periods, x, a, M, says).min(axis=0))
+    assert (bounds <= least + 1e-12).all()
+    assert (longest > least + (0.1 if says else 0.8)).any()
 
 
 START = d.Configuration(ROBOT, ROBOT.start_posture())
