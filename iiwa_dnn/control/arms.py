@@ -504,7 +504,7 @@ def stopping_time_of(plan: ArmPlan, memory: Vector) -> float:
     for i in range(motion.last.size):
         moves = 1.0 if motion.last[i] != 0.0 else moves
     cubic = plan.joint.step.yielding.cubic
-    periods = least_periods(motion.last, motion.before, plan.motion, own.spacing, cubic)
+    periods = least_periods(motion.last, motion.before, plan.motion, own.spacing, cubic, False, 0.0)
     return own.spacing * max(periods, moves)
 
 
