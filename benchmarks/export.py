@@ -46,9 +46,9 @@ def run(program: Path, *numbers: float) -> list[float]:
     return [float(word) for word in said.split()]
 
 
-def text_size(folder: Path, place: Path) -> int:
+def text_size(folder: Path, build: Path) -> int:
     """Return the size of a controller's code [bytes], optimized for size."""
-    file = place / "controller.o"
+    file = build / "controller.o"
     run_compiler([*SMALL, "-c"], [folder / "controller.c"], file)
     said = subprocess.run(["size", file], check=True, capture_output=True, text=True).stdout
     return int(said.splitlines()[1].split()[0])
@@ -60,11 +60,11 @@ def compared(steps: int) -> Iterator[dict[str, Any]]:
     for name in NAMES:
         case = cases()[name]
         controller = Controller(case.robot, case.scheme, case.reference, policy=case.policy)
-        with tempfile.TemporaryDirectory() as place:
-            folder = c99(controller, Path(place) / "c", paper.START)
+        with tempfile.TemporaryDirectory() as build:
+            folder = c99(controller, Path(build) / "c", paper.START)
             row = {"name": name, "size": load(folder).size}
-            row["text"] = text_size(folder, Path(place))
-            program = Path(place) / "loop"
+            row["text"] = text_size(folder, Path(build))
+            program = Path(build) / "loop"
             run_compiler([*FAST, f"-I{folder}"], [driver, folder / "controller.c"], program)
             quietest = min(run(program, steps, *paper.START) for _ in range(ROUNDS))
             yield row | dict(zip(("median", "p99", "p999"), quietest, strict=True))

@@ -14,7 +14,7 @@ STUDIES = {
 
 JUDGES = {
     "Hostile targets of controllers": ("tests/hostile.py", "controller", "{steps}"),
-    "Hostile wishes of shields": ("tests/hostile.py", "shield", "{steps}"),
+    "Hostile requests of shields": ("tests/hostile.py", "shield", "{steps}"),
     "Controllers in C": ("tests/hostile.py", "controller", "{steps}", "--exported"),
     "Shields in C": ("tests/hostile.py", "shield", "{steps}", "--exported"),
 }

@@ -98,7 +98,7 @@ def cases() -> dict[str, Case]:
 _COLUMNS = {
     "step": "{name}",
     "yielding %": "{yielding:.1f}",
-    "most systems": "{systems}",
+    "most linear solves": "{linear_solves}",
     "median µs": "{median:.1f}",
     "p99 µs": "{p99:.1f}",
     "p99.9 µs": "{p999:.1f}",
@@ -107,14 +107,14 @@ _COLUMNS = {
 
 
 def measure(case: Case, steps: int) -> dict[str, Any]:
-    """Take steps; return percentiles of their times [us], linear systems, and how many yielded."""
+    """Take steps; return percentiles of their times [us], linear solves, and how many yielded."""
     robot, built, reference, targets, policy = case
     controller = iiwa_dnn.Controller(robot, built, reference, dt=DT, policy=policy)
     q = np.array(paper.START)
     controller.warm_up(q)
     taken = np.empty(steps)
     yielded = 0
-    systems = 0
+    linear_solves = 0
     for k in range(steps):
         target = targets(k)
         began = time.perf_counter_ns()
@@ -122,10 +122,10 @@ def measure(case: Case, steps: int) -> dict[str, Any]:
         taken[k] = time.perf_counter_ns() - began
         q = q + DT * command.dq
         yielded += command.action is not Action.NONE
-        systems = max(systems, command.solution.iterations)
+        linear_solves = max(linear_solves, command.solution.iterations)
     times = 1e-3 * np.percentile(taken, [50.0, 99.0, 99.9, 100.0])
     found = dict(zip(("median", "p99", "p999", "longest"), times, strict=True))
-    return {"yielding": 100.0 * yielded / steps, "systems": systems, **found}
+    return {"yielding": 100.0 * yielded / steps, "linear_solves": linear_solves, **found}
 
 
 def report(steps: int) -> None:

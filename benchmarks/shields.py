@@ -1,4 +1,4 @@
-"""The shield beside other filters of commands, on the same hostile wishes (tests/hostile.py).
+"""The shield beside other filters of commands, on the same hostile requests (tests/hostile.py).
 
 The obstacles are spheres that stand still. libfranka's limiter is the one inside pylibfranka, in
 units of time in which a period is 1 ms; cbfpy runs in an environment of its own.
@@ -30,20 +30,20 @@ RADIUS = 0.08
 """Runs, each of so many steps at most, among spheres of this radius [m]."""
 
 Step = Callable[[Vector, Vector, dict[str, Any]], Vector]
-"""Returns the command at joint positions q, for a velocity wished for, or the wish itself."""
+"""Returns the command at joint positions q, for a requested velocity, or the request itself."""
 
 
 def shield(case: hostile.Case) -> Step:
     """Return the step of a shield."""
     made = iiwa_dnn.Shield(case.robot, case.dt, case.avoidance.obstacles, hostile.DISTANCE)
-    return lambda q, dq, wish: made.step(q, **wish).dq
+    return lambda q, dq, request: made.step(q, **request).dq
 
 
 def clamp(case: hostile.Case) -> Step:
     """Return a clamp of the way of a step, and of the next positions, to their limits."""
     robot = case.robot
 
-    def step(q: Vector, dq: Vector, wish: dict[str, Any]) -> Vector:
+    def step(q: Vector, dq: Vector, request: dict[str, Any]) -> Vector:
         goal = q + case.dt * np.clip(dq, -robot.dq_max, robot.dq_max)
         taken: Vector = (np.clip(goal, robot.q_lower, robot.q_upper) - q) / case.dt
         return taken
@@ -64,7 +64,7 @@ def with_ruckig(case: hostile.Case) -> Step:
         given.max_jerk = robot.dddq_max
     given.current_velocity = np.zeros(robot.dof)
 
-    def step(q: Vector, dq: Vector, wish: dict[str, Any]) -> Vector:
+    def step(q: Vector, dq: Vector, request: dict[str, Any]) -> Vector:
         given.current_position = q
         given.target_velocity = np.clip(dq, -robot.dq_max, robot.dq_max)
         otg.update(given, found)
@@ -89,7 +89,7 @@ def libfranka(case: hostile.Case) -> Step:
     numbers[5:] = 0.0
     pointers = [ctypes.c_void_p(row.ctypes.data) for row in numbers]
 
-    def step(q: Vector, dq: Vector, wish: dict[str, Any]) -> Vector:
+    def step(q: Vector, dq: Vector, request: dict[str, Any]) -> Vector:
         numbers[5, :n] = unit * dq
         limit_rate(*pointers)
         numbers[7] = (numbers[0] - numbers[6]) / 1e-3
@@ -135,7 +135,7 @@ class Cbfpy:
         )
         self.seconds = 0.0
 
-    def __call__(self, q: Vector, dq: Vector, wish: dict[str, Any]) -> Vector:
+    def __call__(self, q: Vector, dq: Vector, request: dict[str, Any]) -> Vector:
         """Return the command."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
@@ -146,16 +146,16 @@ class Cbfpy:
         return np.array(answer["dq"])
 
 
-def velocity_of(wish: dict[str, Any], q: Vector, last: Vector, case: hostile.Case) -> Vector:
-    """Return the joint velocity that a wish asks for; `last` where there is none."""
+def velocity_of(request: dict[str, Any], q: Vector, last: Vector, case: hostile.Case) -> Vector:
+    """Return the joint velocity that a request asks for; `last` where there is none."""
     dq = last
-    if "dq" in wish:
-        dq = wish["dq"]
-    elif "position" in wish:
-        dq = (wish["position"] - q) / case.dt
-    elif "twist" in wish:
+    if "dq" in request:
+        dq = request["dq"]
+    elif "position" in request:
+        dq = (request["position"] - q) / case.dt
+    elif "twist" in request:
         J = iiwa_dnn.Configuration(case.robot, q).jacobian
-        dq = J.T @ np.linalg.solve(J @ J.T + 4e-4 * np.eye(6), wish["twist"])
+        dq = J.T @ np.linalg.solve(J @ J.T + 4e-4 * np.eye(6), request["twist"])
     return dq if np.isfinite(dq).all() else last
 
 
@@ -169,14 +169,14 @@ def run(make: Callable[[hostile.Case], Step], cases: dict[int, hostile.Case]) ->
     for seed, case in cases.items():
         robot = case.robot
         step = make(case)
-        wishes = hostile.wishes(case, seed)
+        requests = hostile.requests(case, seed)
         path = [robot.start_posture()]
         dq = np.zeros(robot.dof)
         for _ in range(min(case.steps, STEPS)):
-            wish = next(wishes)
-            dq = velocity_of(wish, path[-1], dq, case)
+            request = next(requests)
+            dq = velocity_of(request, path[-1], dq, case)
             began = time.perf_counter()
-            taken = step(path[-1], dq, wish)
+            taken = step(path[-1], dq, request)
             times.append(getattr(step, "seconds", time.perf_counter() - began))
             misses.append(np.linalg.norm(taken - np.clip(dq, -robot.dq_max, robot.dq_max)))
             path.append(path[-1] + case.dt * taken)
@@ -226,9 +226,9 @@ def report(cbfpy: Path | None) -> None:
         "jerk": "{jerk}",
         "distance": "{near}",
         "least distance": "{least:.1f} mm",
-        "from the wish": "{miss:.2f} rad/s",
+        "from the request": "{miss:.2f} rad/s",
         "median": "{us:.0f} us",
         "p99": "{p99:.0f} us",
     }
     rows = ({"name": name} | run(make, cases) for name, make in filters.items())
-    show(f"Runs of {RUNS} in which a limit is broken, hostile wishes", columns, rows)
+    show(f"Runs of {RUNS} in which a limit is broken, hostile requests", columns, rows)

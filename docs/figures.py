@@ -123,9 +123,9 @@ def limits() -> Figure:
         ("jerk", 3, np.full(7, jerk)),
     )
     for panel, (name, order, limit) in zip(axes, rates, strict=True):
-        share = 100.0 * np.diff(path, order, axis=0) / dt**order / limit
-        share = share[3 - order :]
-        for joint, curve in enumerate(share.T):
+        fraction = 100.0 * np.diff(path, order, axis=0) / dt**order / limit
+        fraction = fraction[3 - order :]
+        for joint, curve in enumerate(fraction.T):
             color = matplotlib.colormaps["turbo"](0.1 + 0.8 * joint / 6)
             label = f"joint {joint + 1}"
             panel.plot(1e3 * dt * np.arange(len(curve)), curve, color=color, lw=1.2, label=label)
@@ -323,7 +323,7 @@ LEAGUE = {
 }
 WORKS = (3e3, 1e4, 3e4, 1e5)
 ONCE = ("zeroing, Taylor 5",)
-SHARES = (0.15, 0.95)
+FRACTIONS = (0.15, 0.95)
 """Networks of the figure, operations a period, those of which one evaluation a period is best, and
 shares of the stable step that are tried."""
 
@@ -336,8 +336,8 @@ def league() -> Figure:
         found = []
         for work in WORKS:
             cells = (
-                atlas.Cell(name, work=work, share=share, most=1 if name in ONCE else None)
-                for share in SHARES
+                atlas.Cell(name, work=work, fraction=fraction, most=1 if name in ONCE else None)
+                for fraction in FRACTIONS
             )
             values = [atlas.measure(cell)["residual"][0] for cell in cells]
             found.append(min((each for each in values if each), default=np.nan))
@@ -401,13 +401,13 @@ def solvers() -> Figure:
     import qpsolvers
 
     made, axes = panels(1, 2.4)
-    for share, color in ((0.1, BLUE), (0.5, ORANGE)):
+    for fraction, color in ((0.1, BLUE), (0.5, ORANGE)):
         direct, public = [], []
         for n in SIZES:
             random = np.random.default_rng(n)
             ratios = []
             for _ in range(5):
-                qp = random_program(n, round(share * n), random)
+                qp = random_program(n, round(fraction * n), random)
                 problem = qp.to_qpsolvers()
                 others = quickest(lambda p=problem: qpsolvers.solve_problem(p, "daqp"))
                 ours = quickest(lambda p=problem: iiwa_dnn.solve_problem(p))
@@ -416,7 +416,7 @@ def solvers() -> Figure:
             one, two = np.median(ratios, axis=0)
             direct.append(one)
             public.append(two)
-        label = f"{100 * share:.0f} % active"
+        label = f"{100 * fraction:.0f} % active"
         axes.plot(SIZES, public, "o-", color=color, ms=5, label=f"solve_problem, {label}")
         axes.plot(SIZES, direct, "s--", color=color, ms=4, label=f"solve, {label}")
     axes.axhline(1.0, color=GREY, lw=1.0)
@@ -468,7 +468,7 @@ def braking() -> Figure:
     guard = iiwa_dnn.Shield(robot, dt, [ball], 0.02)
     scene = iiwa_dnn.CollisionAvoidance([ball], distance=0.02).scene(robot)
     q = robot.start_posture()
-    path, speeds, ramps = [q], [], []
+    path, speeds, position_dependent_velocity = [q], [], []
     for k in range(170):
         command = guard.step(path[-1], twist=[-0.2, 0.4, 0.0, 0.0, 0.0, 0.0])
         dq = np.array(command.dq)
@@ -476,16 +476,18 @@ def braking() -> Figure:
         if k % 16 == 8:
             count = max(1, round(command.stopping_time / dt))
             falling = np.linspace(1.0, 0.0, count + 1)[:-1]
-            way = path[-1] + dt * np.cumsum(falling[:, np.newaxis] * dq, axis=0)
-            ramps.append((k, speeds[-1] * falling, np.vstack([path[-1], way])))
+            path_of_joints = path[-1] + dt * np.cumsum(falling[:, np.newaxis] * dq, axis=0)
+            position_dependent_velocity.append(
+                (k, speeds[-1] * falling, np.vstack([path[-1], path_of_joints]))
+            )
         path.append(path[-1] + dt * dq)
     made, axes = panels(2, 1.7, sharex=True)
     nearest = lambda rows: 1e3 * scene.nearest(np.array(rows), np.zeros(len(rows)))[0]  # noqa: E731
-    for number, (k, ramp, way) in enumerate(ramps):
+    for number, (k, ramp, path_of_joints) in enumerate(position_dependent_velocity):
         label = "motion to rest from one of them" if number == 0 else None
-        t = dt * (k + np.arange(len(way)))
+        t = dt * (k + np.arange(len(path_of_joints)))
         axes[0].plot(t, np.append(ramp, 0.0), color=GREEN, lw=1.1, label=label)
-        axes[1].plot(t, nearest(way), color=GREEN, lw=1.1)
+        axes[1].plot(t, nearest(path_of_joints), color=GREEN, lw=1.1)
     axes[0].plot(dt * np.arange(170), speeds, "o", color=BLUE, ms=3, label="commands")
     axes[1].plot(dt * np.arange(171), nearest(path), "o", color=BLUE, ms=3)
     axes[1].axhline(20.0, color=RED, ls="--", lw=1.4)

@@ -6,7 +6,7 @@ from typing import Any
 KINDS = ("position", "velocity", "acceleration", "jerk")
 """Kinds of a joint's bound; the code of one in commands and records is its place here, from 1."""
 
-RAMP = "position-dependent velocity"
+POSITION_DEPENDENT = "position-dependent velocity"
 """The limit that is zero before a position limit, and counts in its place."""
 
 ACTIONS = {2: "slow", 3: "relax", 4: "stop", 5: "euler"}
@@ -24,7 +24,7 @@ DONE = {
 def bound_words(settings: Mapping[str, Any]) -> tuple[str, ...]:
     """Return what a bound of each of `KINDS` is called in a run of these settings.
 
-    Their ``bounding`` lists the limits with bounds, of any of which a bound of kind 1 may be.
+    A bound of kind 1 may come from any limit in their ``bounding``.
     """
     bounding = settings.get("bounding", ["JointLimits"])
     own = "bound of " + " or ".join(name for name in bounding if name != "JointLimits")
@@ -49,7 +49,7 @@ def bound_name(
     return name | {"name": joints[joint]} if joints else name
 
 
-def in_the_way(
+def active_limits(
     settings: Mapping[str, Any], codes: Iterable[int], rows: Iterable[float]
 ) -> list[dict[str, Any]]:
     """Return the names of bounds and rows, as `describe` takes them.
@@ -62,9 +62,14 @@ def in_the_way(
     """
     words = bound_words(settings)
     joints = settings.get("joints", ())
-    ramps = settings.get("ramps", ())
+    position_dependent_velocity = settings.get("position_dependent_velocity", ())
     bounds = [
-        bound_name(j, int(code), (RAMP, *words[1:]) if j in ramps else words, joints)
+        bound_name(
+            j,
+            int(code),
+            (POSITION_DEPENDENT, *words[1:]) if j in position_dependent_velocity else words,
+            joints,
+        )
         for j, code in enumerate(codes)
         if code
     ]
@@ -77,7 +82,7 @@ def describe(limit: Mapping[str, Any]) -> str:
     if "row" in limit:
         about = f" ({limit['about']})" if "about" in limit else ""
         return f"row {limit['row']} of {limit['part']}{about}"
-    end = " limit" if limit["limit"] in (*KINDS, RAMP) else ""
+    end = " limit" if limit["limit"] in (*KINDS, POSITION_DEPENDENT) else ""
     joint = limit.get("name", f"joint {limit['joint']}")
     return f"{joint} {limit['side']} {limit['limit']}{end}"
 

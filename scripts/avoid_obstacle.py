@@ -1,4 +1,4 @@
-"""The heart around an obstacle: a ball in the elbow's way, and the arm itself, are kept away from.
+"""The heart around an obstacle: the arm avoids a ball where its elbow moves, and itself.
 
 The elbow gives way to the ball by the arm's redundancy, and the tip draws the heart as exactly as
 without it.

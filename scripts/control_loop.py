@@ -22,12 +22,12 @@ ACCELERATION = 10.0  # limit of every joint beside a jerk limit [rad/s^2]
 
 
 class Arm:
-    """A simulated arm that moves as it is told; replace it by the driver of a real one."""
+    """A simulated arm that moves as commanded; replace it by the driver of a real one."""
 
-    def __init__(self, q, noise, delay):
+    def __init__(self, q, noise, delay_periods):
         self.q = np.array(q, dtype=float)
         self.noise = noise
-        self.late = [np.zeros(self.q.size)] * delay  # commands on their way to the drives
+        self.late = [np.zeros(self.q.size)] * delay_periods  # commands on their way to the drives
         self.random = np.random.default_rng(0)
 
     def read_encoders(self):
@@ -44,7 +44,7 @@ def main(
     steps: tyro.conf.Positional[int] = 1000,
     noise: float = 0.0,
     jerk: float = math.inf,
-    delay: int = 0,
+    delay_periods: int = 0,
 ):
     """Draw the heart's first steps in real time; 1 where the arm cannot follow.
 
@@ -52,7 +52,7 @@ def main(
         steps: number of steps
         noise: standard deviation of the encoders' noise [rad]
         jerk: jerk limit of every joint [rad/s^3], beside an acceleration limit of 10 rad/s^2
-        delay: number of periods by which the drives are late
+        delay_periods: number of periods by which the drives are late
     """
     checks.integer("steps", steps, 1)
     checks.not_negative("noise", noise)
@@ -64,9 +64,9 @@ def main(
         limits = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits())
         # A loop with these limits is stable below 1 / (acceleration / jerk + dt): docs/limits.md
         gain = min(gain, 0.9 / (ACCELERATION / jerk + DT))
-    model = NoiseModel(velocity=1e-3, measurement=noise or 1e-6, delay=delay)
+    model = NoiseModel(velocity=1e-3, measurement=noise or 1e-6, delay_periods=delay_periods)
     estimator = JointEstimator(model, DT)
-    arm = Arm([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0], noise, delay)
+    arm = Arm([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0], noise, delay_periods)
     start = iiwa_dnn.Configuration(robot, arm.q)
     heart = iiwa_dnn.Heart(period=10.0).anchored(start)
     scheme = iiwa_dnn.DoubleIndicator(
@@ -81,14 +81,14 @@ def main(
         time.sleep(max(0.0, began + k * DT - time.perf_counter()))
         q = arm.read_encoders()
         asked = time.perf_counter()
-        if noise or delay:
+        if noise or delay_periods:
             q = estimator.update(q)
-        command = controller.step(q, (k + delay) * DT)  # for the time at which the drives begin it
+        command = controller.step(q, (k + delay_periods) * DT)  # when the drives begin it
         times.append(1e6 * (time.perf_counter() - asked))
         if not (command.ok or command.limited):
             print(f"step {k}: {command}")
             return 1
-        if noise or delay:
+        if noise or delay_periods:
             estimator.predict(command.dq)
         arm.send(command.dq)
         tip = iiwa_dnn.Configuration(robot, arm.q).position

@@ -24,7 +24,7 @@ ROUNDING = 1e-5
 """Difference of two velocities that are equal in single precision, as they are sent [rad/s]."""
 
 
-def with_room(robot):
+def with_reserve(robot):
     """Return the robot with limits that also hold if the arm goes on without a command.
 
     It then keeps its acceleration, and the next command is a jump of the acceleration for it.
@@ -46,7 +46,7 @@ def make_controller(robot, q, radius, period):
     gains = {"position_gain": 100.0, "orientation_gain": 100.0}  # [1/s]
     scheme = iiwa_dnn.DoubleIndicator(**gains, extra_limits=limits)
     circle = iiwa_dnn.Circle(radius, period).anchored(iiwa_dnn.Configuration(robot, q))
-    controller = iiwa_dnn.Controller(robot, scheme, circle.ahead(DT), dt=DT)
+    controller = iiwa_dnn.Controller(robot, scheme, circle.feed_forward(DT), dt=DT)
     controller.warm_up(q)
     return controller
 
@@ -69,7 +69,7 @@ def main(
 
     arm = franka.Robot(host, franka.RealtimeConfig.kIgnore)
     q = np.array(arm.read_once().q)
-    controller = make_controller(with_room(iiwa_dnn.load_robot("fr3")), q, radius, period)
+    controller = make_controller(with_reserve(iiwa_dnn.load_robot("fr3")), q, radius, period)
     signal.signal(signal.SIGINT, lambda *_: controller.halt())
     gc.disable()  # a collection takes many periods
     motion = arm.start_joint_velocity_control(franka.ControllerMode.JointImpedance)

@@ -92,8 +92,8 @@ class Live:
         self.goal = iiwa_dnn.MovingTarget(tip, speed=SPEED, rate=1.0)
         self.target.position = tip.position
         self.target.wxyz = pin.Quaternion(tip.rotation).coeffs()[[3, 0, 1, 2]]
-        against = ", ".join(command.limits)
-        return f"twist {f'clipped by {against}' if command.clipped else 'as wished'}"
+        active_limits = ", ".join(command.active_limits)
+        return f"twist {f'clipped by {active_limits}' if command.clipped else 'as requested'}"
 
     def follow(self):
         """Take the steps of a picture towards the target; return what is to be said of the last."""
@@ -115,8 +115,10 @@ class Live:
             self.q = self.q + DT * command.dq
             self.steps += 1
         gap = self.check.check(command.qp, command.solution.x).solution_gap[0, 0]
-        against = ", ".join(command.against)
-        done = "as wanted" if command.ok else f"held back by {against or 'a singular pose'}"
+        active_limits = ", ".join(command.active_limits)
+        done = (
+            "as wanted" if command.ok else f"rate-limited by {active_limits or 'a singular pose'}"
+        )
         return f"gap to ProxQP {gap:.1e} rad/s\n\nlast step {done}"
 
 

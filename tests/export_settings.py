@@ -121,7 +121,7 @@ class SaddleFlow(d.Network):
 
 
 def own_network() -> Made:
-    solver = d.DNNSolver(SaddleFlow(), follower=d.ExplicitEuler(substeps=20))
+    solver = d.DNNSolver(SaddleFlow(), advance_integrator=d.ExplicitEuler(substeps=20))
     return drawing(mode="continuous", dt=1e-4, solver=solver)
 
 
@@ -133,7 +133,7 @@ SETTINGS: dict[str, Callable[[], Made]] = {
     "two arms": two_arms,
     "other tasks": other_tasks,
     "block form, next target, cone": lambda: drawing(
-        d.DoubleIndicator(orientation="block", tracking="next"), d.Cone()
+        d.DoubleIndicator(orientation="block", sample="end"), d.Cone()
     ),
     "continuous": lambda: drawing(mode="continuous", dt=np.float64(1e-4)),
     "tilting poses": tilting,

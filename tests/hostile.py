@@ -1,7 +1,7 @@
 """Hostile motion of controllers and shields: ``python tests/hostile.py shield STEPS [SEED]``.
 
 Five arms among random obstacles, still and moving, with random control periods and limits, are
-asked for what they must not do: targets that jump behind, into and past what is in the way and
+asked for what they must not do: targets that jump behind, into and beyond obstacles and
 beyond the joints' limits; velocities, positions and twists that jump, change their signs, drift,
 fall silent and are no numbers. In the end they are asked back to their start. coal judges the
 distances, at every step and half-way between steps; finite differences judge the limits. An arm
@@ -40,7 +40,7 @@ DISTANCE = 0.02
 
 HOSTILE = 6.0
 LONGER = 200
-"""Time for hostile wishes [s], and its factor for exported steps."""
+"""Time for hostile requests [s], and its factor for exported steps."""
 
 BACK = 20.0
 ARRIVED = 1e-3
@@ -72,14 +72,14 @@ class Case(NamedTuple):
 
 
 class Driver(NamedTuple):
-    """Steps of an arm, its hostile wishes, the wish for the start, and the way left to it.
+    """Steps of an arm, its hostile requests, the request for the start, and the way left to it.
 
-    A step takes joint positions [rad], a time [s] and a wish. It returns a command [rad/s], and
+    A step takes joint positions [rad], a time [s] and a request. It returns a command [rad/s], and
     whether it promises that distances hold if obstacles move.
     """
 
     step: Callable[[Vector, float, Any], tuple[Vector, bool]]
-    wishes: Iterator[Any]
+    requests: Iterator[Any]
     home: Any
     left: Callable[[Vector], float]  # of joint positions, [m] or [rad]
 
@@ -233,8 +233,8 @@ def targets(case: Case, seed: int) -> Iterator[Target]:
             yield stream(k * case.dt) if follow else next(among)
 
 
-def wishes(case: Case, seed: int) -> Iterator[dict[str, Any]]:
-    """Yield the hostile wishes of a shield."""
+def requests(case: Case, seed: int) -> Iterator[dict[str, Any]]:
+    """Yield the hostile requests of a shield."""
     random = np.random.default_rng(seed)
     robot = case.robot
     n = robot.dof
@@ -242,18 +242,18 @@ def wishes(case: Case, seed: int) -> Iterator[dict[str, Any]]:
     places = places_of(case)
     while True:
         steps = int(random.choice([0.02, 0.1, 0.4, 3.0]) / case.dt) + 1
-        wish = random.choice([0.1, 1.0, 10.0]) * robot.dq_max * random.standard_normal(n)
+        request = random.choice([0.1, 1.0, 10.0]) * robot.dq_max * random.standard_normal(n)
         noise = robot.dq_max * random.standard_normal((steps, n))
-        drifting = wish + 0.1 * np.cumsum(noise, axis=0)
-        lost = np.where(random.random((steps, n)) < 0.02, np.nan, wish)
+        drifting = request + 0.1 * np.cumsum(noise, axis=0)
+        lost = np.where(random.random((steps, n)) < 0.02, np.nan, request)
         goal = posture(robot, random, 0.2)
         ways = (*(place - tip for place in places), tip, random.standard_normal(3))
         twist = random.choice([0.1, 1.0, 5.0]) * random.standard_normal(6)
         pressed = np.concatenate([random.choice(ways), 0.1 * twist[3:]])  # or stretched
         kinds: tuple[Iterable[dict[str, Any]], ...] = (
-            repeat({"dq": wish}, steps),
+            repeat({"dq": request}, steps),
             ({"dq": each} for each in noise),
-            ({"dq": wish * (-1.0) ** k} for k in range(steps)),
+            ({"dq": request * (-1.0) ** k} for k in range(steps)),
             ({"dq": each} for each in drifting),
             ({"position": goal} if k == 0 else {} for k in range(steps)),  # a chunk, then silence
             repeat({"position": goal}, steps),
@@ -287,10 +287,10 @@ def controller(case: Case, seed: int, exported: bool = False) -> Driver:
     made = iiwa_dnn.Controller(case.robot, scheme_of(case), dt=case.dt, policy=case.policy)
     compiled = in_c(made) if exported else None
 
-    def step(q: Vector, t: float, wish: Target) -> tuple[Vector, bool]:
+    def step(q: Vector, t: float, request: Target) -> tuple[Vector, bool]:
         if compiled:
-            return compiled.step(q, wish.data).dq, False
-        command = made.step(q, t, wish)
+            return compiled.step(q, request.data).dq, False
+        command = made.step(q, t, request)
         return command.dq, command.ok
 
     def left(q: Vector) -> float:
@@ -300,30 +300,30 @@ def controller(case: Case, seed: int, exported: bool = False) -> Driver:
 
 
 def shield(case: Case, seed: int, exported: bool = False) -> Driver:
-    """Return a shield among hostile wishes; its C takes joint velocities alone."""
+    """Return a shield among hostile requests; its C takes joint velocities alone."""
     start = case.start.q
     made = iiwa_dnn.Shield(case.robot, case.dt, case.avoidance.obstacles, DISTANCE)
     compiled = in_c(made) if exported else None
 
-    def step(q: Vector, t: float, wish: dict[str, Any]) -> tuple[Vector, bool]:
+    def step(q: Vector, t: float, request: dict[str, Any]) -> tuple[Vector, bool]:
         if not compiled:
-            return made.step(q, **wish).dq, False
-        dq = wish.get("dq")
-        if "position" in wish:
-            dq = (wish["position"] - q) / case.dt
-        elif "twist" in wish:
+            return made.step(q, **request).dq, False
+        dq = request.get("dq")
+        if "position" in request:
+            dq = (request["position"] - q) / case.dt
+        elif "twist" in request:
             J = Configuration(case.robot, q).jacobian
-            dq = J.T @ np.linalg.solve(J @ J.T + 4e-4 * np.eye(6), wish["twist"])
+            dq = J.T @ np.linalg.solve(J @ J.T + 4e-4 * np.eye(6), request["twist"])
         return compiled.shield_step(q, dq).dq, False
 
     def left(q: Vector) -> float:
         return float(np.abs(q - start).max())
 
-    return Driver(step, wishes(case, seed), {"position": start}, left)
+    return Driver(step, requests(case, seed), {"position": start}, left)
 
 
 def judged(case: Case, driver: Driver) -> Verdict:
-    """Drive an arm by hostile wishes, ask it back, and judge its path."""
+    """Drive an arm by hostile requests, ask it back, and judge its path."""
     dt = case.dt
     q = case.start.q
     path = [q]
@@ -331,8 +331,8 @@ def judged(case: Case, driver: Driver) -> Verdict:
     left = np.inf
     while len(ok) < case.steps + int(BACK / dt) and left > ARRIVED:
         is_hostile = len(ok) < case.steps
-        wish = next(driver.wishes) if is_hostile else driver.home
-        dq, promised = driver.step(q, len(ok) * dt, wish)
+        request = next(driver.requests) if is_hostile else driver.home
+        dq, promised = driver.step(q, len(ok) * dt, request)
         q = q + dt * dq
         path.append(q)
         ok.append(promised)

@@ -14,7 +14,8 @@ SCALINGS = {
     "cost times 1e-6": (0.0, 1.0, 1e-6),
     "multipliers near 1e6": (0.0, 1e6, 1.0),
 }
-"""Kinds of bad scaling: share of the decades in the rows, size of the multipliers and the cost."""
+"""Kinds of bad scaling: fraction of the decades in the rows, size of the multipliers and the
+cost."""
 
 
 def strictly_convex(

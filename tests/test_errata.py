@@ -256,18 +256,18 @@ def test_the_error_does_not_fall_with_the_weight_as_steadily_as_the_text_says() 
 def test_one_euler_step_in_a_control_step_is_unstable() -> None:
     qp = program(orientation="block", t=0.0)
     network = d.ProjectionNetwork()
-    control_step = paper.DT / network.rho
-    assert control_step == pytest.approx(1.11, abs=2e-3)
+    control_layout = paper.DT / network.rho
+    assert control_layout == pytest.approx(1.11, abs=2e-3)
     largest = np.linalg.norm(qp.A, 2)
     assert largest == pytest.approx(2.54, abs=1e-2)
     limit = 1.0 / largest**2
     assert limit == pytest.approx(0.155, abs=1e-3)
-    assert control_step / 8 < limit < control_step / 7, "eight sub-steps suffice, seven do not"
+    assert control_layout / 8 < limit < control_layout / 7, "eight sub-steps suffice, seven do not"
     # The projection hides it: after a thousand steps nothing is infinite, and nothing settled.
     state = np.zeros(network.state_size(qp))
     state[:7] = 1e-3
     for _ in range(1000):
-        d.ExplicitEuler(substeps=1).advance(network, qp, state, control_step)
+        d.ExplicitEuler(substeps=1).advance(network, qp, state, control_layout)
     assert np.isfinite(state).all()
     assert np.abs(network.rates(qp, state)).max() > 0.1
 

@@ -58,8 +58,8 @@ def test_an_obstacle_that_is_not_kept_away_from_is_found() -> None:
     case = CASE._replace(avoidance=ball)
     for driven in (hostile.controller, hostile.shield):
         blind = driven(case._replace(avoidance=iiwa_dnn.CollisionAvoidance([])), 3)
-        wishes = driven(case, 3).wishes
-        assert hostile.judged(case, blind._replace(wishes=wishes)).distances > 0
+        requests = driven(case, 3).requests
+        assert hostile.judged(case, blind._replace(requests=requests)).distances > 0
 
 
 def test_an_arm_between_walls_is_in_a_trap_and_one_beside_a_wall_is_not() -> None:

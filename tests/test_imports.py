@@ -10,8 +10,9 @@ from helpers_physics import run_python
 
 PACKAGE = Path(__file__).parents[1] / "iiwa_dnn"
 
-# A room imports only from the rooms before it; its own modules may import each other. Studies and
-# commands come after the package itself: they take its public names, as programs of others do.
+# A subpackage imports only from the subpackages before it; its own modules may import each other.
+# Studies and commands come after the package itself: they take its public names, as programs of
+# others do.
 ORDER = (
     *("errors", "compiling", "checks", "files", "naming", "processes"),
     *("robot", "references", "qp", "networks"),

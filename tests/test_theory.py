@@ -46,7 +46,7 @@ def test_settling_takes_as_long_as_the_multiplier_is_far_away(far: float) -> Non
 
 
 @pytest.mark.parametrize("weight", [0.2, 0.9])
-def test_the_lag_of_a_continuous_run_follows_from_a_settled_one(weight: float) -> None:
+def test_the_lag_of_a_continuous_run_follows_from_a_converged_one(weight: float) -> None:
     scheme, duration = d.DoubleIndicator(weight, orientation="so3", home=PAPER_Q0), 0.6
     lagging = run(scheme, dt=1e-4, mode="continuous", duration=duration)
     settled = run(scheme, dt=5e-3, duration=duration, motion="midpoint")
@@ -119,7 +119,7 @@ def test_a_state_that_is_no_number_ends_what_is_advanced() -> None:
     """Its point is clipped to the bounds, and once went on as an answer of the continuous mode."""
     qp = d.QP([[1.0]], [-10.0], lb=[-1.0], ub=[1.0])
     network = d.ProjectionNetwork(rho=1e-3, primal_projection=False)
-    solver = d.DNNSolver(network, follower=d.ExplicitEuler(substeps=1))
+    solver = d.DNNSolver(network, advance_integrator=d.ExplicitEuler(substeps=1))
     statuses = [solver.advance(qp, 1e-2).status for _ in range(600)]
     assert statuses[0] is d.Status.ADVANCED
     assert d.Status.NOT_FINITE in statuses

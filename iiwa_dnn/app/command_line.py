@@ -1,4 +1,4 @@
-"""The words that all commands share, their exit codes, and the folder that a command writes."""
+"""The options that all commands share, their exit codes, and the folder that a command writes."""
 
 import os
 import signal

@@ -15,7 +15,7 @@ from iiwa_dnn.app.command_line import SETTINGS_FILE, shown
 from iiwa_dnn.app.settings import load
 from iiwa_dnn.errors import import_extra
 from iiwa_dnn.files import one_line, read_toml
-from iiwa_dnn.naming import ACTIONS, describe, in_the_way
+from iiwa_dnn.naming import ACTIONS, active_limits, describe
 from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.results.pictures import obstacles_of
@@ -216,14 +216,17 @@ class Replay:
             mesh.position = obstacle.shift(self._shown)
         draw_path(self.server, "drawn", record.position[: k + 2], (220, 0, 30))
         step = min(k, record.steps - 1)
-        acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
+        acting = [record.filled(column)[step] for column in ("limiting", "limiting_rows")]
         action = ACTIONS.get(int(record.filled("action")[step]), "none")
         rows = [
             ("position error", f"{self._distances[k]:.3g} m"),
             ("orientation error", f"{self._angles[k]:.3g} rad"),
             ("KKT residual", f"{record.kkt_residual[step]:.1e}"),
             ("gap to the reference", f"{record.crosscheck_gap[step]:.1e} rad/s"),
-            ("policy", ", ".join([action, *map(describe, in_the_way(record.settings, *acting))])),
+            (
+                "policy",
+                ", ".join([action, *map(describe, active_limits(record.settings, *acting))]),
+            ),
         ]
         joints = zip(record.settings["joints"], record.q[k], strict=True)
         rows += [(f"{name} [rad]", f"{q:+.3f}") for name, q in joints]

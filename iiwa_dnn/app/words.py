@@ -64,8 +64,8 @@ WORDS: dict[str, tuple[str, Any, str, str]] = {
         "WORD",
         "orientation rows: so3, block or none (so3)",
     ),
-    "tracking": (
-        "scheme.tracking",
+    "sample": (
+        "scheme.sample",
         str | None,
         "WORD",
         "target of a step: paper, at its start, or next, at its end (paper)",

@@ -53,8 +53,8 @@ def build(package: Path) -> Path:
     unmarked = re.sub(r"#line.*", "", text)  # which a comment changes
     of_text = hashlib.sha256(f"{unmarked} {kind}".encode()).hexdigest()
     if of_text not in noted[1:2]:
-        with tempfile.TemporaryDirectory(dir=package) as place:
-            source = Path(place) / "_kernels.c"
+        with tempfile.TemporaryDirectory(dir=package) as build:
+            source = Path(build) / "_kernels.c"
             source.write_text(text, encoding="utf-8")
             output = source.with_suffix(".so")
             run_compiler([*flags, *_system_flags()], [source], output)

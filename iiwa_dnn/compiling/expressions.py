@@ -247,7 +247,7 @@ class Expressions:
     def _variable(self, node: ast.Name) -> Value:
         """Translate a parameter or variable; a parameter that is a named tuple is a pointer."""
         name = node.id
-        self.require(name in self.assigned, node, "is not assigned on every way here")
+        self.require(name in self.assigned, node, "is not assigned on every path here")
         kind = self.kinds[name]
         places = frozenset([name])
         own = Value(kind, c_word(name), is_plan=name in self.plans, places=places)

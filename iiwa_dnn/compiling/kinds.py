@@ -16,7 +16,7 @@ class Kind:
 
     Attributes:
         tag: Its name in C.
-        code: Its letter where types are told apart by a text.
+        code: Its letter where types are distinguished by a text.
         element: Type of the elements of an array without gaps, or of a plain tuple.
         axes: Number of axes of an array.
         members: Type of each member of a tuple, plain or named, or of a record.

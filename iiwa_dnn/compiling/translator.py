@@ -210,9 +210,9 @@ class Function(Expressions):
         return f"/* {comment} */\n{self.head}\n{{\n    {body}\n}}\n"
 
     def _assigns(self, block: list[ast.stmt]) -> set[str]:
-        """Return the variables that a block writes on every way to its end.
+        """Return the variables that a block writes on every path to its end.
 
-        All are written, and `_LEFT` is, if no way leads there.
+        All are written, and `_LEFT` is, if no path leads there.
         """
         found: set[str] = set()
         for node in block:
@@ -273,7 +273,7 @@ class Function(Expressions):
         self.lines[before:] = [f"{head} {{", *(f"    {own}" for own in self.lines[before:]), "}"]
 
     def _if(self, node: ast.If) -> None:
-        """Translate a condition; a variable that each way writes is declared before it."""
+        """Translate a condition; a variable that each path writes is declared before it."""
         head = f"if ({self.value(node.test).text})"
         before = len(self.lines)
         found = self._assigns([node])

@@ -17,8 +17,9 @@ from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.command import ACTIVE, StepLog, log_of
 from iiwa_dnn.control.controller import SLACK
+from iiwa_dnn.control.cycle import INVALID, ControlPlan, take_step
+from iiwa_dnn.control.fallback import Yielding
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.relaxed import Yielding
 from iiwa_dnn.control.shield import (
     TWIST,
     Flags,
@@ -31,7 +32,6 @@ from iiwa_dnn.control.shield import (
     take_request,
 )
 from iiwa_dnn.control.state import MotionState
-from iiwa_dnn.control.step import INVALID, StepPlan, take_step
 from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import row_dot
@@ -64,7 +64,8 @@ class ArmSettings(Record):
         dt: Control period [s].
         longest: Longest control period where periods vary [s]; 0: they do not.
         timeout: Time for which a request counts [s].
-        tracking_error: Difference from which on measured positions are taken over [rad].
+        tracking_error: Difference from which on an arm is resynchronised to measured positions
+            [rad].
     """
 
     dt: float
@@ -91,7 +92,7 @@ class ArmState(Record):
         request: The request that counts, (max(n, 6),).
         motion: `MotionState`.
         network: State of the network that answers twists.
-        relaxed: States of the networks of relaxed programs, for requests of joints.
+        fallback: States of the networks of fallback programs, for requests of joints.
         twist_relaxed: The same for twists.
         obstacles: Places of the obstacles [m], three numbers each.
         limiting: For each joint the kind of the bound that limits it, below 0 for a lower one, or
@@ -112,7 +113,7 @@ class ArmState(Record):
     request: Vector = part("request")
     motion: Vector = part("motion")
     network: Vector = part("network")
-    relaxed: Vector = part("relaxed")
+    fallback: Vector = part("relaxed")
     twist_relaxed: Vector = part("twist_relaxed")
     obstacles: Vector = part("obstacles")
     limiting: Vector = part("limiting")
@@ -127,7 +128,7 @@ class ArmProgram(NamedTuple):
         rates: Number of the block of acceleration and jerk limits; -1: there is none.
     """
 
-    step: StepPlan
+    step: ControlPlan
     width: int
     rates: int
 
@@ -334,7 +335,7 @@ def _answer(
         base.constants.copy(),
         jacobian,
         placements,
-        base.moves,
+        base.support,
         base.inertia,
         1.0 / own.period,
         base.tip,
@@ -347,8 +348,8 @@ def _answer(
     if kind == Request.TWIST:
         copied(targets[12:], own.request[:TWIST])
         placement = Placement.of(placements[base.tip])
-        moves = base.moves[base.tip]
-        own.asked.is_cut = cut_twist(targets[12:18], jacobian, placement, moves, plan.motion)
+        support = base.support[base.tip]
+        own.asked.is_cut = cut_twist(targets[12:18], jacobian, placement, support, plan.motion)
     else:
         request = np.zeros(n) if own.is_blind else own.request
         come_nearer(
@@ -375,16 +376,18 @@ def _answer(
         settings.coupled,
         settings.alike,
     )
-    relaxed = own.twist_relaxed if kind == Request.TWIST else own.relaxed
-    step = StepPlan(
-        arrays, program.step.network, program.step.paths, yielding, relaxed, program.step.policy
+    fallback = own.twist_relaxed if kind == Request.TWIST else own.fallback
+    step = ControlPlan(
+        arrays, program.step.network, program.step.paths, yielding, fallback, program.step.policy
     )
-    following = np.empty(own.motion.size)
-    action = take_step(row, step, own.positions, own.motion, following, state, own.time, False)
+    next_motion_state = np.empty(own.motion.size)
+    action = take_step(
+        row, step, own.positions, own.motion, next_motion_state, state, own.time, False
+    )
     if action == INVALID:  # positions that have been led beyond all limits
         motion.last[:] = 0.0
         return action
-    copied(own.motion, following)
+    copied(own.motion, next_motion_state)
     motion.yields = False
     _note_limits(plan, own, log, step, action, kind)
     return action
@@ -400,7 +403,7 @@ def _state_changes(
         limits.dt = periods.dt
         limits.hold = periods.hold
         limits.longest = periods.longest
-        limits.share = periods.share
+        limits.fraction = periods.fraction
     count = own.obstacles.size // 3
     if count > 0:
         numbers = block_constants(arrays, program.step.yielding.scenes[0])
@@ -412,7 +415,7 @@ def _state_changes(
 
 @compiled
 def _note_limits(
-    plan: ArmPlan, own: ArmState, log: StepLog, step: StepPlan, action: int, kind: int
+    plan: ArmPlan, own: ArmState, log: StepLog, step: ControlPlan, action: int, kind: int
 ) -> None:
     """Note which bounds and rows keep the command from the request, and whether they do."""
     qp = program_views(log.program, step.arrays.sizes)
@@ -423,7 +426,7 @@ def _note_limits(
     differs = 0
     limits = 0
     for i in range(n):
-        side = log.blocking[i]
+        side = log.limiting[i]
         if action == Action.NONE:
             side = log.point[first_bound + i]
             nearest = qp.ub[i] if side > 0.0 else qp.lb[i]
@@ -437,7 +440,7 @@ def _note_limits(
             limits += 1
         differs += log.dq[i] != own.request[i]
     for j in range(qp.h.size):
-        side = log.blocking[qp.q.size + j]
+        side = log.limiting[qp.q.size + j]
         if action == Action.NONE:
             side = _active(log.point[first_row + j], qp.h[j] - row_dot(qp.G, j, log.point))
         if side != 0.0:
@@ -480,7 +483,7 @@ def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
             base.constants.copy(),
             jacobian,
             placements,
-            base.moves,
+            base.support,
             base.inertia,
             base.rate,
             base.tip,
@@ -500,12 +503,12 @@ def stopping_time_of(plan: ArmPlan, memory: Vector) -> float:
     """Compute the time of the motion to rest from an arm's last command [s]."""
     own = arm_state(plan, memory)
     motion = motion_of(plan, own)
-    moves = 0.0
+    support = 0.0
     for i in range(motion.last.size):
-        moves = 1.0 if motion.last[i] != 0.0 else moves
+        support = 1.0 if motion.last[i] != 0.0 else support
     cubic = plan.joint.step.yielding.cubic
     periods = least_periods(motion.last, motion.before, plan.motion, own.spacing, cubic, False, 0.0)
-    return own.spacing * max(periods, moves)
+    return own.spacing * max(periods, support)
 
 
 @compiled

@@ -7,7 +7,7 @@ joints' true positions, so that no disturbance breaks a limit.
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.control.relaxed import Yielding, nearest_within
+from iiwa_dnn.control.fallback import Yielding, nearest_within
 from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.qp.layout import qp_views
@@ -28,7 +28,7 @@ def clip_command(qp: QP, dq: Vector, yielding: Yielding) -> tuple[Vector, NDArra
     Args:
         qp: The program at the joints' true positions; its first variables are the joints.
         dq: Joint velocities [rad/s], (n,).
-        yielding: How the network settles.
+        yielding: How the network converges.
 
     Returns:
         The velocities within the limits [rad/s], (n,), and 1 for each joint that was clipped.

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
+from iiwa_dnn.control.fallback import DAMPING
 from iiwa_dnn.control.policies import Action, ProgramKind
-from iiwa_dnn.control.relaxed import DAMPING
 from iiwa_dnn.control.state import MotionState
-from iiwa_dnn.naming import DONE, describe, in_the_way
+from iiwa_dnn.naming import DONE, active_limits, describe
 from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.layout import Sizes, data_size, offsets
@@ -24,20 +24,20 @@ PLACEMENT = 12
 ACTIVE = 1e-9
 """Multiplier above which a bound or row counts as active."""
 
-SINGULAR = "a singular posture, or tasks against each other"
+SINGULAR = "a singular posture, or tasks that contradict each other"
 DAMPED = 4.0
 """Squared singular value of the tasks' rows below which damping counts, in units of its own."""
 
 STATUSES = tuple(Status)
 """Statuses by their number in a log."""
-SOLVED, ADVANCED, NOT_SETTLED, NOT_FINITE, *_ = range(len(STATUSES))
+SOLVED, ADVANCED, NOT_CONVERGED, NOT_FINITE, *_ = range(len(STATUSES))
 
 
 class StepLog(Record):
     """Log of one step, for a program of n variables, m and p rows, and n joints.
 
     Attributes:
-        fraction: Share of the period by which the reference's clock advances.
+        fraction: Fraction of the period by which the reference's clock advances.
         status: Number of the answer's status in `STATUSES`.
         kind: `ProgramKind` of the program.
         stats: Statistics of the answer.
@@ -48,12 +48,12 @@ class StepLog(Record):
         dq: Command [rad/s], (dof,).
         next_q: Joint positions at the end of the period, q + dt dq [rad], (dof,).
         lower: Lower bounds of the step that the command keeps [rad/s], (dof,). Those of the program
-            are others where limits of acceleration or jerk hold the command back.
+            are others where limits of acceleration or jerk limit the command.
         upper: Upper bounds, (dof,).
         program: The program, `QP.data`, (size,).
         point: The answer, `Solution.point`, (2 n + m + p,).
-        blocking: Where there is an action: for each variable 1 if its upper bound stood in the way,
-            -1 if its lower one did, else 0, and for each inequality row 1 or 0, (n + m,).
+        limiting: Where there is an action: for each variable 1 if its upper bound was limiting,
+            -1 if its lower one was, else 0, and for each inequality row 1 or 0, (n + m,).
         least: Distance that each watched pair has to keep [m], (pairs,), as in `MotionState`.
         targets: Targets of the tracked frames, (k, 18).
     """
@@ -72,7 +72,7 @@ class StepLog(Record):
     upper: Vector = part("joints")
     program: Vector = part("program")
     point: Vector = part("point")
-    blocking: Vector = part("sides")
+    limiting: Vector = part("sides")
     least: Vector = part("pairs")
     targets: Matrix = part("frames", TARGET_SIZE)
 
@@ -87,10 +87,10 @@ def log_sizes(sizes: ProgramSizes) -> tuple[int, int, int, int, int, int]:
 
 
 @compiled
-def log_of(row: Vector, sizes: ProgramSizes) -> StepLog:
+def log_of(data: Vector, sizes: ProgramSizes) -> StepLog:
     """View the log of a step, (width,)."""
     joints, program, point, sides, pairs, frames = log_sizes(sizes)
-    return StepLog.of(row, joints, program, point, sides, pairs, frames)
+    return StepLog.of(data, joints, program, point, sides, pairs, frames)
 
 
 @compiled
@@ -128,17 +128,17 @@ class LogLayout(NamedTuple):
     periods: Periods
     reasons: tuple[str, ...] = ()
 
-    def targets(self, row: Vector) -> Matrix:
+    def targets(self, data: Vector) -> Matrix:
         """Return the targets of a log, (k, 18), its last numbers, a view."""
         frames = self.sizes.frames
-        return row[self.width - frames * TARGET_SIZE :].reshape(frames, TARGET_SIZE)
+        return data[self.width - frames * TARGET_SIZE :].reshape(frames, TARGET_SIZE)
 
     @property
     def qp_sizes(self) -> Sizes:
         """Sizes ``(n, m, p)`` of the programs."""
         return self.sizes[:3]
 
-    def multipliers(self, rows: Matrix, tol: float) -> tuple[Matrix, Matrix]:
+    def multipliers(self, logs: Matrix, tol: float) -> tuple[Matrix, Matrix]:
         """Return the multipliers of active bounds, (..., dof), and inequality rows, (..., m).
 
         They are those of `Solution.z_box` and `Solution.z`, 0 where none is active: where the
@@ -148,24 +148,24 @@ class LogLayout(NamedTuple):
         while to decay.
         """
         n, m, p = self.qp_sizes
-        log = log_of(rows, self.sizes)
+        log = log_of(logs, self.sizes)
         x, _, of_rows, of_bounds = np.split(log.point, np.cumsum([n, p, m]), axis=-1)
         lower, upper = np.split(log.program[..., -2 * n :], 2, axis=-1)
         nearest = np.where(of_bounds > 0.0, upper, lower)
         at_bounds = _active(of_bounds, np.abs(nearest - x), tol)
         return at_bounds[..., : self.sizes.joints], _active(of_rows, self._slacks(log), tol)
 
-    def excess(self, rows: Matrix) -> Vector:
+    def excess(self, logs: Matrix) -> Vector:
         """Compute by how much commands are beyond the bounds of their steps [rad/s], (k,).
 
-        Of a command that nothing holds back from the answer, the excess over the inequality rows
+        Of a command that is not rate-limited, the excess over the inequality rows
         counts too.
 
         Args:
-            rows: Logs of the commands, (k, width).
+            logs: Logs of the commands, (k, width).
         """
-        log = log_of(rows, self.sizes)
-        free = np.asarray(log.kind)[:, np.newaxis] < ProgramKind.HELD
+        log = log_of(logs, self.sizes)
+        free = np.asarray(log.kind)[:, np.newaxis] < ProgramKind.RATE_LIMITED
         of_rows = np.where(free, -self._slacks(log), 0.0)
         sides = [log.lower - log.dq, log.dq - log.upper, of_rows]
         excess: Vector = np.hstack(sides).max(axis=1, initial=0.0)
@@ -199,24 +199,24 @@ class Command:
     """Decision of one control step.
 
     Attributes:
-        row: The numbers of its `log`, (width,), which the properties are views of.
+        data: The numbers of its `log`, (width,), which the properties are views of.
         dq: Joint velocity [rad/s], (n,), within the limits.
         action: The action taken; ``Action.NONE`` where the network's answer was taken.
     """
 
-    __slots__ = ("_layout", "action", "dq", "row")
+    __slots__ = ("_layout", "action", "data", "dq")
 
-    def __init__(self, row: Vector, layout: LogLayout, action: Action = Action.NONE) -> None:
+    def __init__(self, data: Vector, layout: LogLayout, action: Action = Action.NONE) -> None:
         """Take a log (width,), which is not copied, its layout and the action taken."""
-        self.row = row
-        self.dq = row[layout.dq]
+        self.data = data
+        self.dq = data[layout.dq]
         self.action = action
         self._layout = layout
 
     @property
     def log(self) -> StepLog:
         """The log of the step, a view."""
-        return log_of(self.row, self._layout.sizes)
+        return log_of(self.data, self._layout.sizes)
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -230,38 +230,40 @@ class Command:
 
     @property
     def fraction(self) -> float:
-        """Share of the control period by which the reference's clock advances, in [0, 1]."""
+        """Fraction of the control period by which the reference's clock advances, in [0, 1]."""
         return self.log.fraction
 
     @property
-    def blocking(self) -> Vector:
-        """Bounds and rows that stood in the way, as in `StepLog`, (n + m,), a view."""
-        return self.log.blocking
+    def limiting(self) -> Vector:
+        """Bounds and rows that limited the solution, as in `StepLog`, (n + m,), a view."""
+        return self.log.limiting
 
     @property
-    def against(self) -> tuple[str, ...]:
+    def active_limits(self) -> tuple[str, ...]:
         """Reasons, bounds and rows that keep the command from what tasks and cost ask, in words.
 
         The `conditions` are among them.
         """
         layout = self._layout
-        sides, rows = np.split(self.blocking, [layout.sizes.n])
+        sides, rows = np.split(self.limiting, [layout.sizes.n])
         if self.action is Action.NONE:
-            sides, rows = layout.multipliers(self.row, ACTIVE)
-        words = [*map(describe, in_the_way(layout.names.settings, self.codes(sides), rows))]
-        if not words and self.kind is ProgramKind.SOFTENED:
-            words = self._lacks
+            sides, rows = layout.multipliers(self.data, ACTIVE)
+        words = [*map(describe, active_limits(layout.names.settings, self.codes(sides), rows))]
+        if not words and self.kind is ProgramKind.RELAXED:
+            words = self._rank_loss
         return (*self.reasons, *words, *self.conditions)
 
     def codes(self, sides: Vector) -> NDArray[np.int8]:
         """Return the codes of the bounds on some sides, as `LimitNames.codes` does, (n,)."""
         layout = self._layout
-        found: NDArray[np.int8] = layout.names.codes(self.bounds, sides, self.past, layout.periods)
+        found: NDArray[np.int8] = layout.names.codes(
+            self.bounds, sides, self.motion_state, layout.periods
+        )
         return found
 
     @property
-    def _lacks(self) -> list[str]:
-        """State that the rows of the softened program's tasks, or the joints, are not enough."""
+    def _rank_loss(self) -> list[str]:
+        """State that the rows of the relaxed program's tasks, or the joints, are not enough."""
         qp = self.qp
         rows = (~qp.A.any(axis=1)).sum()
         rank = (np.linalg.eigvalsh(qp.P) > DAMPED * DAMPING**2).sum()
@@ -299,7 +301,7 @@ class Command:
         return qp
 
     @property
-    def past(self) -> Matrix:
+    def motion_state(self) -> Matrix:
         """Joint positions [rad], last command and the one before it [rad/s], (3, n)."""
         log = self.log
         return np.array([log.q, log.last, log.before])
@@ -316,7 +318,7 @@ class Command:
 
     @property
     def solution(self) -> Solution:
-        """The network's answer to `qp`; where the command is held back, it is on the way there."""
+        """The network's answer to `qp`, which a rate-limited command is on its way to."""
         log = self.log
         stats = log.stats
         residuals = (stats.primal, stats.dual, stats.gap)
@@ -336,16 +338,16 @@ class Command:
         Then the arm is on its way there, or noise asks for more than it may follow; a command that
         is neither `ok` nor limited cannot do it.
         """
-        rows = self.blocking[self._layout.sizes.n :]
+        rows = self.limiting[self._layout.sizes.n :]
         if self.action in (Action.NONE, Action.STOP) or rows.any():
             return False
-        codes = np.abs(self.codes(self.blocking))
+        codes = np.abs(self.codes(self.limiting))
         return bool(codes.any()) and bool((codes[codes > 0] >= ACCELERATION).all())
 
     def __repr__(self) -> str:
         dq = np.array2string(self.dq, precision=4, separator=", ")
-        words = "solved" if self.ok else "not settled"
+        words = "solved" if self.ok else "not converged"
         if self.action:
             words = f"no solution: {DONE[self.action.name.lower()]}"
-            words += f", against {', '.join(self.against)}" if self.against else ""
+            words += f", limited by {', '.join(self.active_limits)}" if self.active_limits else ""
         return f"<Command dq = {dq} rad/s, {words}; ok = {self.ok}>"

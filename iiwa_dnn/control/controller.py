@@ -14,19 +14,19 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.cycle import INVALID, ControlLayout, take_step
 from iiwa_dnn.control.paths import (
     References,
     beyond_reach,
     by_frame,
-    doubts,
-    far_targets,
-    lost_rank,
-    near_pairs,
+    pair_warnings,
     paths_of,
+    rank_warnings,
+    setup_warnings,
+    target_warnings,
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.state import ControllerState
-from iiwa_dnn.control.step import INVALID, ControlStep, take_step
 from iiwa_dnn.control.stopping import stopping_time
 from iiwa_dnn.control.yielding import BRAKE
 from iiwa_dnn.errors import InvalidInputError
@@ -37,7 +37,7 @@ from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.limits import stated_periods
-from iiwa_dnn.schemes.program import StepProgram, targets_of
+from iiwa_dnn.schemes.program import ProgramLayout, targets_of
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 Mode = Literal["converged", "continuous"]
@@ -68,12 +68,12 @@ class Controller:
         dt: Control period [s].
         longest_period: Longest control period in a loop whose periods vary [s]; None: all are `dt`,
             unless a step states another one.
-        mode: ``"converged"``: the network settles at every step. ``"continuous"``: it advances by
+        mode: ``"converged"``: the network converges at every step. ``"continuous"``: it advances by
             one control period, as in the paper, and lags: bounds of the joints hold, the rows of
-            other limits only where it has settled; beside obstacles the arm may stop.
+            other limits only where it has converged; beside obstacles the arm may stop.
         policy: Action at a step without a solution in ``converged`` mode (`control.policies`).
         solver: Network, integrators and tolerance; keeps the network's state between steps.
-        delay: Time by which the reference's clock is behind, since a policy slowed it [s].
+        path_lag: Time by which the reference's clock is behind, since a policy slowed it [s].
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class Controller:
         """
         self._lock = threading.RLock()
         self._state = ControllerState(0)
-        self._derived: ControlStep | None
+        self._derived: ControlLayout | None
         self._anchored: Scheme | None = None
         self.mode = mode
         self.policy = policy
@@ -139,7 +139,7 @@ class Controller:
         self._derived = None
         if name == "robot" and self._state.sizes[0] != value.dof:
             self._state = ControllerState(value.dof)
-        # A braking motion in hand keeps the limits of before.
+        # A verified stopping motion keeps the limits of before.
         if name in ("robot", "scheme") and value is not before:
             self._state.motion.stopping_periods = 0.0
 
@@ -163,7 +163,7 @@ class Controller:
         return self._lock
 
     @property
-    def delay(self) -> float:
+    def path_lag(self) -> float:
         """Time by which the reference's clock is behind [s]."""
         return self._state.motion.path_lag
 
@@ -184,7 +184,7 @@ class Controller:
 
         Args:
             q: Measured joint positions [rad], (n,).
-            t: Time [s]; the reference is asked for the time `delay` before it.
+            t: Time [s]; the reference is asked for the time `path_lag` before it.
             target: Target in place of the reference's; for tasks towards the next one `ahead` too.
             dt: Period for which this command will be held [s]. Without a `longest_period`, velocity
                 and acceleration limits hold all the same, jerk and position limits as far as these
@@ -234,13 +234,13 @@ class Controller:
             return self._compute(q, t, target, None, None)
 
     def send(self, dq: Vector, fraction: float = 1.0) -> None:
-        """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a share of the period.
+        """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a fraction of the period.
 
         Raises:
-            InvalidInputError: `dq` has another size, or is not finite, or the share is below 0.
+            InvalidInputError: `dq` has another size, or is not finite, or the fraction is below 0.
         """
         sent = checks.finite_array("dq", dq, (self.robot.dof,))
-        share = checks.not_negative("fraction", fraction)
+        fraction = checks.not_negative("fraction", fraction)
         with self._turn():
             state = self._state
             state.dt = state.dt or self.dt
@@ -248,7 +248,7 @@ class Controller:
             motion.before[:] = state.motion.last
             motion.last[:] = sent
             motion.stopping_periods = 0.0
-            motion.path_lag = state.motion.path_lag + self.dt * (1.0 - share)
+            motion.path_lag = state.motion.path_lag + self.dt * (1.0 - fraction)
             state.numbers = motion.numbers
 
     def _compute(
@@ -259,42 +259,46 @@ class Controller:
         dt: float | None,
         elapsed: float | None,
     ) -> Command:
-        step = self._derived
+        control_layout = self._derived
         state = self._state
-        if step is None or not state.begun:
-            step = self._prepare(q, t, target is None)
-        if dt is not elapsed or not self.dt == step.steady == state.dt:
-            self._take_periods(step, dt, elapsed)
-        layout = step.layout
-        program = step.program
-        if not _is_plain(q, step.shape):
+        if control_layout is None or not state.begun:
+            control_layout = self._prepare(q, t, target is None)
+        if dt is not elapsed or not self.dt == control_layout.steady == state.dt:
+            self._take_periods(control_layout, dt, elapsed)
+        log_layout = control_layout.log_layout
+        program = control_layout.program
+        if not _is_plain(q, control_layout.shape):
             q = checks.joint_positions("q", q, self.robot.dof)
         program.kinematics.update(q)
-        row = np.empty(layout.width)
+        data = np.empty(log_layout.width)
         numbers = state.numbers
-        samples = step.samples and target is None
+        samples = control_layout.samples and target is None
         if not samples:
-            layout.targets(row)[:] = self.targets(self._clock(t, target), target, step.dt)
+            log_layout.targets(data)[:] = self.targets(
+                self._clock(t, target), target, control_layout.dt
+            )
         if program.refreshed:
-            program.refresh(q, state.motion.last, layout.targets(row), t, step.dt)
-        next_numbers = np.empty(step.width)
+            program.refresh(q, state.motion.last, log_layout.targets(data), t, control_layout.dt)
+        next_numbers = np.empty(control_layout.width)
         if state.halted:
             motion = state.motion.duplicate()
             motion.halts = True
             numbers = motion.numbers
-        network = self.solver.state_for(program.sizes) if step.has_network else row[:0]
-        action = take_step(row, step.plan, q, numbers, next_numbers, network, t, samples)
+        network = self.solver.state_for(program.sizes) if control_layout.has_network else data[:0]
+        action = take_step(data, control_layout.plan, q, numbers, next_numbers, network, t, samples)
         if action == INVALID:
             checks.finite("t", t)
             checks.joint_positions("q", q, self.robot.dof)
-            checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
+            checks.finite_array("target", log_layout.targets(data), (-1, TARGET_SIZE))
         state.next_numbers = next_numbers
-        return Command(row, layout, _ACTIONS[action])
+        return Command(data, log_layout, _ACTIONS[action])
 
-    def _take_periods(self, step: ControlStep, dt: float | None, elapsed: float | None) -> None:
+    def _take_periods(
+        self, control_layout: ControlLayout, dt: float | None, elapsed: float | None
+    ) -> None:
         """Take the periods that a step states; one that is too long is a reason."""
         longest = self.longest_period
-        if elapsed is None and dt == step.steady == self._state.dt:
+        if elapsed is None and dt == control_layout.steady == self._state.dt:
             return
         periods = stated_periods(self.dt, longest, dt, elapsed)
         self._state.set_period(periods.dt)
@@ -303,7 +307,7 @@ class Controller:
         found = dt or elapsed or 0.0
         exceeded = longest is not None and found > longest * (1.0 + SLACK)
         hold = self.dt if dt is None else periods.hold
-        step.set_periods(hold, periods, (EXCEEDED,) if exceeded else ())
+        control_layout.set_periods(hold, periods, (EXCEEDED,) if exceeded else ())
         if exceeded and not self._state.exceeded:
             self._state.exceeded = True
             problem = f"a period of {found:g} s is above the longest, {longest:g} s"
@@ -314,25 +318,25 @@ class Controller:
         return t - self._state.motion.path_lag if target is None else t
 
     def is_clear(self, q: Vector, dq: Vector) -> bool:
-        """Test whether a velocity brings no pair nearer than promised, or too near.
+        """Test whether a velocity is safe to send; always True with limits on acceleration or jerk.
 
-        With limits on acceleration or jerk it passes: not to send it could break them.
+        It is safe if it brings no pair nearer than its distance.
 
         Args:
             q: Joint positions [rad], (n,).
             dq: Velocity that the program's bounds and rows allow [rad/s], (n,).
         """
         with self._turn():
-            step = self.control_step
-            if step.program.rate_limits is not None:
+            control_layout = self.control_layout
+            if control_layout.program.rate_limits is not None:
                 return True
-            step.program.kinematics.update(q)
+            control_layout.program.kinematics.update(q)
             least = self._state.next_motion.least
             rest = np.zeros(q.size)
-            own = step.plan.yielding
-            return bool(stopping_time(step.plan.arrays, q, rest, least, own, dq) >= 0.0)
+            own = control_layout.plan.yielding
+            return bool(stopping_time(control_layout.plan.arrays, q, rest, least, own, dq) >= 0.0)
 
-    def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlStep:
+    def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlLayout:
         """Anchor the scheme, and at the first step warn of a start that is most likely wrong.
 
         `own` says that the targets are the reference's.
@@ -342,24 +346,24 @@ class Controller:
         self.anchor(start)
         if not self._state.begun:
             self.warn_of_start(start, t, own, stacklevel=5)
-        return self.control_step
+        return self.control_layout
 
     @property
-    def control_step(self) -> ControlStep:
+    def control_layout(self) -> ControlLayout:
         """The control step, laid out anew after a change of the settings."""
-        step = self._derived
-        if step is not None:
-            return step
+        control_layout = self._derived
+        if control_layout is not None:
+            return control_layout
         with self._lock:
             program = self.scheme.program(self.robot)
             policy = int(Action[self.policy.upper()]) if self.mode == "converged" else BRAKE
             paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
             longest = self.longest_period
-            step = ControlStep(program, paths, self.solver, self.dt, policy, longest)
+            control_layout = ControlLayout(program, paths, self.solver, self.dt, policy, longest)
             self._state.watch([names for names, _ in program.pairs])
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
-                self._derived = step
-            return step
+                self._derived = control_layout
+            return control_layout
 
     @property
     def positions(self) -> Vector:
@@ -369,9 +373,9 @@ class Controller:
             return np.array(own)
 
     @property
-    def program(self) -> StepProgram:
+    def program(self) -> ProgramLayout:
         """The scheme laid out for the robot."""
-        return self.control_step.program
+        return self.control_layout.program
 
     def halt(self) -> None:
         """Brake at every step from now on."""
@@ -397,10 +401,13 @@ class Controller:
         """
         self._state.begun = True
         program = self.program
-        found = [*doubts(program, start, self.dt, self.mode), *near_pairs(program, start, t)]
+        found = [
+            *setup_warnings(program, start, self.dt, self.mode),
+            *pair_warnings(program, start, t),
+        ]
         if own:
-            found += lost_rank(program, start, t, self.dt, self.targets)
-            found += far_targets(self.scheme, program.target_frames, start, self.targets(t))
+            found += rank_warnings(program, start, t, self.dt, self.targets)
+            found += target_warnings(self.scheme, program.target_frames, start, self.targets(t))
             away = beyond_reach(self.reference, self.robot)
             found += [f"the path leads {away:.3g} m beyond the arm's reach"] * (away > 0.0)
         for message in found:
@@ -422,7 +429,7 @@ class Controller:
         """
         with self._turn():
             self.anchor(Configuration(self.robot, q))
-            self._derived = self.control_step
+            self._derived = self.control_layout
 
     def targets(
         self,
@@ -446,19 +453,19 @@ class Controller:
         given = paths_of(self.reference, self.robot.tip, frames)
         paths = self._seen(given, dt or self.dt).values()
         found = np.array([path.base for path in paths])
-        for path, row in zip(paths, found, strict=True):
-            path.move(t, TargetData.of(row))
+        for path, data in zip(paths, found, strict=True):
+            path.move(t, TargetData.of(data))
         return found
 
     def _seen(self, paths: Mapping[str, Reference], dt: float) -> Mapping[str, Reference]:
-        """Return references by frame name, a period ahead if the scheme asks for it."""
-        ahead = self.scheme.ahead
-        return {name: path.ahead(dt) if ahead else path for name, path in paths.items()}
+        """Return references by frame name; with feed-forward if the scheme samples at the end."""
+        at_end = self.scheme.sample == "end"
+        return {name: path.feed_forward(dt) if at_end else path for name, path in paths.items()}
 
     def placement(self, q: Vector) -> Vector:
         """Compute the placement of the first tracked frame at joint positions q (n,), (12,)."""
         with self._turn():
-            arrays = self.control_step.plan.arrays
+            arrays = self.control_layout.plan.arrays
             self.program.kinematics.update(q)
             return np.array(arrays.placements[arrays.tip])
 
@@ -471,7 +478,7 @@ class Controller:
 
 
 def _is_plain(q: Any, shape: tuple[int, ...]) -> bool:
-    """Tell whether joint positions (n,) are an array as compiled code takes it."""
+    """Test whether joint positions (n,) are an array as compiled code takes it."""
     # Of bytes in another order Pinocchio makes other numbers, without a word.
     plain: bool = type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == shape
     return plain and (q.base is None or q.flags.c_contiguous)  # own data have no gaps

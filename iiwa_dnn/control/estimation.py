@@ -37,21 +37,21 @@ class NoiseModel:
         bias_walk: beta, how fast the disturbance may change [rad/s per sqrt(s)]; with 0 there is
             none, and nothing is taken off the command.
         bias: Standard deviation of the disturbance at the start [rad/s].
-        delay: Number of control periods by which the drives carry a command out late.
+        delay_periods: Number of control periods by which the drives carry a command out late.
     """
 
     velocity: float = 0.01
     measurement: float = 1e-5
     bias_walk: float = 0.0
     bias: float = 0.1
-    delay: int = 0
+    delay_periods: int = 0
 
     def __post_init__(self) -> None:
         """Check the numbers; raises InvalidInputError naming the one that is wrong."""
         checks.positive("measurement", self.measurement)
         for name in ("velocity", "bias_walk", "bias"):
             checks.not_negative(name, getattr(self, name))
-        checks.integer("delay", self.delay, 0)
+        checks.integer("delay_periods", self.delay_periods, 0)
 
 
 class JointEstimator:
@@ -85,7 +85,7 @@ class JointEstimator:
         if self._q is None:
             self._q = reading.copy()
             self.bias = np.zeros_like(reading)
-            self._late = (np.zeros_like(reading),) * model.delay
+            self._late = (np.zeros_like(reading),) * model.delay_periods
             # Covariance of (q, d): the first reading is all that is known of q.
             self._qq = noise
             self._qd = 0.0
@@ -97,11 +97,11 @@ class JointEstimator:
         k_d = self._qd / total
         self._q = self._q + k_q * innovation
         self.bias = self.bias + k_d * innovation
-        # The measured direction's share goes; noise / total is 1 - k_q without cancellation.
+        # The measured direction's part goes; noise / total is 1 - k_q without cancellation.
         self._dd -= k_d * self._qd
         self._qq = noise * k_q
         self._qd = self._qd * noise / total
-        return self._q + self.dt * (sum(self._late) + model.delay * self.bias)
+        return self._q + self.dt * (sum(self._late) + model.delay_periods * self.bias)
 
     def predict(self, command: Vector) -> None:
         """Let the joints move for one control period; the drives get a command (n,) [rad/s]."""

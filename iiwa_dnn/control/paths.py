@@ -18,7 +18,7 @@ from iiwa_dnn.robot.collision import unwatched_links
 from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.limits import TipSpeedLimit, largest_gain
-from iiwa_dnn.schemes.program import LimitNames, StepProgram
+from iiwa_dnn.schemes.program import LimitNames, ProgramLayout
 from iiwa_dnn.schemes.tasks import GainTask
 
 References = Reference | Mapping[str, Reference]
@@ -26,16 +26,16 @@ References = Reference | Mapping[str, Reference]
 FAR = 0.05
 TURNED = 0.2
 """Distance [m] and angle [rad] of a first target from which on a warning is given."""
-PLACES = 200
+SAMPLES = 200
 """Places of a path at which it is looked at."""
 SLOWEST = 0.1
 """Control period above which a warning is given [s]."""
 DOUBLINGS = 16
 """Times ahead at which a path's start is looked at: a control period, two, four, ..."""
 NEAR = 0.02
-"""Distance [m] and change of the entries of a rotation in which a path hardly bends."""
+"""Distance [m] and change of the entries of a rotation in which a path is nearly straight."""
 MISSING = 0.2
-"""Part of a task velocity that is more than that bend."""
+"""Part of a task velocity that is more than that curvature."""
 ZERO = 1e-3
 """Ratio of singular values below which they count as zero."""
 
@@ -65,7 +65,9 @@ def paths_of(reference: References | None, tip: str, frames: Sequence[str]) -> d
     return {name: given[name] for name in frames}
 
 
-def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> Iterator[str]:
+def setup_warnings(
+    program: ProgramLayout, start: Configuration, dt: float, mode: str
+) -> Iterator[str]:
     """State for what reasons a loop is most likely not the wanted one.
 
     Args:
@@ -79,7 +81,7 @@ def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> 
         yield f"the start posture {problem}"
     for coupling in LimitNames(program).conditions(start.q, program.least):
         yield f"{coupling} at the start: they come to it within the limits"
-    yield from _doubt_of_gain(program, dt)
+    yield from _gain_warnings(program, dt)
     if dt > SLOWEST:
         yield f"a control period of {dt:g} s is long: the arm follows each command blindly"
     limits = program.scheme.limits
@@ -89,13 +91,13 @@ def doubts(program: StepProgram, start: Configuration, dt: float, mode: str) -> 
     if mode == "continuous" and lagging:
         yield (
             f"in continuous mode the rows of {', '.join(lagging)} hold where the network has "
-            "settled, not on its way: only bounds of the joints are kept at every step"
+            "converged, not on its way: only bounds of the joints are kept at every step"
         )
     if program.constants_of(CollisionAvoidance) and (links := unwatched_links(robot)):
         yield unwatched(links)
 
 
-def _doubt_of_gain(program: StepProgram, dt: float) -> Iterator[str]:
+def _gain_warnings(program: ProgramLayout, dt: float) -> Iterator[str]:
     """State that a gain is too high for the limits on acceleration and jerk at dt [s], if so."""
     if program.rate_limits is None:
         return
@@ -108,8 +110,8 @@ def _doubt_of_gain(program: StepProgram, dt: float) -> Iterator[str]:
         )
 
 
-def lost_rank(
-    program: StepProgram,
+def rank_warnings(
+    program: ProgramLayout,
     start: Configuration,
     t: float,
     dt: float,
@@ -142,7 +144,7 @@ def lost_rank(
         )
 
 
-def near_pairs(program: StepProgram, start: Configuration, t: float) -> Iterator[str]:
+def pair_warnings(program: ProgramLayout, start: Configuration, t: float) -> Iterator[str]:
     """State which pairs are nearer than their distance where a loop begins, at time t [s]."""
     parts = [part for part in program.scheme.limits if isinstance(part, CollisionAvoidance)]
     for part in parts:
@@ -162,11 +164,11 @@ def beyond_reach(reference: References | None, robot: Robot) -> float:
     if path is None:
         return 0.0
     end = path.duration if math.isfinite(path.duration) else 0.0
-    distances = np.linalg.norm(path.sample(np.linspace(0.0, end, PLACES)).position, axis=1)
+    distances = np.linalg.norm(path.sample(np.linspace(0.0, end, SAMPLES)).position, axis=1)
     return max(0.0, float(distances.max()) - robot.reach)
 
 
-def far_targets(
+def target_warnings(
     scheme: Scheme,
     frames: Sequence[str],
     start: Configuration,

@@ -1,31 +1,31 @@
 r"""Policies for a step whose program has no solution, or one that the network did not find.
 
 A program without a solution asks for a task velocity b that no joint velocity within the limits
-gives. A policy that goes on answers a relaxed program (`iiwa_dnn.control.relaxed`), which keeps the
-bounds and the inequality rows. It is handed out, recorded and checked as it was answered
+gives. A policy that goes on answers a fallback program (`iiwa_dnn.control.fallback`), which keeps
+the bounds and the inequality rows. It is handed out, recorded and checked as it was answered
 (`ProgramKind`).
 
 ``slow``
     Along a path, the scaled program: the task velocity becomes s b with the largest feasible
     :math:`s \in [0, 1]`, less a thousandth of it. The reference's clock advances by s dt, so
     without limits on acceleration or jerk the arm goes along the same path, later. The task is
-    softened where the reference rests, where s is below a tenth, and where the joints race while
+    relaxed where the reference rests, where s is below a tenth, and where the joints race while
     the tip hardly moves, as in a singular pose.
-    Along a path the clock then advances by the share of the task velocity that is reached, at
+    Along a path the clock then advances by the fraction of the task velocity that is reached, at
     least by a tenth, so that the path leads out of it.
 ``relax``
-    The softened program: the task rows are violated least, damped. The clock runs on.
+    The relaxed program: the task rows are violated least, damped. The clock runs on.
 ``stop``
-    A braking motion to zero. A run ends there; a loop goes on once the task has a solution.
+    A stopping motion to zero. A run ends there; a loop goes on once the task has a solution.
 
-The multipliers of the relaxed programs name the bounds and rows that stand in the way. A row that
-asks for more than all joints together can give is followed as far as they can. If the limits
+The multipliers of the fallback programs name the bounds and rows that limit the solution. A row
+that asks for more than all joints together can give is followed as far as they can. If the limits
 contradict each other nevertheless, the arm stops.
 
-With limits on acceleration or jerk the relaxed programs have the bounds of position and velocity
+With limits on acceleration or jerk the fallback programs have the bounds of position and velocity
 alone, and the command is a point on the way to their answer, within the bounds of the step: each
 joint goes there as quickly as it may, so that ``slow`` leaves the path, and comes back to it;
-``stop`` brakes until the arm stands (`iiwa_dnn.control.yielding`).
+``stop`` brakes until the arm is at rest (`iiwa_dnn.control.yielding`).
 
 Sources: J. M. Hollerbach, "Dynamic scaling of manipulator trajectories", Journal of Dynamic
 Systems, Measurement, and Control 106 (1984); for velocity limits, F. Flacco, A. De Luca, O. Khatib,
@@ -49,7 +49,7 @@ class Action(IntEnum):
     RELAX = 3
     """The task rows hold as far as they can."""
     STOP = 4
-    """A braking motion to zero."""
+    """A stopping motion to zero."""
     EULER = 5
     """A later stage of midpoint or RK4 had no solution: an Euler step was taken."""
 
@@ -57,14 +57,14 @@ class Action(IntEnum):
 class ProgramKind(IntEnum):
     """Program of a step that is handed out, recorded and checked; its code in a record."""
 
-    OWN = 0
+    NOMINAL = 0
     """The step's own, as the scheme builds it."""
     SCALED = 1
-    """The scaled program, A x = s b (`iiwa_dnn.control.relaxed`)."""
-    SOFTENED = 2
-    """The softened program, with the task in its cost."""
-    HELD = 3
+    """The scaled program, A x = s b (`iiwa_dnn.control.fallback`)."""
+    RELAXED = 2
+    """The relaxed program, with the task in its cost."""
+    RATE_LIMITED = 3
     """One of these, whose answer the command goes towards: acceleration, jerk or braking hold it
     back, and it is within the step's own bounds and rows."""
     STOPPED = 4
-    """The step's own program, which has no answer: the command brakes."""
+    """The nominal program, which has no answer: the command brakes."""

@@ -16,7 +16,7 @@ unless a step did not make the error smaller: it is taken back, and :math:`\mu` 
 does. Near a posture that has the pose the damping vanishes and the convergence is quadratic;
 elsewhere the end is a posture whose pose is the nearest one around. Where no start leads to the
 pose, the ends go on with orientation errors weighed a hundredth, and then none: the position comes
-first. The multipliers there name what is in the way.
+first. The multipliers there name the active limits.
 
 Sources: T. Sugihara, "Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt
 method", IEEE Trans. Robotics 27(5), 2011, for the damping; D. W. Marquardt, "An algorithm for
@@ -33,7 +33,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.naming import describe, in_the_way
+from iiwa_dnn.naming import active_limits, describe
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Solution, Vector
 from iiwa_dnn.references import Target
@@ -48,7 +48,7 @@ from iiwa_dnn.schemes import (
     Scheme,
 )
 from iiwa_dnn.schemes.collisions import ENDS
-from iiwa_dnn.schemes.program import StepProgram
+from iiwa_dnn.schemes.program import ProgramLayout
 
 _STEP = 0.5
 """Largest change of a joint in an iteration, in its unit (`_units`)."""
@@ -63,7 +63,7 @@ _STILL = 1e-7
 """Relative change of the error that ends the iterations away from the pose."""
 
 _ACTS = 1e-3
-"""Least ratio of a multiplier to the error for which a limit counts as in the way."""
+"""Least ratio of a multiplier to the error for which a limit counts as active."""
 
 _SECOND = 1e-2
 """Weight of the orientation where the position comes first [m/rad]."""
@@ -79,7 +79,7 @@ class PoseSolution:
             and with the least orientation error there.
         position_error: Distance of `nearest` from the target [m].
         orientation_error: Angle between the orientations of `nearest` and of the target [rad].
-        in_the_way: Limits and obstacles that keep `nearest` from the target, in words. If empty
+        active_limits: Limits and obstacles that keep `nearest` from the target, in words. If empty
             though none was found, the arm is too short, or in a fold that it does not leave.
     """
 
@@ -87,7 +87,7 @@ class PoseSolution:
     nearest: Configuration
     position_error: float
     orientation_error: float
-    in_the_way: tuple[str, ...]
+    active_limits: tuple[str, ...]
 
     @property
     def found(self) -> bool:
@@ -173,11 +173,11 @@ def solve_pose(
         Configuration(robot, best.q),
         math.hypot(*error[:3]),
         math.hypot(*error[3:6]),
-        () if found else _in_the_way(program, solver, best, weight),
+        () if found else _active_limits(program, solver, best, weight),
     )
 
 
-def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -> StepProgram:
+def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -> ProgramLayout:
     """Lay out a program whose step of 1 s is an iteration: velocities are changes of joints."""
     slowed = robot.with_limits(velocity=_STEP * _units(robot))
     limits: list[Limit] = [JointLimits(gain=1.0)]
@@ -186,7 +186,7 @@ def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -
     if isinstance(obstacles, CollisionAvoidance):
         rows = ENDS * len(obstacles.scene(slowed).pairs)
         limits.append(replace(obstacles, gain=1.0, nearest=rows))
-    return StepProgram(slowed, Scheme([], [PoseTask(gain=1.0)], limits))
+    return ProgramLayout(slowed, Scheme([], [PoseTask(gain=1.0)], limits))
 
 
 def _units(robot: Robot) -> Vector:
@@ -196,7 +196,12 @@ def _units(robot: Robot) -> Vector:
 
 
 def _descend(
-    program: StepProgram, solver: DNNSolver, goal: Matrix, tol: float, start: Vector, weight: float
+    program: ProgramLayout,
+    solver: DNNSolver,
+    goal: Matrix,
+    tol: float,
+    start: Vector,
+    weight: float,
 ) -> _Point:
     """Go from a start (n,) [rad] to where the error from the goal (1, 18) gets no smaller."""
     damping = _DAMPING
@@ -219,7 +224,7 @@ def _descend(
     return point
 
 
-def _at(program: StepProgram, q: Vector, goal: Matrix, weight: float) -> _Point:
+def _at(program: ProgramLayout, q: Vector, goal: Matrix, weight: float) -> _Point:
     """Write the program at joint positions q (n,) [rad] for a goal (1, 18), and weigh its turn."""
     qp = program.qp_at(q, 0.0 * q, 0.0 * q, goal, np.inf)
     qp.A[3:6] *= weight
@@ -227,13 +232,13 @@ def _at(program: StepProgram, q: Vector, goal: Matrix, weight: float) -> _Point:
     error = qp.b[:6]
     linkage = qp.b[6:]
     linkage /= JointCouplingTask.gain  # of a step, as the pose
-    apart = np.concatenate([np.abs(linkage), np.maximum(-qp.h, 0.0)])
-    missing = float(error @ error + apart.sum())
-    far = max(math.hypot(*error[:3]), math.hypot(*error[3:]), apart.max(initial=0.0))
+    violations = np.concatenate([np.abs(linkage), np.maximum(-qp.h, 0.0)])
+    missing = float(error @ error + violations.sum())
+    far = max(math.hypot(*error[:3]), math.hypot(*error[3:]), violations.max(initial=0.0))
     return _Point(q, qp, missing, far)
 
 
-def _solve(program: StepProgram, solver: DNNSolver, point: _Point, damping: float) -> Solution:
+def _solve(program: ProgramLayout, solver: DNNSolver, point: _Point, damping: float) -> Solution:
     """Solve the program of an iteration, of which the damping is a ratio to the squared error."""
     qp = point.qp
     jacobian = qp.A[:6]
@@ -243,11 +248,11 @@ def _solve(program: StepProgram, solver: DNNSolver, point: _Point, damping: floa
     return solver.solve(QP(P, -error @ jacobian, qp.G, qp.h, qp.A[6:], qp.b[6:], qp.lb, qp.ub))
 
 
-def _in_the_way(
-    program: StepProgram, solver: DNNSolver, point: _Point, weight: float
+def _active_limits(
+    program: ProgramLayout, solver: DNNSolver, point: _Point, weight: float
 ) -> tuple[str, ...]:
     """Name the limits whose multipliers keep a posture from the goal, its turn weighed so."""
     step = _solve(program, solver, point, _DAMPING)
     least = _ACTS * math.hypot(*point.qp.b[:3], *weight * point.qp.b[3:6])
     codes = np.sign(step.z_box) * (np.abs(step.z_box) > least)
-    return tuple(map(describe, in_the_way(program.settings(), codes, step.z > least)))
+    return tuple(map(describe, active_limits(program.settings(), codes, step.z > least)))

@@ -72,7 +72,7 @@ from iiwa_dnn.schemes.limits import (
     joint_rates,
     stated_periods,
 )
-from iiwa_dnn.schemes.program import StepProgram
+from iiwa_dnn.schemes.program import ProgramLayout
 from iiwa_dnn.schemes.step import (
     TARGET_SIZE,
     FrameConstants,
@@ -104,10 +104,10 @@ TWIST = 6
 JOINTS = ""
 """Frame of requests for all joints."""
 
-REASONS = ("", "no wish", "wish too old", "wish not finite", "halted")
+REASONS = ("", "no request", "request timed out", "request not finite", "halted")
 """Words of each `Reason`."""
 
-TAKEN_OVER = "measured positions taken over"
+RESYNCHRONISED = "resynchronised to measured positions"
 
 IS_CUT = "request cut"
 
@@ -136,7 +136,7 @@ class JointsConstants(Record):
 
 
 @compiled
-def wished_velocity(
+def velocity_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write A = I and b = w for some joints; the target (18,) begins with their velocities w."""
@@ -152,10 +152,10 @@ class JointVelocityTask(Task):
 
     Attributes:
         frame: The frame whose target it is.
-        first: The first of the joints, of which a target has room for 18.
+        first: The first of the joints, of which a target holds 18.
     """
 
-    kernel = staticmethod(wished_velocity)
+    kernel = staticmethod(velocity_rows)
     weight = 1.0
     frame: str
     first: int = 0
@@ -190,9 +190,9 @@ def twist_rows(
         along = 0.0
         for k in range(b.size):
             along += A[k, i] * b[k]
-        share = (1.0 - SIDEWAYS) * along / square if square > 0.0 else 0.0
+        fraction = (1.0 - SIDEWAYS) * along / square if square > 0.0 else 0.0
         for k in range(b.size):
-            A[k, i] = SIDEWAYS * A[k, i] + share * b[k]
+            A[k, i] = SIDEWAYS * A[k, i] + fraction * b[k]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -209,7 +209,7 @@ class Flags(Record):
         age: Time since it came [s].
         reason: `Reason` why it is one to rest.
         begun: Whether there was a first step.
-        resynchronised: Whether measured positions were taken over.
+        resynchronised: Whether it was resynchronised to measured positions.
         is_cut: Whether it is cut.
     """
 
@@ -226,7 +226,8 @@ class ShieldSettings(Record):
     Attributes:
         period: Last period [s].
         timeout: Time for which a request counts [s].
-        tracking_error: Difference of positions above which measured ones are taken over [rad].
+        tracking_error: Difference of positions above which it is resynchronised to measured ones
+            [rad].
         delay: Time by which the arm is behind its commands [s].
     """
 
@@ -294,10 +295,10 @@ def come_nearer(
     limits: MotionNumbers,
     periods: Periods,
     reaches: bool,
-    held: bool,
+    repeated: bool,
     dq: Vector,
 ) -> None:
-    """Write the next velocities dq (n,) [rad/s] on the quickest way to the request that counts.
+    """Write the next velocities dq (n,) [rad/s] on the quickest path to the request that counts.
 
     Those on the way to positions are the quickest ones from which all joints can still rest there.
     A joint that jerk limits keep from its velocity in this step, or that is asked for the same one
@@ -310,7 +311,7 @@ def come_nearer(
         limits: Limits of the joints.
         periods: Periods of the step.
         reaches: Whether the request is one for positions.
-        held: Whether it is that of the last step.
+        repeated: Whether it is that of the last step.
         dq: The velocities, overwritten.
     """
     state.flags.is_cut = False
@@ -334,14 +335,14 @@ def come_nearer(
         if reaches:
             wanted = min(max(wanted, lower), upper)
             wanted = arriving(last[i], before[i], left, wanted, rates, periods)
-        elif held or wanted < lower or wanted > upper:
+        elif repeated or wanted < lower or wanted > upper:
             wanted += braking(last[i] - wanted, -np.inf, np.inf, limits.jerk[i], periods)
         dq[i] = wanted
 
 
 @compiled
 def cut_twist(
-    twist: Vector, jacobian: Matrix, placement: Placement, moves: Vector, limits: MotionNumbers
+    twist: Vector, jacobian: Matrix, placement: Placement, support: Vector, limits: MotionNumbers
 ) -> bool:
     """Cut a twist (6,) in place to `CUT` times what the joints can do.
 
@@ -349,13 +350,13 @@ def cut_twist(
         twist: The twist of a frame.
         jacobian: `Kinematics.jacobian`, (n, 6).
         placement: The frame's.
-        moves: 1 for the joints that move it, (n,).
+        support: 1 for the joints that move it, (n,).
         limits: Limits of the joints.
 
     Returns:
         Whether it was larger.
     """
-    n = moves.size
+    n = support.size
     size = 0.0
     for i in range(TWIST):
         size = max(size, abs(twist[i]))
@@ -369,7 +370,7 @@ def cut_twist(
             linear = point_rate(jacobian, j, point)
             angular = triple(Twist.of(jacobian[j]).angular)
             rate = linear[i % 3] if i < 3 else angular[i % 3]
-            total += abs(moves[j] * rate) * min(limits.velocity[j], FASTEST)
+            total += abs(support[j] * rate) * min(limits.velocity[j], FASTEST)
         most = max(most, total)
     if size <= CUT * most:
         return False
@@ -399,27 +400,27 @@ def falls_short(qp: QPViews, twist: Vector) -> bool:
     return missing > SHORT * SHORT * square
 
 
-def under_way(sent: Matrix, delay: float) -> tuple[Vector, Matrix]:
-    """Compute the way of the commands of the last `delay` seconds.
+def pending_displacement(sent: Matrix, delay: float) -> tuple[Vector, Matrix]:
+    """Compute the displacement by the commands of the last `delay` seconds.
 
     Args:
         sent: Periods [s] and commands [rad/s], the last first, (k, 1 + n).
         delay: The time [s].
 
     Returns:
-        The way, (n,) [rad], and the rows that it needs.
+        The displacement, (n,) [rad], and the rows that it needs.
     """
     periods = sent[:, 0]
     ages = np.cumsum(periods) - periods
-    way: Vector = np.clip(delay - ages, 0.0, periods) @ sent[:, 1:]
-    return way, sent[ages < delay]
+    displacement: Vector = np.clip(delay - ages, 0.0, periods) @ sent[:, 1:]
+    return displacement, sent[ages < delay]
 
 
 def _words_of(flags: Flags) -> tuple[str, ...]:
     """Return the reasons that the flags of a state hold, in words."""
     numbers: Any = flags.tolist()
     _, reason, _, resynchronised, is_cut = map(int, numbers)
-    words = (REASONS[reason], TAKEN_OVER * resynchronised, IS_CUT * is_cut)
+    words = (REASONS[reason], RESYNCHRONISED * resynchronised, IS_CUT * is_cut)
     return tuple(filter(None, words))
 
 
@@ -441,7 +442,7 @@ class ShieldCommand(NamedTuple):
 
     Attributes:
         dq: Joint velocity [rad/s], (n,), within the limits.
-        wish: Joint velocity that was requested [rad/s], (n,); None: positions, or a twist.
+        request: Joint velocity that was requested [rad/s], (n,); None: positions, or a twist.
         reasons: Reasons for another command than the given request.
         command: The controller's command, with the program that was answered.
         shield: The shield.
@@ -450,7 +451,7 @@ class ShieldCommand(NamedTuple):
     """
 
     dq: Vector
-    wish: Vector | None
+    request: Vector | None
     reasons: tuple[str, ...]
     command: Command
     shield: Shield
@@ -469,12 +470,12 @@ class ShieldCommand(NamedTuple):
         For positions, from the quickest approach to them that the joints' own limits allow; for a
         twist, whether more than `SHORT` of it is missing, or a limit holds.
         """
-        if self.wish is None or self.reasons:
+        if self.request is None or self.reasons:
             return bool({*self._why} - {*self.command.conditions})
-        return bool((self.dq != self.wish).any())
+        return bool((self.dq != self.request).any())
 
     @property
-    def limits(self) -> tuple[str, ...]:
+    def active_limits(self) -> tuple[str, ...]:
         """Name the reasons, bounds and rows that keep the command from the request."""
         return self._why if self.clipped else ()
 
@@ -482,13 +483,13 @@ class ShieldCommand(NamedTuple):
     def _why(self) -> tuple[str, ...]:
         """Reasons, a posture that is too singular for the twist, bounds and rows, in words."""
         singular = (SINGULAR,) * self._is_singular
-        return tuple(dict.fromkeys((*self.reasons, *singular, *self.command.against)))
+        return tuple(dict.fromkeys((*self.reasons, *singular, *self.command.active_limits)))
 
     @property
     def _is_singular(self) -> bool:
         """Test whether the damping alone keeps a twist from being fulfilled."""
         v = self.command.targets[0, 12:]
-        if self.wish is not None or not v.any():
+        if self.request is not None or not v.any():
             return False
         qp = self.command.qp
         return bool(falls_short(qp_views(qp.data, *qp.sizes), v))
@@ -498,14 +499,14 @@ class ShieldCommand(NamedTuple):
         """Time of the motion to rest from the command [s]."""
         shield = self.shield
         cubic = bool(np.isfinite(shield.robot.dddq_max).any())
-        last = self.command.past[1]
+        last = self.command.motion_state[1]
         periods = least_periods(self.dq, last, shield.motion, self.period, cubic, False, 0.0)
         return self.period * max(periods, float(self.dq.any()))
 
     @property
     def margin(self) -> Margin:
         """Distances at the joint positions that the command starts from."""
-        q = self.command.past[0]
+        q = self.command.motion_state[0]
         lower, upper = self.shield.robot.limits[:2]
         distance = math.inf
         if (avoidance := avoidance_of(self.shield)) is not None:
@@ -522,7 +523,7 @@ class Memory(NamedTuple):
         frame: Its frame.
         t: Time [s].
         period: Period that counts for the last command [s].
-        sent: Periods [s] and commands [rad/s] that are under way, the last first, (k, 1 + n).
+        sent: Periods [s] and commands [rad/s] that are pending, the last first, (k, 1 + n).
     """
 
     kind: str
@@ -570,8 +571,8 @@ class Shield:
             distance: Least distance from them [m].
             timeout: Time for which a request counts [s]; inf: until the next one.
             tracking_error: Difference of measured and commanded positions [rad] above which the
-                measured ones are taken over. It has to exceed the largest velocity times the
-                uncertainty of the delay, and twice the noise.
+                shield is resynchronised to the measured ones. It has to exceed the largest velocity
+                times the uncertainty of the delay, and twice the noise.
             delay: Time by which the arm is behind its commands [s]: from a step to the reading of
                 the encoders at which its command begins to show, less one period.
             longest_period: Longest control period where periods vary [s]; None: they do not.
@@ -619,7 +620,7 @@ class Shield:
         return self.settings.delay
 
     def reset(self) -> None:
-        """Forget requests, a halt and the commands: the arm stands where it is measured next."""
+        """Forget requests, a halt and the commands: the arm is where it is measured next."""
         n = self.robot.dof
         with self._lock:
             self._kept.rest()
@@ -678,8 +679,8 @@ class Shield:
                 several requests, or a period is wrong.
             NotFoundError: The robot has no frame of that name.
         """
-        wishes = {"dq": dq, "twist": twist, "position": position}
-        given = {kind: value for kind, value in wishes.items() if value is not None}
+        requests = {"dq": dq, "twist": twist, "position": position}
+        given = {kind: value for kind, value in requests.items() if value is not None}
         with self._lock:
             positions, request, flags = self._state
             kept = ShieldState(positions.copy(), request.copy(), flags.copy())
@@ -715,27 +716,27 @@ class Shield:
             settings = settings.copy()
             settings.period = period
         if settings.delay > 0.0:
-            way, sent = under_way(sent, settings.delay)
-            measured = measured + way
+            displacement, sent = pending_displacement(sent, settings.delay)
+            measured = measured + displacement
         if self.longest_period is not None and dt is None and elapsed is None:
             # Nobody says for how long the last command was held.
             copied(self._state.positions, measured)
         for kind in given:
             seen = frame or self.robot.tip if kind == "twist" else JOINTS
         asked = (kind, seen)
-        held = self._take(measured, given, settings)
-        positions, wish, flags = self._state
+        repeated = self._take(measured, given, settings)
+        positions, request, flags = self._state
         if flags.reason:
             kind, seen = "dq", JOINTS
         controller = self.controller(seen)
-        target = self._target(controller, kind, held, periods)
+        target = self._target(controller, kind, repeated, periods)
         command = controller.step(positions, t, target, dt=dt, elapsed=elapsed)
         # A request that can be had again is had at once.
         self._kept.motion.yields = False
-        velocity = wish[: positions.size].copy() if kind == "dq" else None
+        velocity = request[: positions.size].copy() if kind == "dq" else None
         reasons = (*_words_of(flags), *command.reasons)
         decision = ShieldCommand(command.dq, velocity, reasons, command, self, t, periods.dt)
-        hold = controller.control_step.dt
+        hold = controller.control_layout.dt
         positions += hold * command.dq
         if settings.delay > 0.0:
             sent = np.vstack([np.append(hold, command.dq), sent])
@@ -754,13 +755,14 @@ class Shield:
     def _take(self, q: Vector, given: dict[str, ArrayLike], settings: ShieldSettings) -> bool:
         """Take positions and a request over; return whether it is that of the last step."""
         if len(given) > 1:
-            raise InvalidInputError(" and ".join(given), "are several wishes")
-        wish = self._state.request.copy()
+            problem = "pass exactly one of dq, twist, position"
+            raise InvalidInputError(" and ".join(given), problem)
+        request = self._state.request.copy()
         for kind, value in given.items():
             size = TWIST if kind == "twist" else q.size
-            wish[:size] = checks.array(kind, value, (size,))
-        held: bool = take_request(q, wish, bool(given), self._state, settings)
-        return held
+            request[:size] = checks.array(kind, value, (size,))
+        repeated: bool = take_request(q, request, bool(given), self._state, settings)
+        return repeated
 
     def controller(self, frame: str = JOINTS) -> Controller:
         """Return the controller for requests of a frame, or of all joints; they share one state."""
@@ -785,7 +787,7 @@ class Shield:
         ]
 
     def _target(
-        self, controller: Controller, kind: str, held: bool, periods: Periods
+        self, controller: Controller, kind: str, repeated: bool, periods: Periods
     ) -> dict[str, Target]:
         """Return what a step is to answer, in the form of its targets."""
         program = controller.program
@@ -800,13 +802,13 @@ class Shield:
         motion = self._kept.motion
         reaches = kind == "position"
         come_nearer(
-            self._state, motion.last, motion.before, self.motion, periods, reaches, held, aim
+            self._state, motion.last, motion.before, self.motion, periods, reaches, repeated, aim
         )
         targets = np.zeros((len(frames), TARGET_SIZE))
         targets.reshape(-1)[: aim.size] = aim
         return {name: Target.from_data(targets[i]) for i, name in enumerate(frames)}
 
-    def _cut_twist(self, program: StepProgram) -> Vector:
+    def _cut_twist(self, program: ProgramLayout) -> Vector:
         """Return the twist that is requested, (6,), cut where no joints can do it."""
         v = self._state.request[:TWIST].copy()
         self._state.flags.is_cut = False
@@ -814,8 +816,8 @@ class Shield:
             own = program.kinematics
             own.update(self._state.positions)
             at = self.robot.frame_id(program.target_frames[0])
-            moves = self.robot.moves[at]
+            support = self.robot.support[at]
             placement = Placement.of(own.placements[at])
-            cuts = cut_twist(v, own.jacobian, placement, moves, self.motion)
+            cuts = cut_twist(v, own.jacobian, placement, support, self.motion)
             self._state.flags.is_cut = cuts
         return v

@@ -32,8 +32,8 @@ from iiwa_dnn.control.shield import (
     IS_CUT,
     JOINTS,
     REASONS,
+    RESYNCHRONISED,
     SINGULAR,
-    TAKEN_OVER,
     TWIST,
     Margin,
     Reason,
@@ -41,7 +41,7 @@ from iiwa_dnn.control.shield import (
 )
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.naming import describe, in_the_way
+from iiwa_dnn.naming import active_limits, describe
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics_kernel import model_tables
@@ -52,7 +52,7 @@ from iiwa_dnn.schemes.scene import Body, scene_views
 BLOCK = 64
 """Arms that a thread takes at a time."""
 
-WORDS = (*REASONS, "q not finite", TAKEN_OVER, IS_CUT, EXCEEDED, SINGULAR)
+WORDS = (*REASONS, "q not finite", RESYNCHRONISED, IS_CUT, EXCEEDED, SINGULAR)
 """Reasons in words, by their codes."""
 
 
@@ -74,10 +74,10 @@ def arm_plan(shield: Shield, frame: str) -> tuple[ArmPlan, Vector]:
     sizes = [
         robot.dof,
         max(robot.dof, TWIST),
-        joint.control_step.width,
+        joint.control_layout.width,
         joint.solver.state_for(programs[0].sizes).size,
-        own.step.relaxed.size,
-        other.step.relaxed.size,
+        own.step.fallback.size,
+        other.step.fallback.size,
         places.size,
         n + m,
     ]
@@ -101,10 +101,10 @@ def arm_plan(shield: Shield, frame: str) -> tuple[ArmPlan, Vector]:
 
 def _arm_program(controller: Controller) -> ArmProgram:
     """Lay the step of one controller of a shield out."""
-    step = controller.control_step
+    step = controller.control_layout
     parts = step.program.parts
     rates = [k for k, part in enumerate(parts) if isinstance(part, MotionLimits)]
-    return ArmProgram(step.plan, step.layout.width, *(rates or [-1]))
+    return ArmProgram(step.plan, step.log_layout.width, *(rates or [-1]))
 
 
 def _places(shield: Shield) -> Vector:
@@ -237,8 +237,8 @@ class Shields:
             out: A command of these shields whose arrays are overwritten; None: new ones are made.
 
         Raises:
-            InvalidInputError: An array has a wrong shape, there are several requests, or a period
-                is wrong; no arm has then taken a step.
+            InvalidInputError: An array has a wrong shape, there pass exactly one of dq, twist,
+                position, or a period is wrong; no arm has then taken a step.
         """
         shape = (self.count, self.robot.dof)
         kinds = {Request.VELOCITY: dq, Request.TWIST: twist, Request.POSITION: position}
@@ -346,18 +346,18 @@ class Shields:
         return memory, ArmState.of(memory, *self._plan.sizes.tolist())
 
     def active_limits(self, i: int) -> tuple[str, ...]:
-        """Name what keeps the last command of arm i from its request, as `ShieldCommand.limits`."""
+        """Name the active limits of arm i's last command, as `ShieldCommand.active_limits`."""
         with self._lock:
             _, own = self._arm(i)
             if not own.is_clipped:
                 return ()
             reasons = _reasons(own)
-            step = self._shield.controller(JOINTS).control_step
+            step = self._shield.controller(JOINTS).control_layout
             program = step.program
-            names = step.layout.names
+            names = step.log_layout.names
             n = self.robot.dof
             codes = own.limiting[:n].astype(int)
-            words = map(describe, in_the_way(names.settings, codes, own.limiting[n:]))
+            words = map(describe, active_limits(names.settings, codes, own.limiting[n:]))
             motion = MotionState.of(own.motion, n, len(program.pairs))
             return (*reasons, *words, *names.conditions(motion.q, motion.least))
 

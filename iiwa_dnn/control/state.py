@@ -43,7 +43,7 @@ class ControllerState:
             controller returns its command.
         next_numbers: Those after the last command that was computed.
         dt: Control period of the last step [s]; 0 before the first.
-        slowed: Share of the last period by which the reference's clock fell behind in it, and
+        slowed: Fraction of the last period by which the reference's clock fell behind in it, and
         booked: that period [s], where periods vary.
         halted: Whether the arm brakes from now on; each step writes it into its state.
         begun: Whether the start was looked at, and warned of.
@@ -86,7 +86,7 @@ class ControllerState:
         return MotionState.of(self.next_numbers, *self.sizes)
 
     def watch(self, pairs: Any) -> None:
-        """Make room for the distances of all pairs; other pairs begin at the next step.
+        """Allocate the distances of all pairs; other pairs begin at the next step.
 
         The same pairs keep theirs: an obstacle that is elsewhere in a new scheme has moved.
         """

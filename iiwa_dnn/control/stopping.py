@@ -1,4 +1,4 @@
-r"""Motions to a wanted velocity on a straight line, and the way to rest that a command leaves.
+r"""Motions to a wanted velocity on a straight line, and the stopping path that a command leaves.
 
 From the velocities :math:`v_0` of now and :math:`v_{-1}` of the period before, all joints reach the
 wanted velocity w together, in M periods. With :math:`x = v - w` and :math:`u = i / M`,
@@ -10,23 +10,23 @@ wanted velocity w together, in M periods. With :math:`x = v - w` and :math:`u = 
 where a jerk is limited, with b such that :math:`x_{-1}` is on the curve too, and
 :math:`x_i = x_0 (1 - u)` where it is not. The second difference of a cubic is its second derivative
 in the middle, so the jerk is linear in u and largest at an end. M is the least number of periods
-that the limits allow, or with a jerk limit up to about an eighth more; a motion that is gone along
-keeps its M, and stays on the same curve.
+that the limits allow, or with a jerk limit up to about an eighth more; while a motion is executed,
+its remaining length falls by one each period, and it stays on the same curve.
 
 Where no acceleration is limited, it is one period at the command, then rest.
 
 A command is **stoppable** if the motion from it to rest keeps all limits of the joints, and all
 distances: a pair at the distance d, with the gradient g of the distance of a link's end and the
-joints' way :math:`\Delta q`, still has at least
+joints' displacement :math:`\Delta q`, still has at least
 
 .. math::  d + g \cdot \Delta q - \tfrac12 B - v_o T
 
 by inequality (1) of docs/theory_braking.md. Along the motion :math:`g \cdot \Delta q` has its least
 value at rest, or where the sum of its terms changes sign. Up to any time the joints have gone at
-most a part :math:`\lambda` of their ways, that of the curve of :math:`x_0`, and B is at most
-:math:`\lambda^2 B`. Of an end that sets off away from the other body, with
-:math:`x_0 \ge \max(b / 3 M, 0)`, the way up to then is at least :math:`\lambda^2` of its whole
-one, where that is away too: the difference is then least at an end of the motion.
+most a part :math:`\lambda` of their displacements, that of the curve of :math:`x_0`, and B is at
+most :math:`\lambda^2 B`. Of an end that sets off away from the other body, with
+:math:`x_0 \ge \max(b / 3 M, 0)`, the displacement up to then is at least :math:`\lambda^2` of its
+whole one, where that is away too: the difference is then least at an end of the motion.
 """
 
 import math
@@ -35,7 +35,7 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.relaxed import Yielding
+from iiwa_dnn.control.fallback import Yielding
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple
 from iiwa_dnn.robot.kinematics import Placement
@@ -71,21 +71,21 @@ class Motion(NamedTuple):
 
     Attributes:
         first: Velocities at its start [rad/s], (n,).
-        bend: b of the cubic [rad/s], (n,); zero for straight lines in time.
+        coefficient: b of the cubic [rad/s], (n,); zero for straight lines in time.
         periods: M.
         cubic: Whether the velocities are cubic in time.
         uneven: `UNEVEN` where periods vary, else 0.
     """
 
     first: Vector
-    bend: Vector
+    coefficient: Vector
     periods: float
     cubic: bool
     uneven: float
 
 
 @compiled
-def bend_of(x: float, before: float, periods: float, vary: bool) -> float:
+def cubic_coefficient(x: float, before: float, periods: float, vary: bool) -> float:
     """Compute b of the cubic through x now and x before, which ends after so many periods.
 
     Where periods vary, they may be so short that x before is on its tangent.
@@ -110,7 +110,7 @@ def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float
     """Compute the velocity after the first of so many periods on the way to zero [rad/s]."""
     if periods <= 1.0:  # a part of one where the control period has changed
         return 0.0
-    b = bend_of(x, before, periods, False) if cubic else 0.0
+    b = cubic_coefficient(x, before, periods, False) if cubic else 0.0
     return velocity_at(x, b, 1.0 / periods, cubic)
 
 
@@ -167,7 +167,7 @@ def within_rates(
     """Test whether a cubic keeps its limits per period of acceleration and jerk [rad/s]."""
     if periods < 0.5:
         return x == 0.0 and before == 0.0
-    b = bend_of(x, before, periods, vary)
+    b = cubic_coefficient(x, before, periods, vary)
     u = 1.0 / periods
     # The first jerk, that of the last period, and that with which the joint is at rest for good.
     largest = max(abs(6.0 * x + 4.0 * b), abs(x * (6.0 - 12.0 * u) + b * (2.0 - 6.0 * u)))
@@ -184,7 +184,7 @@ def within_rates(
 
 
 @compiled
-def way_along(motion: Motion, x: float, b: float, count: float, dt: float) -> float:
+def displacement_after(motion: Motion, x: float, b: float, count: float, dt: float) -> float:
     """Sum the velocities of a motion with x and b over its first `count` periods of dt [s]."""
     M = max(motion.periods, 1.0)
     first = 0.5 * count * (count - 1.0) / M
@@ -196,13 +196,13 @@ def way_along(motion: Motion, x: float, b: float, count: float, dt: float) -> fl
 
 
 @compiled
-def least_way(motion: Motion, x: float, b: float, dt: float) -> float:
-    """Compute the least way along a motion with x and b; at its start the way is zero."""
+def least_displacement(motion: Motion, x: float, b: float, dt: float) -> float:
+    """Compute the least displacement along a motion with x and b, at most 0, as at its start."""
     M = motion.periods
-    least = min(0.0, way_along(motion, x, b, M, dt))
+    least = min(0.0, displacement_after(motion, x, b, M, dt))
     turn = 2.0 * x + b
     if motion.cubic and x * turn < 0.0:
-        least = min(least, way_along(motion, x, b, min(math.ceil(-x / turn * M), M), dt))
+        least = min(least, displacement_after(motion, x, b, min(math.ceil(-x / turn * M), M), dt))
     return least
 
 
@@ -211,9 +211,9 @@ def keeps_joint_limits(motion: Motion, q: Vector, limits: MotionNumbers, dt: flo
     """Test whether joints at q (n,) [rad] keep position and velocity limits on a motion to rest."""
     for i in range(q.size):
         x = motion.first[i]
-        b = motion.bend[i]
-        top = q[i] - least_way(motion, -x, -b, dt)
-        bottom = q[i] + least_way(motion, x, b, dt)
+        b = motion.coefficient[i]
+        top = q[i] - least_displacement(motion, -x, -b, dt)
+        bottom = q[i] + least_displacement(motion, x, b, dt)
         # A joint that is outside already may come back.
         if top > max(limits.upper[i], q[i]) or bottom < min(limits.lower[i], q[i]):
             return False
@@ -222,19 +222,21 @@ def keeps_joint_limits(motion: Motion, q: Vector, limits: MotionNumbers, dt: flo
         fastest = limits.velocity[i] * (1.0 + SLACK)
         if 0.0 < u < 1.0 and abs(velocity_at(x, b, u, True)) > fastest:
             return False
-        if limits.lag[i] > 0.0 and not keeps_ramp(motion, q, limits, dt, i):
+        if limits.lag[i] > 0.0 and not keeps_varying_limit(motion, q, limits, dt, i):
             return False
     return True
 
 
 @compiled
-def keeps_ramp(motion: Motion, q: Vector, limits: MotionNumbers, dt: float, i: int) -> bool:
+def keeps_varying_limit(
+    motion: Motion, q: Vector, limits: MotionNumbers, dt: float, i: int
+) -> bool:
     """Test whether joint i of those at q (n,) [rad] keeps its position-dependent velocity limit."""
     at = q[i]
     for k in range(int(motion.periods)):
-        x = velocity_at(motion.first[i], motion.bend[i], k / motion.periods, motion.cubic)
+        x = velocity_at(motion.first[i], motion.coefficient[i], k / motion.periods, motion.cubic)
         left = limits.upper[i] - at if x > 0.0 else at - limits.lower[i]
-        needed = x * x / (2.0 * limits.ramp[i]) + abs(x) * limits.lag[i]
+        needed = x * x / (2.0 * limits.slope[i]) + abs(x) * limits.lag[i]
         if needed > max(left, 0.0) * (1.0 + SLACK):
             return False
         at += dt * x
@@ -264,7 +266,9 @@ def keeps_distances(
     M = motion.periods
     travel = np.empty(n)
     for i in range(n):
-        travel[i] = way_along(motion, abs(motion.first[i]), abs(motion.bend[i]), M, dt)
+        travel[i] = displacement_after(
+            motion, abs(motion.first[i]), abs(motion.coefficient[i]), M, dt
+        )
     for k in range(len(scene.pairs)):
         contact = contact_of(scene, k, placed)
         pair = Pair.of(scene.pairs[k])
@@ -277,18 +281,18 @@ def keeps_distances(
         if left - most >= kept:
             continue
         change = np.inf
-        lacking = 0.5 * second_order(scene.moves, scene.radii, k, travel)
+        remainder = 0.5 * second_order(scene.support, scene.radii, k, travel)
         ends = ends_of(scene, placed, pair.second)
         for at in range(2):
             end = ends[at]
             if pair.still == at + 1:
                 continue
-            x, bend = _along(motion, arrays.jacobian, scene.moves, k, end, contact.normal)
-            way = way_along(motion, x, bend, M, dt)
-            if x < max(bend / (3.0 * M), 0.0):
-                way = least_way(motion, x, bend, dt)
-            way -= motion.uneven * dt * abs(bend)
-            change = min(change, height_of(end, contact) + min(way - lacking, 0.0))
+            x, coefficient = _along(motion, arrays.jacobian, scene.support, k, end, contact.normal)
+            displacement = displacement_after(motion, x, coefficient, M, dt)
+            if x < max(coefficient / (3.0 * M), 0.0):
+                displacement = least_displacement(motion, x, coefficient, dt)
+            displacement -= motion.uneven * dt * abs(coefficient)
+            change = min(change, height_of(end, contact) + min(displacement - remainder, 0.0))
         if left + change < min(kept, left):
             return False
     return True
@@ -296,24 +300,26 @@ def keeps_distances(
 
 @compiled
 def _along(
-    motion: Motion, jacobian: Matrix, moves: Matrix, k: int, point: Triple, normal: Triple
+    motion: Motion, jacobian: Matrix, support: Matrix, k: int, point: Triple, normal: Triple
 ) -> tuple[float, float]:
     """Compute first velocity and b along a normal (3,) of a point (3,) of pair k's second body."""
     x = 0.0
     b = 0.0
     for j in range(motion.first.size):
-        if moves[k, j] != 0.0:
-            rate = moves[k, j] * rate_along(jacobian, j, point, normal)
+        if support[k, j] != 0.0:
+            rate = support[k, j] * rate_along(jacobian, j, point, normal)
             x += rate * motion.first[j]
-            b += rate * motion.bend[j]
+            b += rate * motion.coefficient[j]
     return x, b
 
 
 @compiled
-def _write_bends(x: Vector, before: Vector, periods: float, vary: bool, bend: Vector) -> None:
+def _write_coefficients(
+    x: Vector, before: Vector, periods: float, vary: bool, coefficient: Vector
+) -> None:
     """Write b (n,) of the cubics through x (n,) now and before, which end after so many periods."""
     for i in range(x.size):
-        bend[i] = bend_of(x[i], before[i], periods, vary)
+        coefficient[i] = cubic_coefficient(x[i], before[i], periods, vary)
 
 
 @compiled
@@ -339,21 +345,21 @@ def stopping_time(
     dt = yielding.periods.longest
     ratio = dt / yielding.periods.dt
     before = last.copy()
-    bend = np.zeros(dq.size)
+    coefficient = np.zeros(dq.size)
     if yielding.periods.vary:
         for i in range(dq.size):
             before[i] = dq[i] - ratio * (dq[i] - before[i])
-    moves = limits.lower.size > 0
+    support = limits.lower.size > 0
     vary = yielding.periods.vary
-    periods = least_periods(dq, before, limits, dt, yielding.cubic, vary, 0.0) if moves else 1.0
+    periods = least_periods(dq, before, limits, dt, yielding.cubic, vary, 0.0) if support else 1.0
     if periods == np.inf:
         return -1.0
     if yielding.cubic and periods > 0.0:
-        _write_bends(dq, before, periods, vary, bend)
+        _write_coefficients(dq, before, periods, vary, coefficient)
     # Where periods vary, the first may be the longest and the others as short as can be.
-    motion = Motion(dq, bend, periods + vary, yielding.cubic, UNEVEN if vary else 0.0)
-    dt = dt / yielding.periods.share
-    if moves and not keeps_joint_limits(motion, q, limits, dt):
+    motion = Motion(dq, coefficient, periods + vary, yielding.cubic, UNEVEN if vary else 0.0)
+    dt = dt / yielding.periods.fraction
+    if support and not keeps_joint_limits(motion, q, limits, dt):
         return -1.0
     for k in range(len(yielding.scenes)):
         scene = block_constants(arrays, yielding.scenes[k])

@@ -1,16 +1,16 @@
 """Answers of steps without a solution, in one compiled call: limits hold, the task yields.
 
-`iiwa_dnn.control.policies` says what each policy means. The step's own program came first, unless
+`iiwa_dnn.control.policies` says what each policy means. The nominal program came first, unless
 the task yielded at the last step; then
 
 1. the scaling factor of the task is computed, by position and velocity limits alone. If it is 1,
    the task as it is; with ``slow``, along a path, the scaled program;
-2. else the softened program;
+2. else the relaxed program;
 3. else the next command of a motion to rest.
 
 With acceleration or jerk limits the command is a point on the way to the answer of that program,
 within the bounds of the step; where collisions are avoided too, one from which the arm can stop
-(`iiwa_dnn.control.stopping`), in the end the next command of the braking motion in hand.
+(`iiwa_dnn.control.stopping`), in the end the next command of the stored stopping motion.
 """
 
 import math
@@ -18,21 +18,21 @@ import math
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.command import NOT_SETTLED, SOLVED, StepLog, note_command
-from iiwa_dnn.control.policies import Action, ProgramKind
-from iiwa_dnn.control.relaxed import (
-    MOST_SYSTEMS,
+from iiwa_dnn.control.command import NOT_CONVERGED, SOLVED, StepLog, note_command
+from iiwa_dnn.control.fallback import (
+    MAX_LINEAR_SOLVES,
     REACHED,
     Yielding,
     attained,
     largest_entry,
     largest_factor,
     nearest_within,
-    note_blocking,
+    note_limiting,
+    relax_task,
     scale_task,
-    settled,
-    soften_task,
+    solve_warm,
 )
+from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.stopping import (
     LONGEST,
@@ -50,7 +50,7 @@ from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.limits import MotionNumbers, braking, constant_periods
 from iiwa_dnn.schemes.program import (
     ProgramArrays,
-    StepProgram,
+    ProgramLayout,
     block_constants,
     program_views,
 )
@@ -60,10 +60,10 @@ NONE, SLOW, RELAX, STOP, _ = map(int, Action)
 BRAKE = -1
 """No policy: the arm goes to rest."""
 
-OWN, SCALED, SOFTENED, HELD, STOPPED = map(int, ProgramKind)
+NOMINAL, SCALED, RELAXED, RATE_LIMITED, STOPPED = map(int, ProgramKind)
 
 CREEP = 0.1
-"""Scaling factor below which the task is softened, and share of a period by which the clock then
+"""Scaling factor below which the task is relaxed, and fraction of a period by which the clock then
 advances: an arm that rests in a singular or unreachable pose does not hold its target there."""
 
 SINGULAR = 0.05
@@ -75,18 +75,19 @@ POSITION_GAIN = 20.0
 
 HALVINGS = 4
 HALVINGS_NEAR = 12
-"""Shares of the way from the braking motion in hand to the wanted command that are tried, each half
+"""Fractions of the way from the stored stopping motion to the wanted command that are tried, each
+half
 of the one before: where a pair began nearer, there is but a micrometre for the motion's curve."""
 
 
-def make_yielding(program: StepProgram, tol: float, dt: float, alike: bool) -> Yielding:
+def make_yielding(program: ProgramLayout, tol: float, dt: float, alike: bool) -> Yielding:
     """Prepare for a scheme that is laid out for a robot.
 
     Args:
         program: The scheme.
         tol: Tolerance of the answers.
         dt: Control period [s].
-        alike: Whether the network of the steps is that of the relaxed programs.
+        alike: Whether the network of the steps is that of the fallback programs.
     """
     limits = MotionNumbers.zeros(0)
     if program.rate_limits is not None:
@@ -98,7 +99,7 @@ def make_yielding(program: StepProgram, tol: float, dt: float, alike: bool) -> Y
         weights,
         limits,
         tol,
-        MOST_SYSTEMS,
+        MAX_LINEAR_SOLVES,
         np.array(scenes, dtype=np.int64),
         dt,
         constant_periods(dt),
@@ -115,19 +116,19 @@ def yield_step(
     motion_state: MotionState,
     next_motion_state: MotionState,
     yielding: Yielding,
-    relaxed: Vector,
+    fallback: Vector,
     action: int,
 ) -> int:
     """Answer a step for which the network has no answer, or whose task yielded at the last step.
 
     Args:
-        log: The log, with the step's own program and what it was built at.
+        log: The log, with the nominal program and what it was built at.
         arrays: Arrays of the loop; the kinematics are at the joint positions of the state.
         motion_state: State of the motion.
         next_motion_state: The same for the next step, overwritten but for the last commands and
             the distances that pairs keep.
-        yielding: Weights, limits and settings of the relaxed programs.
-        relaxed: States of the networks of relaxed programs, (`relaxed_size`,), advanced.
+        yielding: Weights, limits and settings of the fallback programs.
+        fallback: States of the networks of fallback programs, (`fallback_size`,), advanced.
         action: Action that the policy asks for; `BRAKE`: the arm goes to rest, whatever has a
             solution.
 
@@ -136,38 +137,38 @@ def yield_step(
     """
     qp = program_views(log.program, arrays.sizes)
     data = log.program.copy()
-    own = program_views(data, arrays.sizes)
+    nominal = program_views(data, arrays.sizes)
     kind = STOPPED
     factor = 0.0
     rest = 0.0
     if action != BRAKE:
         _widen_bounds(qp, yielding.limits, motion_state.q)
-        found, factor = _answer_relaxed(log, qp, yielding, relaxed, action)
+        found, factor = _answer_fallback(log, qp, yielding, fallback, action)
         kind = int(found)
     x = log.point[: qp.q.size].copy()
-    limits = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, own.lb, own.ub)
+    limits = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, nominal.lb, nominal.ub)
     if kind != STOPPED:
-        _step(limits, motion_state, next_motion_state, yielding, log.stats, x)
+        _approach_answer(limits, motion_state, next_motion_state, yielding, log.stats, x)
         rest = _make_stoppable(limits, arrays, motion_state, next_motion_state, yielding, log, x)
         missing = _note_missing(log, x[: arrays.sizes.joints])
         primal, dual, gap = point_residuals(limits, log.point)
         if missing > 0:
-            kind = STOPPED if action == STOP else HELD
+            kind = STOPPED if action == STOP else RATE_LIMITED
         elif factor == 1.0 and within(primal, dual, gap, yielding.tolerance):
-            kind = OWN
-            copied(qp.lb, own.lb)
-            copied(qp.ub, own.ub)
+            kind = NOMINAL
+            copied(qp.lb, nominal.lb)
+            copied(qp.ub, nominal.ub)
     if kind == STOPPED:
         copied(log.program, data)
-        rest = _brake(own, arrays, motion_state, yielding, log, x)
-        _go_along(motion_state, next_motion_state)
+        rest = _brake(nominal, arrays, motion_state, yielding, log, x)
+        _keep_verified_distances(motion_state, next_motion_state)
         log.point[:] = 0.0
         copied(log.point, x)
     log.stats.primal, log.stats.dual, log.stats.gap = point_residuals(qp, log.point)
-    taken = _note_decision(log, own, yielding, x, kind, factor, action)
+    taken = _note_decision(log, nominal, yielding, x, kind, factor, action)
     next_motion_state.stopping_periods = rest
     next_motion_state.path_lag += yielding.dt * (1.0 - log.fraction)
-    next_motion_state.yields = kind != OWN and action != BRAKE
+    next_motion_state.yields = kind != NOMINAL and action != BRAKE
     note_command(log, next_motion_state, x, yielding.dt)
     return taken
 
@@ -175,7 +176,7 @@ def yield_step(
 @compiled
 def _note_decision(
     log: StepLog,
-    own: QPViews,
+    nominal: QPViews,
     yielding: Yielding,
     x: Vector,
     kind: int,
@@ -186,7 +187,7 @@ def _note_decision(
 
     Args:
         log: The step's log.
-        own: The step's own program.
+        nominal: The nominal program.
         yielding: Weights of its task rows, and whose the network is.
         x: The command, (n,).
         kind: Kind of the program that was answered.
@@ -202,17 +203,17 @@ def _note_decision(
         taken = NONE if factor == 1.0 else SLOW
         fraction = factor
     elif kind != STOPPED:
-        taken = action if kind == HELD or _is_path(log.targets) else RELAX
+        taken = action if kind == RATE_LIMITED or _is_path(log.targets) else RELAX
         fraction = 1.0
         if taken == SLOW:
-            fraction = max(attained(own.b, own.A, yielding.weights, x), CREEP)
+            fraction = max(attained(nominal.b, nominal.A, yielding.weights, x), CREEP)
     log.fraction = fraction
     log.kind = kind
     if taken == STOP:
-        log.status = max(log.status, NOT_SETTLED)
-    elif kind != OWN or yielding.alike:
+        log.status = max(log.status, NOT_CONVERGED)
+    elif kind != NOMINAL or yielding.alike:
         log.status = SOLVED
-    elif log.status >= NOT_SETTLED:  # the answer is not that of the network that failed
+    elif log.status >= NOT_CONVERGED:  # the answer is not that of the network that failed
         log.stats.primal = np.inf
     return taken
 
@@ -227,10 +228,10 @@ def _widen_bounds(qp: QPViews, limits: MotionNumbers, q: Vector) -> None:
 
 
 @compiled
-def _answer_relaxed(
-    log: StepLog, qp: QPViews, yielding: Yielding, relaxed: Vector, action: int
+def _answer_fallback(
+    log: StepLog, qp: QPViews, yielding: Yielding, fallback: Vector, action: int
 ) -> tuple[float, float]:
-    """Turn a step's program into the first relaxed one that has a solution, and answer it.
+    """Turn a step's program into the first fallback program that has a solution, and answer it.
 
     Returns:
         Its kind, and the scaling factor of the task in it.
@@ -239,13 +240,13 @@ def _answer_relaxed(
     m = qp.h.size
     point = np.empty(2 * n + 2 + m + qp.b.size)
     size = 3 * n + 3 + m + qp.b.size
-    factor = largest_factor(qp, yielding, relaxed[:size], point, log.stats, False)
-    note_blocking(point, n, m, 1, log.blocking)
+    factor = largest_factor(qp, yielding, fallback[:size], point, log.stats, False)
+    note_limiting(point, n, m, 1, log.limiting)
     follows = action == SLOW and _is_path(log.targets) and not _races(qp, point[:n])
     if factor == 1.0 or (follows and factor >= CREEP):
         asked = qp.b.copy()
         scale_task(qp, yielding.weights, factor)
-        if _settled(log, qp, yielding, relaxed[size:]):
+        if _solve_fallback(log, qp, yielding, fallback[size:]):
             return SCALED, factor
         copied(qp.b, asked)
     if action == STOP:
@@ -254,16 +255,16 @@ def _answer_relaxed(
     if factor < 0.0:
         retreat = largest_factor(qp, yielding, np.zeros(size), point, log.stats, True)
         retreat = max(retreat, 0.0)  # what cannot be said to retreat may come no nearer
-    soften_task(qp, yielding.weights, retreat)
-    found = _settled(log, qp, yielding, relaxed[size:])
-    note_blocking(log.point, n, m, 0, log.blocking)
-    return SOFTENED if found else STOPPED, 0.0
+    relax_task(qp, yielding.weights, retreat)
+    found = _solve_fallback(log, qp, yielding, fallback[size:])
+    note_limiting(log.point, n, m, 0, log.limiting)
+    return RELAXED if found else STOPPED, 0.0
 
 
 @compiled
-def _settled(log: StepLog, qp: QPViews, yielding: Yielding, state: Vector) -> bool:
-    """Answer a relaxed program from a network's state (size,)."""
-    return settled(qp, yielding.tolerance, yielding.budget, state, log.point, log.stats)
+def _solve_fallback(log: StepLog, qp: QPViews, yielding: Yielding, state: Vector) -> bool:
+    """Answer a fallback program from a network's state (size,)."""
+    return solve_warm(qp, yielding.tolerance, yielding.budget, state, log.point, log.stats)
 
 
 @compiled
@@ -293,13 +294,13 @@ def _note_missing(log: StepLog, dq: Vector) -> int:
     for i in range(dq.size):
         missing = log.point[i] - dq[i]
         if abs(missing) > REACHED:
-            log.blocking[i] = math.copysign(1.0, missing)
+            log.limiting[i] = math.copysign(1.0, missing)
             count += 1
     return count
 
 
 @compiled
-def _step(
+def _approach_answer(
     limits: QPViews,
     motion_state: MotionState,
     next_motion_state: MotionState,
@@ -314,7 +315,7 @@ def _step(
         motion_state: State of the motion.
         next_motion_state: State for the next step: the wanted velocity is noted.
         yielding: Weights, limits and settings.
-        stats: Statistics of the answer, as of `settled`.
+        stats: Statistics of the answer, as of `solve_warm`.
         x: The velocity, overwritten.
     """
     if yielding.limits.velocity.size == 0:
@@ -322,14 +323,14 @@ def _step(
     copied(next_motion_state.wanted, x[: motion_state.q.size])
     # Joints that follow others have to go with them, on a straight line.
     if yielding.coupled:
-        _step_straight(motion_state, yielding, x)
+        _approach_together(motion_state, yielding, x)
     else:
-        _step_towards(limits, motion_state, yielding, x)
+        _approach_each(limits, motion_state, yielding, x)
     nearest_within(limits, x, yielding, stats)
 
 
 @compiled
-def _step_towards(
+def _approach_each(
     limits: QPViews, motion_state: MotionState, yielding: Yielding, x: Vector
 ) -> None:
     """Replace the wanted velocity x (n,) by the next command of joints that hurry to it.
@@ -347,7 +348,7 @@ def _step_towards(
 
 
 @compiled
-def _step_straight(motion_state: MotionState, yielding: Yielding, x: Vector) -> None:
+def _approach_together(motion_state: MotionState, yielding: Yielding, x: Vector) -> None:
     """Replace the wanted velocity x (n,) by the next command on the straight line to it."""
     dof = motion_state.q.size
     now = np.empty(dof)
@@ -372,7 +373,7 @@ def _make_stoppable(
     log: StepLog,
     x: Vector,
 ) -> float:
-    """Bring a command x (n,) nearer to the braking motion in hand until the arm can stop from it.
+    """Blend a command x (n,) towards the stored stopping motion until the arm can stop from it.
 
     Returns:
         Periods until it rests; 0 where none is asked for.
@@ -383,22 +384,22 @@ def _make_stoppable(
         return rest
     wanted = log.point[: x.size].copy()
     if yielding.limits.velocity.size > 0:
-        _step_straight(motion_state, yielding, wanted)
+        _approach_together(motion_state, yielding, wanted)
         nearest_within(limits, wanted, yielding, log.stats)
     brake = np.zeros(x.size)
     left = _brake(limits, arrays, motion_state, yielding, log, brake)
-    share = 1.0
+    fraction = 1.0
     for _ in range(HALVINGS_NEAR if _is_near(arrays, yielding, log.least) else HALVINGS):
         for i in range(dof):
-            x[i] = brake[i] + share * (wanted[i] - brake[i])
+            x[i] = brake[i] + fraction * (wanted[i] - brake[i])
         rest = stopping_time(
             arrays, motion_state.q, motion_state.last, log.least, yielding, x[:dof]
         )
         if rest >= 0.0:
             return rest
-        share *= 0.5
+        fraction *= 0.5
     copied(x, brake)
-    _go_along(motion_state, next_motion_state)
+    _keep_verified_distances(motion_state, next_motion_state)
     return left
 
 
@@ -415,8 +416,8 @@ def _is_near(arrays: ProgramArrays, yielding: Yielding, least: Vector) -> bool:
 
 
 @compiled
-def _go_along(motion_state: MotionState, next_motion_state: MotionState) -> None:
-    """Let pairs keep the distances for which a braking motion in hand was verified."""
+def _keep_verified_distances(motion_state: MotionState, next_motion_state: MotionState) -> None:
+    """Keep the distances of pairs for which the stored stopping motion was verified."""
     if motion_state.stopping_periods > 0.0:
         copied(next_motion_state.least, motion_state.least)
 
@@ -430,13 +431,13 @@ def _brake(
     log: StepLog,
     dq: Vector,
 ) -> float:
-    """Write the next command (n,) of the braking motion in hand, or of the quickest one.
+    """Write the next command (n,) of the stored stopping motion, or of the quickest one.
 
     It is zero without acceleration limits. The quickest one keeps the bounds as far as they do not
     lead away from rest; no row asks it for motion.
 
     Returns:
-        Periods that are left afterwards; 0 if no motion is in hand.
+        Periods that are left afterwards; 0 if no stopping motion is stored.
     """
     dq[:] = 0.0
     if yielding.limits.velocity.size == 0:
@@ -445,7 +446,8 @@ def _brake(
     dof = motion_state.q.size
     dt = yielding.periods.dt
     periods = rest
-    # Where periods vary, the motion in hand takes longer if the next ones ask for more jerk.
+    # Where periods vary, the stored stopping motion takes longer if the next ones ask for more
+    # jerk.
     if rest == 0.0 or (yielding.cubic and yielding.periods.vary):
         periods = least_periods(
             motion_state.last,
@@ -464,7 +466,8 @@ def _brake(
         return max(rest - 1.0, 0.0)
     lb = limits.lb.copy()
     ub = limits.ub.copy()
-    # Where periods vary, the motion in hand is fitted anew: bounds that any period keeps go first.
+    # Where periods vary, the stored stopping motion is fitted anew: bounds that any period keeps go
+    # first.
     for i in range(dq.size if periods < np.inf and rest == 0.0 else 0):
         lb[i] = min(lb[i], max(dq[i], 0.0))
         ub[i] = max(ub[i], min(dq[i], 0.0))
@@ -484,7 +487,7 @@ def _brake(
 
 @compiled
 def _slow_down(motion_state: MotionState, yielding: Yielding, periods: float, dq: Vector) -> None:
-    """Write the next command (n,) on the straight way to rest in so many periods."""
+    """Write the next command (n,) on the straight path to rest in so many periods."""
     dof = motion_state.q.size
     for i in range(dof):
         last = motion_state.last[i]

@@ -19,9 +19,9 @@ from iiwa_dnn.compiling.translator import Function, Translator
 from iiwa_dnn.control import shield as shields
 from iiwa_dnn.control.command import log_of
 from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.cycle import ControlPlan, PathColumn, sample_targets, take_step
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.state import MotionState
-from iiwa_dnn.control.step import PathColumn, StepPlan, sample_targets, take_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.limits import constant_periods
@@ -64,15 +64,15 @@ def wrapped(line: str) -> list[str]:
     indent = " " * (len(line) - len(line.lstrip()) + 4)
     while len(line) > WIDTH:
         depth = 0
-        places = []
+        breaks = []
         for at, letter in enumerate(line[:WIDTH]):
             depth += (letter in "({[") - (letter in ")}]")
             is_operator = re.match(r" (&&|\|\||[-+*/?:]) ", line[at : at + 4])
             if at > WIDTH // 3 and (line[at - 1 : at + 1] in (", ", "= ") or is_operator):
-                places.append((depth, -at))
-        if not places:
+                breaks.append((depth, -at))
+        if not breaks:
             break
-        _, end = min(places)
+        _, end = min(breaks)
         lines.append(line[:-end])
         line = indent + line[-end:].lstrip()
     return [*lines, line]
@@ -87,7 +87,7 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
     Raises:
         InvalidInputError: A part of it is no kernel, or has no translation; it is named.
     """
-    step = controller.control_step
+    step = controller.control_layout
     robot = controller.robot
     program = step.program
     refused: list[object] = [block.part for block in program.refreshed]
@@ -165,22 +165,22 @@ def _shield_texts(code: _Code, shield: shields.Shield) -> dict[str, Any]:
 
 def _lengths(controller: Controller, shielded: bool) -> dict[str, int]:
     """Count the numbers of each field of the struct."""
-    step = controller.control_step
+    step = controller.control_layout
     dof = controller.robot.dof
     n, m, p = step.program.sizes
     return {
-        "log": step.layout.width,
+        "log": step.log_layout.width,
         "motion_state": step.width,
         "next_motion_state": step.width,
         "state": controller.solver.state_for(step.program.sizes).size,
-        "relaxed": step.plan.relaxed.size,
+        "fallback": step.plan.fallback.size,
         "jacobian": 6 * dof,
         "placements": 12 * controller.robot.model.nframes,
         "inertia": dof * dof * step.program.needs_inertia,
         "steps": 1,
         "scratch": 8 * n * (n + m + p + 10),  # twice what the package's kernels take
         "positions": dof * shielded,
-        "wish": dof * shielded,
+        "request": dof * shielded,
         "flags": shields.Flags.width() * shielded,
         "aim": TARGET_SIZE * len(step.program.target_frames) * shielded,
     }
@@ -195,14 +195,14 @@ class _Code:
             "jacobian": "c->jacobian",
             "placements": "c->placements",
             "inertia": "c->inertia" if needs_inertia else "NULL",
-            "relaxed": "c->relaxed",
+            "fallback": "c->fallback",
         }
         self._translator = Translator(_PACKAGE)
         self._parts: list[Function] = []
         self._translator.parts = self._parts
         self._numbers = {0: 0}
 
-    def numbered(self, plan: StepPlan) -> StepPlan:
+    def numbered(self, plan: ControlPlan) -> ControlPlan:
         """Return a plan with the numbers of parts in place of their addresses."""
         blocks = plan.arrays.table.copy()
         blocks[:, Column.ADDRESS] = [*map(self._part, blocks[:, Column.ADDRESS].tolist())]

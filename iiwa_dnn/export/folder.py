@@ -43,13 +43,13 @@ _TARGETS = {
     "input_words": "`target` has 18 numbers for each tracked frame:\nposition [m], rotation row "
     "by row, linear velocity [m/s], angular velocity [rad/s], along the axes\nof the robot's base.",
 }
-_WISHES = {
+_REQUESTS = {
     "call": "shield_step",
-    "input": "wish",
+    "input": "request",
     "numbers": "CONTROLLER_DOF",
     "target": "0.0",
-    "sample": "        wish[0] = 0.1; /* where wishes come from */\n",
-    "input_words": "`wish` is the joint velocity to come near\n[rad/s], NULL for no new one.",
+    "sample": "        request[0] = 0.1; /* where requests come from */\n",
+    "input_words": "`request` is the joint velocity to come near\n[rad/s], NULL for no new one.",
 }
 """What a step takes beside joint positions: the texts about a controller, and about a shield."""
 
@@ -87,7 +87,7 @@ def c99(
     rows = run(twin, start.q, STEPS)
     folder = prepare_folder(folder)
     texts |= _texts(twin, start, rows[0], texts["has_reference"])
-    texts |= _TARGETS if shield is None else _WISHES
+    texts |= _TARGETS if shield is None else _REQUESTS
     counts = {"q": texts["dof"], "target": 18 * texts["frames"], "dq": texts["dof"]}
     names = [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
     write_csv(folder / "vectors.csv", ["t", *names, "action"], rows)
@@ -115,7 +115,7 @@ def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
     rows = []
     for k in range(steps):
         t = k * twin.dt
-        targets = twin.targets(t - twin.delay)
+        targets = twin.targets(t - twin.path_lag)
         command = twin.step(q, t)
         rows.append(np.concatenate([[t], q, targets.ravel(), command.dq, [float(command.action)]]))
         q = q + twin.dt * command.dq

@@ -72,17 +72,17 @@ class ExportedController:
         wanted = checks.finite_array("target", np.ravel(target), (18 * self.frames,))
         return self._command(self._library.controller_step, q, wanted)
 
-    def shield_step(self, q: ArrayLike, wish: ArrayLike | None = None) -> ExportedCommand:
-        """Compute the command of a shield for a joint velocity wished for [rad/s], (n,), or none.
+    def shield_step(self, q: ArrayLike, request: ArrayLike | None = None) -> ExportedCommand:
+        """Compute the command of a shield for a requested joint velocity [rad/s], (n,), or none.
 
         Raises:
-            InvalidInputError: `q` or the wish has a wrong shape, or `q` is not finite.
+            InvalidInputError: `q` or the request has a wrong shape, or `q` is not finite.
         """
-        asked = None if wish is None else checks.array("wish", wish, (self.dof,))
+        asked = None if request is None else checks.array("request", request, (self.dof,))
         return self._command(self._library.shield_step, q, asked)
 
     def shield_halt(self) -> None:
-        """Brake from now on, whatever is wished for."""
+        """Brake from now on, whatever is requested."""
         self._library.shield_halt(self._memory)
 
     def target(self, t: float) -> Vector:
@@ -105,8 +105,8 @@ def load(folder: str | os.PathLike[str], flags: Sequence[str] = FLAGS) -> Export
         FileError: The folder holds no controller, it does not compile, or there is no compiler.
     """
     source = Path(folder) / "controller.c"
-    with tempfile.TemporaryDirectory() as place:
-        library = Path(place) / "controller.so"
+    with tempfile.TemporaryDirectory() as build:
+        library = Path(build) / "controller.so"
         try:
             run_compiler([*flags, "-shared", "-fPIC"], [source], library)
         except (LookupError, RuntimeError) as error:

@@ -28,7 +28,7 @@ class BatchSolution(NamedTuple):
         status: Each solve's end, a value of `Status`; "not finite" where a value is wrong, (k,).
         residuals: Primal residual, dual residual and duality gap, (k, 3); NaN where a value is
             wrong.
-        iterations: Linear systems solved, (k,).
+        iterations: Linear solves, (k,).
     """
 
     x: Matrix

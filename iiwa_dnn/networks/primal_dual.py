@@ -11,8 +11,8 @@ The KKT conditions say that :math:`u = [x; y; z]` solves a linear variational in
 
 H plus its transpose is positive semidefinite, which is all that is needed: with e the curly
 bracket, :math:`\tfrac{d}{dt}\tfrac12\|u - u^*\|^2 \le -\|e\|^2/\rho` for every solution
-:math:`u^*`. So it settles where P is singular too, if there is a solution, and explicit Euler gets
-nearer at every step below :math:`2/\|I + H\|^2`.
+:math:`u^*`. So it converges where P is singular too, if there is a solution, and explicit Euler
+gets nearer at every step below :math:`2/\|I + H\|^2`.
 
 Source: Y. Zhang, S. S. Ge, T. H. Lee, "A unified quadratic-programming-based dynamical system
 approach to joint torque optimization of physically constrained redundant manipulators", IEEE
@@ -48,7 +48,7 @@ from iiwa_dnn.networks.base import Flow, Network, kkt_product
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
-SHARE = 0.5
+FRACTION = 0.5
 """Alpha times the norm of H in the one-layer network; alpha itself where H is zero."""
 
 
@@ -123,7 +123,7 @@ class OneLayerNetwork(PrimalDualNetwork):
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
         """Set a program up."""
         H, c, lower, upper = variational(qp)
-        alpha = SHARE / (float(np.linalg.norm(H, 2)) or 1.0)
+        alpha = FRACTION / (float(np.linalg.norm(H, 2)) or 1.0)
         eye = np.eye(c.size)
         matrix = eye - alpha * H
         outer = matrix if self.corrected else eye

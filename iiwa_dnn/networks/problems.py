@@ -34,7 +34,7 @@ def solve_problem(
         sharpen: Take a few more steps down to rounding, for about a third more time
             (`DNNSolver.sharpen`).
         eps_rel: Tolerance on each entry of a residual, relative to the sum of its absolute terms.
-        max_iter: Largest number of linear systems.
+        max_iter: Largest number of linear solves.
 
     Returns:
         The solution with x (n,), y (p,), z (m,), z_box (n,), obj, and in `extras` the status,
@@ -65,7 +65,7 @@ def solve_problem(
 @lru_cache(typed=True)
 def default_solver(tol: float, eps_rel: float, max_iter: int) -> DNNSolver:
     """Return the solver with these settings, the same one each time: making it takes time."""
-    return DNNSolver(tol=tol, eps_rel=eps_rel, settler=ImplicitEuler(max_steps=max_iter))
+    return DNNSolver(tol=tol, eps_rel=eps_rel, solve_integrator=ImplicitEuler(max_steps=max_iter))
 
 
 SOLVE.append(solve_problem)

@@ -12,7 +12,7 @@ from iiwa_dnn.networks.base import Network, enter_rates
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
 from iiwa_dnn.networks.integrators.base import AnswerSettings, CompiledAnswer, enter_answer
 from iiwa_dnn.networks.integrators.explicit import follow
-from iiwa_dnn.networks.integrators.implicit import settle
+from iiwa_dnn.networks.integrators.implicit import solve
 from iiwa_dnn.networks.integrators.scaling import (
     LARGE,
     Scaling,
@@ -30,18 +30,18 @@ from iiwa_dnn.qp.solution import Solution, Status
 
 SHARPENED = 1e-14
 SHARPENING = (4, 20)
-"""Tolerance of `DNNSolver.sharpen`, and the linear systems of a round, at first and again."""
+"""Tolerance of `DNNSolver.sharpen`, and the linear solves of a round, at first and again."""
 
 _COSTS: tuple[float | None, ...] = (None, LARGE, 1.0, None)
 """Largest entries of the cost in the attempts of a `solve`; None: the program as it is."""
-_OPEN = (Status.NOT_SETTLED, Status.NOT_FINITE)
+_OPEN = (Status.NOT_CONVERGED, Status.NOT_FINITE)
 """Ends after which another attempt is made."""
 DIVERGENCE = 1e8
 """Ratio of a state or a residual to the largest number of a program beyond which it diverges."""
 
 _NETWORK = ProjectionNetwork()
-_SETTLER = ImplicitEuler()
-_FOLLOWER = ExplicitEuler()
+_SOLVE_INTEGRATOR = ImplicitEuler()
+_ADVANCE_INTEGRATOR = ExplicitEuler()
 
 
 @dataclass(frozen=True)
@@ -55,16 +55,16 @@ class DNNSolver:
     Attributes:
         network: The ODE.
         tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
-        settler: Integrator of `solve`, which runs until the residuals are below `tol`.
-        follower: Integrator of `advance`, which runs for a given time.
+        solve_integrator: Integrator of `solve`, which runs until the residuals are below `tol`.
+        advance_integrator: Integrator of `advance`, which runs for a given time.
         eps_rel: Tolerance on each entry of a residual, relative to the sum of its absolute terms;
             rounding passes in any case (`iiwa_dnn.qp.residuals`).
     """
 
     network: Network = _NETWORK
     tol: float = 1e-9
-    settler: ImplicitEuler = _SETTLER
-    follower: Integrator = _FOLLOWER
+    solve_integrator: ImplicitEuler = _SOLVE_INTEGRATOR
+    advance_integrator: Integrator = _ADVANCE_INTEGRATOR
     eps_rel: float = 0.0
     _warm: dict[Sizes, Vector] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -73,7 +73,7 @@ class DNNSolver:
         checks.positive("tol", self.tol)
         checks.not_negative("eps_rel", self.eps_rel)
         checks.instance("network", self.network, Network)
-        checks.instance("settler", self.settler, ImplicitEuler)
+        checks.instance("solve_integrator", self.solve_integrator, ImplicitEuler)
 
     @property
     def state(self) -> Vector:
@@ -122,32 +122,37 @@ class DNNSolver:
         function = type(network).compiled_rates
         if function is None or type(network).flow is not Network.flow:
             return None
-        integrator = self.follower if duration > 0.0 else self.settler
+        integrator = self.advance_integrator if duration > 0.0 else self.solve_integrator
         substeps = getattr(integrator, "substeps", None)
         # A subclass may integrate in its own way.
         own = ExplicitEuler if duration > 0.0 else ImplicitEuler
         if type(integrator) is not own or not (is_projection(network) or substeps):
             return None
-        constants = [self.tol, self.settler.max_steps, duration / network.rho, substeps or 0]
-        address = enter_answer.address(follow if duration > 0.0 else settle)
+        constants = [
+            self.tol,
+            self.solve_integrator.max_steps,
+            duration / network.rho,
+            substeps or 0,
+        ]
+        address = enter_answer.address(follow if duration > 0.0 else solve)
         rates = enter_rates.address(function) if duration > 0.0 else 0
         settings = AnswerSettings.of(np.array([*constants, *network.constants(sizes)]))
         return CompiledAnswer(address, rates, settings)
 
     def solve(self, qp: QP) -> Solution:
-        """Advance the network until it has settled, and judge the point it has reached.
+        """Solve the program: advance the network to convergence, and judge the point.
 
-        If it does not settle and no certificate is found, it starts once more, from zero, in units
-        in which nothing of the program stands out, with the cost at 1e3 and then at 1, and goes on
-        in those of the program. If the largest entry of the cost or of a row is below 1e-3 or above
-        1e3, it begins in scaled units.
+        If it does not converge and no certificate is found, it starts once more, from zero, on the
+        equilibrated program, with the cost at 1e3 and then at 1, and goes on in those of the
+        program. If the largest entry of the cost or of a row is below 1e-3 or above 1e3, it begins
+        in scaled units.
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).
 
         Returns:
             The solution; `found` only if P is convex and `QP.accepts` the point. Its iterations are
-            the linear systems of all attempts, at most those of the settler.
+            the linear solves of all attempts, at most those of `solve_integrator`.
         """
         state = self._take(qp)
         solution = self._solve(qp, state)
@@ -185,11 +190,11 @@ class DNNSolver:
             if cost == LARGE and taken > 0:
                 state[:] = 0.0
             scaling = balanced(qp, cost) if cost else None
-            left = self.settler.max_steps - taken
+            left = self.solve_integrator.max_steps - taken
             solution = self._attempt(qp, scaling, state, self.tol, left)
             taken += solution.iterations
             time += solution.network_time
-            if solution.status not in _OPEN or taken >= self.settler.max_steps:
+            if solution.status not in _OPEN or taken >= self.solve_integrator.max_steps:
                 break
         if taken > solution.iterations:
             solution = solution._replace(iterations=taken, network_time=time)
@@ -198,35 +203,35 @@ class DNNSolver:
     def _attempt(
         self, qp: QP, scaling: Scaling | None, state: Vector, tol: float, budget: int
     ) -> Solution:
-        """Settle the network, and judge the point that it reaches.
+        """Solve the program by the network, and judge the point that it reaches.
 
         Args:
             qp: The program.
-            scaling: The program in other units, in which the network settles; None: in its own.
+            scaling: The program in other units, in which the network converges; None: in its own.
             state: State of the program as it is, (size,), advanced.
             tol: Tolerance that ends the steps, in the program's units.
-            budget: Largest number of linear systems.
+            budget: Largest number of linear solves.
         """
         n, m, p = qp.sizes
         point = np.empty(2 * n + m + p)
-        settler = self.settler
-        if budget < settler.max_steps:
-            settler = replace(settler, max_steps=budget)
+        solve_integrator = self.solve_integrator
+        if budget < solve_integrator.max_steps:
+            solve_integrator = replace(solve_integrator, max_steps=budget)
         if scaling is None:
-            settled = settler.settle(self.network, qp, state, point, tol)
+            stats = solve_integrator.solve(self.network, qp, state, point, tol)
         else:
             state /= scaling.of_state
             tol *= scaling.of_tolerance
-            settled = settler.settle(self.network, scaling.qp, state, point, tol)
+            stats = solve_integrator.solve(self.network, scaling.qp, state, point, tol)
             state *= scaling.of_state
             point *= scaling.of_point
-            settled = *settled[:2], *qp.residuals(point)
-        status = self._status(qp, point, settled[2:])
+            stats = *stats[:2], *qp.residuals(point)
+        status = self._status(qp, point, stats[2:])
         certificate = None
-        if status is Status.NOT_SETTLED:
+        if status is Status.NOT_CONVERGED:
             find = find_certificate if scaling is None else scaling.find_certificate
             status, certificate = find(qp, point)
-        return Solution(point, qp.sizes, status, *settled, certificate)
+        return Solution(point, qp.sizes, status, *stats, certificate)
 
     def _status(self, qp: QP, point: Vector, residuals: Triple) -> Status:
         """Judge a point by its residuals, and the cost by a Cholesky factor."""
@@ -235,10 +240,10 @@ class DNNSolver:
             return Status.SOLVED
         if not math.isfinite(total):
             return Status.NOT_FINITE
-        return Status.NOT_SETTLED if is_convex(qp.P, np.empty_like(qp.P)) else Status.NOT_CONVEX
+        return Status.NOT_CONVERGED if is_convex(qp.P, np.empty_like(qp.P)) else Status.NOT_CONVEX
 
     def sharpen(self, qp: QP, solution: Solution) -> Solution:
-        """Go on from the state that the last call left, for a few linear systems.
+        """Go on from the state that the last call left, for a few linear solves.
 
         If the cost has small eigenvalues, x is known to the residuals over these only. So a round
         begins with those of a steeper cost (`iiwa_dnn.networks.integrators.scaling`). A solution
@@ -264,7 +269,7 @@ class DNNSolver:
         if not solution.found or not is_projection(self.network):
             return solution
         for most, is_steep in product(SHARPENING, (True, False)):
-            left = min(most, self.settler.max_steps - solution.iterations)
+            left = min(most, self.solve_integrator.max_steps - solution.iterations)
             if left < 1 or solution.residuals.largest <= SHARPENED:
                 break
             new = state.copy()
@@ -279,7 +284,7 @@ class DNNSolver:
         return solution
 
     def advance(self, qp: QP, duration: float) -> Solution:
-        """Advance the network by `duration`, settled or not.
+        """Advance the network by `duration`, converged or not.
 
         Args:
             qp: The program, held constant meanwhile.
@@ -295,7 +300,7 @@ class DNNSolver:
         """
         time = checks.positive("duration", duration) / self.network.rho
         state = self._take(qp)
-        iterations = self.follower.advance(self.network, qp, state, time)
+        iterations = self.advance_integrator.advance(self.network, qp, state, time)
         return self._advanced(qp, state, iterations, time)
 
     def _advanced(self, qp: QP, state: Vector, iterations: int, time: float) -> Solution:

@@ -119,6 +119,6 @@ class TrackingSolver(DNNSolver):
         past = [state.copy(), *self._past["states"]]
         known = self.formula if len(past) >= len(self.formula.past) else EULER
         state[:] = known.rate * change
-        for share, old in zip(known.past, past, strict=False):
-            state += share * old
+        for fraction, old in zip(known.past, past, strict=False):
+            state += fraction * old
         self._past["states"] = past[: len(self.formula.past) - 1]

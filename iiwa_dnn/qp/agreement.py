@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector
-from iiwa_dnn.qp.program import QP, places
+from iiwa_dnn.qp.program import QP, field_slices
 
 USUAL = 1e3
 """Largest coefficient of a cost or a row, or one over it, up to which it is taken as it is."""
@@ -81,7 +81,7 @@ class Agreement(NamedTuple):
 
 def stacked(programs: Matrix, sizes: Sizes) -> QPViews:
     """View N programs, one `QP.data` a row, as the eight fields, each with a first axis of N."""
-    parts = [(programs[:, place], shape) for place, shape in places(sizes)]
+    parts = [(programs[:, part], shape) for part, shape in field_slices(sizes)]
     return QPViews(*[part.reshape(len(part), *shape) for part, shape in parts])
 
 
@@ -159,12 +159,12 @@ def solution_gap(
     rows = np.vstack([qp.A, qp.G, np.eye(n)])
     length = np.linalg.norm(rows, axis=1)
     force = length * np.abs(reference[n:])
-    held = force > _ACTIVE * max(1.0, force[p:].max())
-    held[:p] = length[:p] > 0.0
-    directions = rows[held] / length[held, np.newaxis]
+    active = force > _ACTIVE * max(1.0, force[p:].max())
+    active[:p] = length[:p] > 0.0
+    directions = rows[active] / length[active, np.newaxis]
     eigenvalues, vectors = np.linalg.eigh(qp.P + directions.T @ directions)
     along = vectors.T @ step
-    gradient = qp.P @ reference[:n] + qp.q + rows[held].T @ reference[n:][held]
+    gradient = qp.P @ reference[:n] + qp.q + rows[active].T @ reference[n:][active]
     unseen = eigenvalues * np.abs(along) <= residual + np.linalg.norm(gradient)
     flat = eigenvalues <= _FLAT * eigenvalues[-1]
     for free in (flat | unseen, flat):

@@ -63,8 +63,8 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
 
     Returns:
         ``PRIMAL_INFEASIBLE`` or ``NONE_FEASIBLE_NEAR`` with multipliers ``[y | z | z_box]`` of size
-        p + m + n, or ``UNBOUNDED`` or ``NONE_OPTIMAL_NEAR`` with a direction (n,); ``NOT_SETTLED``
-        where no proof was found.
+        p + m + n, or ``UNBOUNDED`` or ``NONE_OPTIMAL_NEAR`` with a direction (n,);
+        ``NOT_CONVERGED`` where no proof was found.
     """
     n, m, p = qp.sizes
     limited = np.isfinite(np.concatenate([qp.b, qp.h]))
@@ -73,12 +73,12 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
     w = np.vstack([qp.A, qp.G]).T @ multipliers
     certificate = np.concatenate([multipliers, np.where(_is_carried(qp, w), 0.0 - w, 0.0)])
     status = certified(qp, certificate)
-    if status is Status.NOT_SETTLED:
+    if status is Status.NOT_CONVERGED:
         direction = _scaled(point[:n])
         direction = np.where(_towards_bound(qp, direction), 0.0, direction)
         certificate = _best(qp, direction, _polished_direction, unboundedness_radius)
         status = certified(qp, certificate)
-    return status, None if status is Status.NOT_SETTLED else certificate
+    return status, None if status is Status.NOT_CONVERGED else certificate
 
 
 def _best(
@@ -101,7 +101,7 @@ def certified(qp: QP, certificate: Vector) -> Status:
     """Judge a certificate, ``[y | z | z_box]`` of size p + m + n or a direction (n,).
 
     Returns:
-        One of the statuses of `find_certificate`; ``NOT_SETTLED`` if it proves nothing.
+        One of the statuses of `find_certificate`; ``NOT_CONVERGED`` if it proves nothing.
 
     Raises:
         InvalidInputError: It has another size.
@@ -114,7 +114,7 @@ def certified(qp: QP, certificate: Vector) -> Status:
         check_size("certificate", certificate, n + m + p)
         radius = infeasibility_radius(qp, certificate[: p + m])
         statuses = (Status.NONE_FEASIBLE_NEAR, Status.PRIMAL_INFEASIBLE)
-    return statuses[radius == np.inf] if radius >= RADIUS else Status.NOT_SETTLED
+    return statuses[radius == np.inf] if radius >= RADIUS else Status.NOT_CONVERGED
 
 
 def infeasibility_radius(qp: QP, multipliers: Vector) -> float:

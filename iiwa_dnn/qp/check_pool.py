@@ -24,7 +24,7 @@ _QUEUED = 2
 class CheckPool:
     """Judges blocks of programs while others are still being made.
 
-    A block goes to a worker process that has room for it; where none has, the caller's own process
+    A block goes to a worker process that is free; if none is, the caller's own process
     judges it at once.
 
     Attributes:

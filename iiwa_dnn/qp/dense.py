@@ -174,10 +174,10 @@ def is_symmetric(P: Matrix, largest: float) -> bool:
     rounding = ROUNDING * P.shape[0] * largest
     for i in range(P.shape[0]):
         for k in range(i):
-            apart = abs(P[i, k] - P[k, i])
-            if not apart <= rounding:  # rarely: roots cost much
+            asymmetry = abs(P[i, k] - P[k, i])
+            if not asymmetry <= rounding:  # rarely: roots cost much
                 size = np.sqrt(max(P[i, i], 0.0)) * np.sqrt(max(P[k, k], 0.0))
-                if not apart <= ASYMMETRY * size + rounding:
+                if not asymmetry <= ASYMMETRY * size + rounding:
                     return False
     return True
 

@@ -51,7 +51,7 @@ FIELDS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
 
 
 @lru_cache
-def places(sizes: Sizes) -> list[tuple[slice, tuple[int, ...]]]:
+def field_slices(sizes: Sizes) -> list[tuple[slice, tuple[int, ...]]]:
     """Return place and shape of each field in `QP.data`."""
     n, m, p = sizes
     shapes: list[tuple[int, ...]] = [(n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,)]
@@ -75,8 +75,8 @@ class _Field:
         self._index = FIELDS.index(name)
 
     def __get__(self, qp: QP, owner: type[QP]) -> NDArray[np.float64]:
-        place, shape = places(qp.sizes)[self._index]
-        return qp.data[place].reshape(shape)
+        part, shape = field_slices(qp.sizes)[self._index]
+        return qp.data[part].reshape(shape)
 
 
 class QP:
@@ -308,7 +308,7 @@ def _check_shapes(given: Sequence[object], arrays: Sequence[NDArray[np.float64]]
     if n == 0:
         raise InvalidInputError("q", "is empty", given[1])
     _, m, p = (_rows(name, array, n) for name, array in zip("PGA", arrays[:5:2], strict=True))
-    for name, array, (_, shape) in zip(FIELDS, arrays, places((n, m, p)), strict=True):
+    for name, array, (_, shape) in zip(FIELDS, arrays, field_slices((n, m, p)), strict=True):
         if array.size != math.prod(shape):
             raise InvalidInputError(
                 name, f"has shape {array.shape}, not {shape}; q has {n} entries"

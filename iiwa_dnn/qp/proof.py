@@ -55,8 +55,8 @@ ROUNDS = 5
 _ROUNDING = 2.0**-53
 _TINY = 1e-290
 """Bound on what underflow takes from a sum."""
-_SHARE = 0.9
-"""Share of the smallest eigenvalue that is shown as the curvature."""
+_FRACTION = 0.9
+"""Fraction of the smallest eigenvalue that is shown as the curvature."""
 
 WEAK = "a multiplier may be zero: the bound is that of the curvature, the active set is not proven"
 FLAT = "a multiplier may be zero, and no curvature of the cost is shown along the equality rows"
@@ -112,7 +112,7 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
     certificate: Any = getattr(solution, "certificate", in_extras)
     if certificate is not None:
         status = certified(qp, real_array("certificate", certificate))
-        if status is not Status.NOT_SETTLED:
+        if status is not Status.NOT_CONVERGED:
             return Proof(np.inf, nothing, f"proven: {status.value}")
     claimed = isinstance(solution, Solution) or getattr(solution, "found", True)
     if solution.x is None or not claimed:
@@ -250,7 +250,7 @@ def _bound(qp: QP, rows: _Rows, distance: float, missing: float, weak: bool) -> 
     Where a multiplier is `weak`, `missing` bounds the change of the cost vector that makes it none.
     """
     unit = rows.unit
-    curvature = _curvature(rows.S, qp.A, unit, _SHARE if weak else 0.0)
+    curvature = _curvature(rows.S, qp.A, unit, _FRACTION if weak else 0.0)
     if not curvature > 0.0:
         return np.inf, FLAT if weak else NOT_CONVEX
     if weak:
@@ -260,15 +260,15 @@ def _bound(qp: QP, rows: _Rows, distance: float, missing: float, weak: bool) -> 
     return distance, WEAK if weak else ""
 
 
-def _curvature(S: Matrix, A: Matrix, unit: float, share: float) -> float:
+def _curvature(S: Matrix, A: Matrix, unit: float, fraction: float) -> float:
     r"""Bound the curvature of the cost along the steps that keep the equality rows.
 
     Args:
         S: Symmetric part of P, (n, n).
         A: Equality rows, (p, n).
         unit: Bound on the relative rounding of a sum.
-        share: Share of the smallest eigenvalue to be shown; 0 asks for semidefiniteness alone,
-            to which a variable does no harm that is neither in the cost nor, where A^T A is
+        fraction: Fraction of the smallest eigenvalue to be shown; 0 asks for semidefiniteness
+            alone, to which a variable does no harm that is neither in the cost nor, where A^T A is
             added, in an equality row.
 
     Returns:
@@ -278,15 +278,15 @@ def _curvature(S: Matrix, A: Matrix, unit: float, share: float) -> float:
     squares = float((A * A).sum())
     added = [(trace / squares, np.vstack([S, A]))] if squares > 0.0 else []
     for weight, taking_part in [(0.0, S), *added]:
-        empty = (share == 0.0) & ~np.any(taking_part != 0.0, axis=0)
+        empty = (fraction == 0.0) & ~np.any(taking_part != 0.0, axis=0)
         filling = np.where(empty, trace + (trace == 0.0), 0.0)
         M = S + weight * (A.T @ A) + np.diag(filling)
         size = np.abs(S).sum() + weight * (np.abs(A).sum(axis=1) ** 2).sum() + filling.sum()
         loss = 2.0 * unit * float(size) + (1.0 + weight) * _TINY
         shift = 2.0 * loss
         try:
-            if share > 0.0:
-                shift = max(shift, share * float(np.linalg.eigvalsh(M)[0]))
+            if fraction > 0.0:
+                shift = max(shift, fraction * float(np.linalg.eigvalsh(M)[0]))
             np.linalg.cholesky(M - shift * np.eye(len(S)))
             return (1.0 - unit) * (shift - loss)
         except np.linalg.LinAlgError:

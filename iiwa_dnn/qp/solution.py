@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 NAME = "iiwa_dnn"
 SOLVE: list[Callable[..., qpsolvers.Solution]] = []
-"""The function that `register` enters, put here by `iiwa_dnn.networks`, a later room."""
+"""The function that `register` enters, put here by `iiwa_dnn.networks`, a later subpackage."""
 
 
 class Status(str, Enum):
@@ -29,8 +29,8 @@ class Status(str, Enum):
     SOLVED = "solved"
     """Every entry of the residuals is at most its tolerance."""
     ADVANCED = "advanced"
-    """The network was advanced by the time asked for, settled or not (a continuous run)."""
-    NOT_SETTLED = "not settled"
+    """The network was advanced by the time asked for, converged or not (a continuous run)."""
+    NOT_CONVERGED = "not converged"
     """The budget of steps ended before the residuals were small enough."""
     NOT_FINITE = "not finite"
     """The data or the state is no longer a number."""
@@ -84,7 +84,7 @@ class Solution(NamedTuple):
         point: ``[x | y | z | z_box]`` in one array, of size n + p + m + n.
         sizes: ``(n, m, p)`` of the program.
         status: The end of the solve.
-        iterations: Linear systems solved (implicit) or steps taken (explicit).
+        iterations: Linear solves (implicit) or steps taken (explicit).
         network_time: Time by which the network was advanced, in units of its time constant rho.
         primal: Primal residual of this very point, as qpsolvers defines it.
         dual: Dual residual.
@@ -179,7 +179,7 @@ def register() -> None:
     `iiwa_dnn.solve_problem` with ``sharpen=True``, and ``qpsolvers.available_solvers`` lists it.
     Its keyword arguments are ``eps_abs``, the absolute tolerance on primal residual, dual residual
     and gap (1e-9), ``eps_rel``, the tolerance on each entry of a residual relative to the sum of
-    its absolute terms (0), and ``max_iter``, the largest number of linear systems solved (1000).
+    its absolute terms (0), and ``max_iter``, the largest number of linear solves (1000).
     The start is always cold: ``initvals`` is not used, nor is ``verbose``. A malformed or nonconvex
     problem raises ``qpsolvers.ProblemError``, an option of another name ``TypeError``.
     """

@@ -128,9 +128,9 @@ class Reference(ABC):
             self.move(t, TargetData.of(target))
         return Target.from_data(targets)
 
-    def ahead(self, dt: float) -> Reference:
-        """Return the path with the mean twist over the next dt [s] in place of the targets' own."""
-        return Ahead(self, positive("dt", dt))
+    def feed_forward(self, dt: float) -> Reference:
+        """Return the path with feed-forward by the difference over one period of dt [s]."""
+        return FeedForward(self, positive("dt", dt))
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, in JSON types, to make the path again, not anchored."""
@@ -197,27 +197,27 @@ class SoftStart(Reference):
         return self.begin or 0.0
 
 
-class Ahead(Reference):
-    """A path whose targets have the mean twist over the coming period in place of their own."""
+class FeedForward(Reference):
+    """A path whose targets have feed-forward by the difference over the coming period."""
 
-    def __init__(self, along: Reference, dt: float) -> None:
-        """Look at a path one period of dt [s] ahead."""
-        self.along = along
+    def __init__(self, reference: Reference, dt: float) -> None:
+        """Take a path and the period of dt [s]."""
+        self.reference = reference
         self.dt = dt
-        self.base = along.base
+        self.base = reference.base
 
     @property
     def period(self) -> float:
         """Time after which the path repeats [s]."""
-        return self.along.period
+        return self.reference.period
 
     def move(self, t: float, target: TargetData) -> None:
         """Take a target to time t [s]; see `Reference.move`."""
         then = target.copy()
-        self.along.move(t, target)
-        self.along.move(t + self.dt, then)
+        self.reference.move(t, target)
+        self.reference.move(t + self.dt, then)
         set_mean_twist(target, then, self.dt)
 
     def settings(self) -> dict[str, Any]:
-        """Return those of the path that is seen ahead."""
-        return self.along.settings()
+        """Return those of the path."""
+        return self.reference.settings()

@@ -256,19 +256,19 @@ class Lissajous(SoftStart):
 
 
 @compiled
-def still_path(t: float, constants: Array, target: TargetData) -> None:
+def fixed_path(t: float, constants: Array, target: TargetData) -> None:
     """Leave the target as it is."""
 
 
 @dataclass(frozen=True, eq=False)
-class Still(Reference):
-    """A pose to go to and to hold: ``Still().anchored(pose)``.
+class FixedPose(Reference):
+    """A pose to go to and to hold: ``FixedPose().anchored(pose)``.
 
     Attributes:
         period: Length of a run without a duration [s], above 0.
     """
 
-    path: ClassVar[Any] = staticmethod(still_path)
+    path: ClassVar[Any] = staticmethod(fixed_path)
     period: float = 10.0
 
     def __post_init__(self) -> None:

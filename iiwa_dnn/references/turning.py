@@ -16,10 +16,10 @@ from iiwa_dnn.references.base import Reference, SoftStart, soft_clock
 from iiwa_dnn.references.rotations import column_of, combined, scaled, triple, turn_target
 from iiwa_dnn.references.shapes import (
     Circle,
+    FixedPose,
     Heart,
     Line,
     Lissajous,
-    Still,
     circle_path,
     heart_path,
     line_path,
@@ -99,7 +99,7 @@ class Along(IntEnum):
     WAYPOINTS = 5
 
 
-_ALONG = (Still, Heart, Circle, Line, Lissajous, Waypoints)
+_ALONG = (FixedPose, Heart, Circle, Line, Lissajous, Waypoints)
 """Classes of these paths, in the order of `Along`."""
 
 
@@ -151,7 +151,7 @@ class Tilting(SoftStart):
     applied after the turns that the path itself has, if any.
 
     Attributes:
-        along: The path: a `Still`, `Heart`, `Circle`, `Line`, `Lissajous` or `Waypoints`.
+        along: The path: a `FixedPose`, `Heart`, `Circle`, `Line`, `Lissajous` or `Waypoints`.
         angle: Largest tilt to either side [rad].
         axis: Axis in the world's frame; its length does not matter.
         turns: Whole number of tilts to both sides, in a round on the path.

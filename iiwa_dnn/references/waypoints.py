@@ -302,11 +302,11 @@ class Waypoints(Reference):
                     r"row (\d+)", lambda row: f"line {table[int(row[1]), 0]:.0f}", one_line(error)
                 )
                 raise FileError(path, reason) from error
-        for message in (*(remark.message for remark in remarks), *made._doubts(unread)):
+        for message in (*(remark.message for remark in remarks), *made._load_warnings(unread)):
             warnings.warn(f"{path}: {message}", stacklevel=2)
         return made
 
-    def _doubts(self, unread: list[str]) -> Iterator[str]:
+    def _load_warnings(self, unread: list[str]) -> Iterator[str]:
         """State what of a file is not read, slow, or an end of dense rows at speed."""
         if unread:
             yield f"columns that are not read: {', '.join(unread)}"

@@ -140,16 +140,16 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
     if not done:
         return
     counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items())
-    unblocked = incidents["unblocked_steps"]
-    limits = [limit for limit in incidents["blocking"][:3] if limit["steps"] >= unblocked]
-    blocking = ", ".join(map(describe, limits)) or (
+    unexplained = incidents["unexplained_steps"]
+    limits = [limit for limit in incidents["limiting"][:3] if limit["steps"] >= unexplained]
+    limiting = ", ".join(map(describe, limits)) or (
         "no bound, but a singular posture, a path out of reach or conflicting tasks; another start "
         "(--q0) may help"
     )
     kind = limits[0].get("limit") if limits else None
     yield (
         f"{counted(sum(done.values()))} without a solution ({counts}), the first at "
-        f"{_at(incidents['first'])}; limited most often by {blocking}{_advice(metrics, kind)}"
+        f"{_at(incidents['first'])}; limited most often by {limiting}{_advice(metrics, kind)}"
     )
 
 
@@ -168,7 +168,7 @@ def _advice(metrics: Mapping[str, Any], kind: str | None) -> str:
 
 
 def _is_abrupt(metrics: Mapping[str, Any]) -> bool:
-    """Tell whether the path begins at speed or away from the tip; of an old record, True."""
+    """Test whether the path begins at speed or away from the tip; of an old record, True."""
     start = max(metrics["settings"].get("start_speed", 1.0), metrics["start_distance_m"] or 0.0)
     return bool(start > 1e-4)
 
@@ -179,7 +179,7 @@ def _unsolved(metrics: Mapping[str, Any]) -> Iterator[str]:
         tolerance = _show(metrics["settings"]["tol"])
         said = f"KKT residual {_show(first['residual'])}, tolerance {tolerance}"
         if first["residual"] is None:
-            said = "the network has no answer, a relaxed program took its place"
+            said = "the network has no answer, a fallback program took its place"
         yield f"{_at(first)}: {said}; {counted(first['steps'])} unsolved in all"
 
 

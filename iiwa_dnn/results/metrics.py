@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.checks import Array, instance
 from iiwa_dnn.files import plain
-from iiwa_dnn.naming import ACTIONS, in_the_way
+from iiwa_dnn.naming import ACTIONS, active_limits
 from iiwa_dnn.results.record import OWN_LIMITS, RATES, Record
 
 PROGRAMS = ("nominal", "scaled", "relaxed", "rate_limited", "stopped")
@@ -329,7 +329,7 @@ def _physics(record: Record) -> dict[str, Any]:
         "settled_after_s": SETTLED_AFTER,
         "max_position_error_settled_m": _max(distance[record.t >= record.t[0] + SETTLED_AFTER]),
         "max_torque_n_m": torque.max(axis=0),
-        "max_torque_share": (torque.max(axis=0) / limit).max(),
+        "max_torque_fraction": (torque.max(axis=0) / limit).max(),
         "torque_limit_reached": first and first | {"joints": names},
     }
 
@@ -359,7 +359,7 @@ def _collisions(record: Record) -> dict[str, Any]:
 
 
 def _incidents(record: Record) -> dict[str, Any]:
-    """Count active limits, limits in the way, clipped commands, and a policy's steps."""
+    """Count active limits, those of fallback programs, clipped commands, and a policy's steps."""
     multipliers = _active(record)
     action = record.filled("action")
     clipped = record.filled("clipped").any(axis=1)
@@ -369,14 +369,14 @@ def _incidents(record: Record) -> dict[str, Any]:
         kinds = 1 + (np.abs(record.dq_solver) >= _AT_LIMIT * limits(record, "dq_max"))
     acting = np.sign(multipliers).astype(int)
     acting[:, : record.dof] *= kinds
-    blocking = np.hstack([record.filled(name) for name in ("blocking", "blocking_rows")])
+    limiting = np.hstack([record.filled(name) for name in ("limiting", "limiting_rows")])
     return {
         "clipped_steps": clipped.sum(),
         **{f"{name}_steps": (action == code).sum() for code, name in ACTIONS.items()},
-        "unblocked_steps": ((action != 0) & ~blocking.any(axis=1)).sum(),
+        "unexplained_steps": ((action != 0) & ~limiting.any(axis=1)).sum(),
         "path_time_s": record.path_time,
         "first": _first(record, action != 0),
-        "blocking": _limits(record, blocking),
+        "limiting": _limits(record, limiting),
         "active": _limits(record, acting),
     }
 
@@ -386,7 +386,9 @@ def _limits(record: Record, codes: NDArray[Any]) -> list[Mapping[str, Any]]:
     found = []
     for column, one in zip(codes.T, np.eye(codes.shape[1], dtype=int), strict=True):
         for code in np.unique(column[column != 0]):
-            limit = in_the_way(record.settings, code * one[: record.dof], code * one[record.dof :])
+            limit = active_limits(
+                record.settings, code * one[: record.dof], code * one[record.dof :]
+            )
             found += [name | (_first(record, column == code) or {}) for name in limit]
     return sorted(found, key=lambda limit: (-limit["steps"], "joint" in limit))
 

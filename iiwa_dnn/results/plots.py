@@ -187,7 +187,7 @@ def draw_path(axes: Axes, record: Record) -> None:
 
 
 def draw_joints(axes: Axes, record: Record, name: str) -> None:
-    """Draw one curve a joint over time, told apart by luminance and dashes.
+    """Draw one curve a joint over time, distinguished by luminance and dashes.
 
     The name is ``"q"``, ``"dq"``, ``"acceleration"``, ``"jerk"`` or ``"torque"``. If the limits of
     the joints differ, all but positions are drawn as shares of them; a position limit near the

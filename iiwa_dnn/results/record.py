@@ -167,12 +167,12 @@ class Record:
             "Fraction of a control period by which the reference's clock advanced", ("N",), fill=1.0
         ),
     ] = ABSENT
-    blocking: Annotated[
+    limiting: Annotated[
         CodeArray,
         Column(
-            "Bounds in the way of a solution: positive upper ones, negative lower ones; 1 for a "
+            "Bounds that limit the solution: positive upper ones, negative lower ones; 1 for a "
             "position limit, 2 for a velocity, 3 for an acceleration, 4 for a jerk limit, 0 where "
-            "none is in the way",
+            "none is limiting",
             ("N", "n"),
             np.int8,
         ),
@@ -180,7 +180,7 @@ class Record:
     bound_kind: Annotated[
         CodeArray,
         Column(
-            "Kind of each active bound, as in `blocking`. Of length zero without acceleration and "
+            "Kind of each active bound, as in `limiting`. Of length zero without acceleration and "
             "jerk limits: a bound below the velocity limit is then of a position",
             ("N", "n"),
             np.int8,
@@ -194,11 +194,9 @@ class Record:
             ("N", "m"),
         ),
     ] = ABSENT
-    blocking_rows: Annotated[
+    limiting_rows: Annotated[
         CodeArray,
-        Column(
-            "1 where an inequality row was in the way of a solution, else 0", ("N", "m"), np.int8
-        ),
+        Column("1 where an inequality row limited the solution, else 0", ("N", "m"), np.int8),
     ] = ABSENT
     kind: Annotated[
         CodeArray,
@@ -353,7 +351,8 @@ class Record:
             with Path(path).open("rb") as file:
                 stored = np.lib.npyio.NpzFile(file, allow_pickle=False)
                 names = COLUMNS.keys() - (LATER - set(stored.files))
-                arrays: dict[str, Any] = {name: stored[name] for name in names}
+                former = {FORMER.get(name, name): name for name in stored.files}
+                arrays: dict[str, Any] = {name: stored[former.get(name, name)] for name in names}
                 settings = json.loads(str(stored["settings"]))
             if not len(arrays["dq_solver"]):
                 arrays["dq_solver"] = arrays["dq"]
@@ -377,6 +376,9 @@ OPTIONAL = frozenset(
     item.name for item in fields(Record) if item.default is not MISSING and item.name in COLUMNS
 )
 """Columns that may have the length zero."""
+
+FORMER = {"limiting": "limiting", "limiting_rows": "limiting_rows"}
+"""Names of columns that files of an earlier version have, and those of now."""
 
 LATER = frozenset({"feasibility_gap"})
 """Optional columns that files of an earlier version lack."""

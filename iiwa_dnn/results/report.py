@@ -42,7 +42,7 @@ _RESULTS = (
     ("largest residual of a reference", "crosscheck.max_reference_residual", ""),
     ("largest position error, settled", "physics.max_position_error_settled_m", "m"),
     ("largest torque of each joint", "physics.max_torque_n_m", "N m"),
-    ("largest torque, of its limit", "physics.max_torque_share", ""),
+    ("largest torque, of its limit", "physics.max_torque_fraction", ""),
     ("least distance", "collisions.least_distance_m", "m"),
     ("least distance allowed", "collisions.allowed_m", "m"),
     ("nearest pair, one body", "collisions.first", ""),
@@ -139,30 +139,32 @@ def rows(
     """
     yield "cross-check", qps_checked(metrics), ""
     yield "path completed", completed(metrics), ""
-    for name, place, unit in _RESULTS:
-        value = _at(metrics, place)
-        if value is not None and (value or not place.startswith("incidents.")):
-            beside = f" (the paper's {_text(paper[place])})" if paper and place in paper else ""
+    for name, key_path, unit in _RESULTS:
+        value = _at(metrics, key_path)
+        if value is not None and (value or not key_path.startswith("incidents.")):
+            beside = (
+                f" (the paper's {_text(paper[key_path])})" if paper and key_path in paper else ""
+            )
             yield name, _text(value) + beside, unit
     for frame, errors in metrics.get("frames", {}).items():
-        for name, place, unit in _RESULTS:
-            if place in errors:
-                yield f"{name}, {frame}", _text(errors[place]), unit
+        for name, key_path, unit in _RESULTS:
+            if key_path in errors:
+                yield f"{name}, {frame}", _text(errors[key_path]), unit
     yield from _limits(metrics["incidents"])
 
 
 def _limits(incidents: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
     """Yield the active limits, and those that left no solution, as `rows` does."""
-    for effect, key in (("active", "active"), ("leaves no solution", "blocking")):
+    for effect, key in (("active", "active"), ("leaves no solution", "limiting")):
         for limit in incidents[key][:_MOST]:
             since = f"{counted(limit['steps'])}, from {_text(limit['time_s'])} s on"
             yield f"{describe(limit)} {effect}", since, ""
 
 
-def _at(metrics: Mapping[str, Any], place: str) -> Any:
+def _at(metrics: Mapping[str, Any], key_path: str) -> Any:
     """Return the metric at a place, ``crosscheck.tolerance``; None if there is none."""
     found: Any = metrics
-    for key in place.split("."):
+    for key in key_path.split("."):
         found = (found or {}).get(key)
     return found
 

@@ -76,13 +76,15 @@ def load_robot(
     idle = _idle_joints(full, (tip, *others, *checks.names("frames", frames)))
     chosen = checks.names("locked", locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
-    limits, ramps = _limits(path, model, root, _rates(name, full, tips or (tip,)))
+    limits, position_dependent_velocity = _limits(
+        path, model, root, _rates(name, full, tips or (tip,))
+    )
     robot = Robot(
         name,
         model,
         tip,
         limits,
-        ramps,
+        position_dependent_velocity,
         tuple(held),
         tuple(held.values()),
         path,
@@ -90,12 +92,12 @@ def load_robot(
     )
     expected = {*chosen, *(_idle_joints(full, tips) if tips else ())}
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
-    for doubt in _doubts(robot, still, left_out):
-        warnings.warn(doubt, stacklevel=2)
+    for message in _load_warnings(robot, still, left_out):
+        warnings.warn(message, stacklevel=2)
     return robot if tool is None else robot.with_tool(tool)
 
 
-def _doubts(robot: Robot, still: list[str], left_out: list[str]) -> Iterator[str]:
+def _load_warnings(robot: Robot, still: list[str], left_out: list[str]) -> Iterator[str]:
     """State parts of the file that are left out, a limit in another unit, and joints held still."""
     if left_out:
         more = [f"{len(left_out) - 2} more"] if len(left_out) > 2 else []
@@ -204,10 +206,10 @@ def _limits(
     root: ET.Element,
     rates: Mapping[str, tuple[float, ...]],
 ) -> tuple[Array, Array]:
-    """Return `Robot.limits`, (5, n), and `Robot.ramps`, (2, n), the latter Franka's element."""
+    """Return `Robot.limits`, (5, n), and `Robot.position_dependent_velocity`, (2, n)."""
     joints = {joint.get("name"): joint for joint in root.findall("joint")}
     limits = np.full((5, model.nv), np.inf)
-    ramps = np.array([[0.0], [np.inf]]) * np.ones(model.nv)
+    position_dependent_velocity = np.array([[0.0], [np.inf]]) * np.ones(model.nv)
     limits[:3] = model_limits(model)
     jacobian = pin.computeJointJacobians(model, model.createData(), pin.neutral(model))
     twists = jacobian.reshape(6, -1)  # (6,) for a single joint
@@ -230,11 +232,15 @@ def _limits(
         limits[3:, i] = rates.get(name, np.inf)
         further = (
             ("limit", ("acceleration", "jerk"), limits[3:]),
-            ("position_based_velocity_limits", ("velocity_offset", "deceleration_limit"), ramps),
+            (
+                "position_based_velocity_limits",
+                ("velocity_offset", "deceleration_limit"),
+                position_dependent_velocity,
+            ),
         )
         for tag, keys, rows in further:
             element = joint.find(tag)
             if element is not None:
                 given = [number_of(path, joint, element, key) for key in keys]
                 rows[:, i] = np.where(given, given, rows[:, i])
-    return limits, ramps
+    return limits, position_dependent_velocity

@@ -99,7 +99,7 @@ def build_spec(robot: Robot) -> Any:
         for element in needless:
             link.remove(element)
     extension = ET.SubElement(root, "mujoco")
-    # Not fused: links keep their names, and the base can be told from the world.
+    # Not fused: links keep their names, and the base can be distinguished from the world.
     ET.SubElement(extension, "compiler", fusestatic="false", discardvisual="false")
     spec = mj.MjSpec.from_string(ET.tostring(root, encoding="unicode"))
     _weld(spec, robot)

@@ -33,10 +33,10 @@ class PlacedBox(NamedTuple):
 
 def box_around(a: ArrayLike, b: ArrayLike) -> PlacedBox:
     """Return the segment between two points (3,) [m] as a box with its z axis along it."""
-    way = np.subtract(b, a, dtype=np.float64)
-    length = float(np.linalg.norm(way))
+    axis = np.subtract(b, a, dtype=np.float64)
+    length = float(np.linalg.norm(axis))
     up = np.array([0.0, 0.0, 1.0])
-    turn = pin.Quaternion.FromTwoVectors(up, way if length else up)
+    turn = pin.Quaternion.FromTwoVectors(up, axis if length else up)
     half = np.array([0.0, 0.0, 0.5 * length])
     return PlacedBox(0.5 * np.add(a, b), turn.toRotationMatrix(), half)
 

@@ -40,9 +40,9 @@ class Robot:
         limits: Lower and upper joint positions [rad], velocities [rad/s], accelerations
             [rad/s^2] and jerks [rad/s^3], (5, n); infinite where there is no limit. For compiled
             code, so not protected; `q_lower` and so on are its rows, read-only.
-        ramps: Offset o [rad/s] and deceleration D [rad/s^2] of velocity limits that shrink to
-            sqrt(2 D d) - o at a distance d from a position limit, (2, n); D is inf where a joint
-            has none.
+        position_dependent_velocity: Offset o [rad/s] and deceleration D [rad/s^2] of velocity
+            limits that shrink to sqrt(2 D d) - o at a distance d from a position limit, (2, n); D
+            is inf where a joint has none.
         locked: Names of the URDF's joints that were frozen on loading.
         q_locked: Positions at which the joints of ``locked`` are frozen [rad], one each.
         path: The URDF file, where the robot came from one; it is read once, on loading.
@@ -58,7 +58,7 @@ class Robot:
     model: pin.Model
     tip: str
     limits: checks.Array
-    ramps: checks.Array
+    position_dependent_velocity: checks.Array
     locked: tuple[str, ...] = ()
     q_locked: tuple[float, ...] = ()
     path: Path | None = None
@@ -123,7 +123,7 @@ class Robot:
         """Distance of the tip from the base that the links' lengths allow at most [m]."""
         tip = self.model.frames[self.tip_id]
         own = float(np.linalg.norm(tip.placement.translation))
-        return sum(self.lengths[self.moves[self.tip_id] > 0.0].tolist(), own)
+        return sum(self.lengths[self.support[self.tip_id] > 0.0].tolist(), own)
 
     @cached_property
     def lengths(self) -> checks.Array:
@@ -141,7 +141,7 @@ class Robot:
         return tuple(i for i, joint in joints if "JointModelP" in joint.shortname())
 
     @cached_property
-    def moves(self) -> checks.Array:
+    def support(self) -> checks.Array:
         """Joints that move each frame, (frames, n), by Pinocchio's index of the frame: 1 or 0.
 
         For compiled code, so not protected.

@@ -6,7 +6,7 @@ the normal. Its row is a velocity damper,
 
 .. math::  n \cdot \dot x \;\ge\; v_o - \kappa\,(d + \eta - d_s - \mu - \varepsilon)
 
-with the obstacle's bound on its speed :math:`v_o`, `ROOM` :math:`\mu`, and the part
+with the obstacle's bound on its speed :math:`v_o`, `CLEARANCE` :math:`\mu`, and the part
 :math:`\varepsilon` of the distance that a step like the last one may take although its row holds,
 since points move on curves. The rows guide; a command is given only if the distance holds on the
 motion to rest from it (`iiwa_dnn.control.stopping`).
@@ -55,8 +55,9 @@ from iiwa_dnn.schemes.step import Step, StepViews, rate_along
 ENDS = 2
 """Rows of a pair: its second body is a segment, both ends of which count where they are near."""
 
-ROOM = 1e-6
-"""Distance beyond the least at which a pair comes to rest [m]. Ways along an obstacle bend: an arm
+CLEARANCE = 1e-6
+"""Distance beyond the least at which a pair comes to rest [m]. Paths along an obstacle are curved:
+an arm
 that rests at the least distance itself could not stop from any of them, and would stay there."""
 
 MEET = np.inf
@@ -117,7 +118,7 @@ def _write_ends(
     least = min(kept, scene.head.least)
     gain = min(scene.head.gain, step.rate)
     travel = np.empty(step.q.size)
-    most = pair.speed - gain * (contact.distance - least - ROOM)
+    most = pair.speed - gain * (contact.distance - least - CLEARANCE)
     for j in range(step.q.size):
         travel[j] = abs(step.last[j]) / step.rate
         most += abs(scene.radii[k, j]) * scene.dq_max[j]
@@ -125,18 +126,18 @@ def _write_ends(
         return
     ends = ends_of(scene, placed, pair.second)
     is_point = Body.of(scene.bodies[pair.second]).half[2] == 0.0
-    eps = second_order(scene.moves, scene.radii, k, travel)
+    eps = second_order(scene.support, scene.radii, k, travel)
     for at in range(1 if is_point else ENDS):
         if pair.still == at + 1:
             continue
         row = ENDS * k + at
-        left = contact.distance + height_of(ends[at], contact) - least - ROOM
+        left = contact.distance + height_of(ends[at], contact) - least - CLEARANCE
         limits[row] = gain * left - pair.speed
         fastest = 0.0
         for j in range(step.q.size):
-            if scene.moves[k, j] != 0.0:
+            if scene.support[k, j] != 0.0:
                 rate = rate_along(step.jacobian, j, ends[at], contact.normal)
-                gradients[row, j] = -scene.moves[k, j] * rate
+                gradients[row, j] = -scene.support[k, j] * rate
                 fastest += abs(rate) * scene.dq_max[j]
         slacks[row] = limits[row] - fastest
         limits[row] -= gain * eps
@@ -150,9 +151,9 @@ def _write_ends(
 def kept_distance(scene: SceneViews, contact: Contact, kept: float) -> float:
     """Compute the distance that a pair has to keep from now on [m], `MEET` if it has no normal.
 
-    It is the scene's, but for a pair that begins nearer: until that is beyond, it is `ROOM` less
-    than where it began. (Were it where the pair has been farthest, a pair could not come back from
-    the greatest distance that its link admits, and would hold the arm there.)
+    It is the scene's, but for a pair that begins nearer: until that is beyond, it is `CLEARANCE`
+    less than where it began. (Were it where the pair has been farthest, a pair could not come back
+    from the greatest distance that its link admits, and would hold the arm there.)
 
     Args:
         scene: The scene.
@@ -161,10 +162,14 @@ def kept_distance(scene: SceneViews, contact: Contact, kept: float) -> float:
     """
     if dot(contact.normal, contact.normal) == 0.0:
         return MEET
-    if contact.distance >= scene.head.least + ROOM:
+    if contact.distance >= scene.head.least + CLEARANCE:
         return scene.head.least
     if kept == 0.0 or kept == MEET:
-        return contact.distance - ROOM if contact.distance < scene.head.least else scene.head.least
+        return (
+            contact.distance - CLEARANCE
+            if contact.distance < scene.head.least
+            else scene.head.least
+        )
     return kept
 
 

@@ -1,6 +1,6 @@
 r"""Limits of the joints: bounds on their velocities that every command keeps.
 
-With acceleration or jerk limits, a bound comes from the last commands and a way to stop.
+With acceleration or jerk limits, a bound comes from the last commands and a stopping path.
 
 A command v_k moves a joint to q_{k+1} = q_k + dt v_k, with acceleration a_k = (v_k - v_{k-1}) / dt
 and jerk (a_k - a_{k-1}) / dt. The bounds of v_k hold the commands after which the joint can still
@@ -8,8 +8,8 @@ come to rest within all of its limits, one step after the other, so that a next 
 whenever one did: they are never empty.
 
 **Velocity.** After a_k > 0 the velocity grows on, by a_k - J dt, a_k - 2 J dt, ... times dt, until
-the acceleration is gone; v_k has to leave room for that sum (`approach`). With the acceleration
-limit alone, the same sum is the way that a braking joint still goes, and leaves room to the
+the acceleration is gone; v_k has to leave a margin for that sum (`approach`). With the acceleration
+limit alone, the same sum is the stopping distance of a joint, and leaves the distance to the
 position limit: the exact discrete viability kernel.
 
 **Position, with a jerk limit.** The positions are the control points of a cubic B-spline whose
@@ -23,19 +23,19 @@ It comes to rest at :math:`\tilde q_k + \Delta(\tilde v_k, a_k)` where the jerk 
 acceleration held at -A', and the jerk J (`stopping_distance`; mirrored where the joint is about to
 turn round), and its highest point on the way there, `highest`, grows with v_k: the upper bound is
 its root. In one step of the true limits that point can always be kept, since -J over a whole step
-brakes no less: for that, A' = A - J' dt leaves room for one step of jerk, and J' is at most
-A / (8 dt) and dq_max / (8 dt^2). Samples are above that way by `MARGIN` at most, which is kept free
-at either end. A joint needs a range to turn round in, with J' too (`check_ranges`).
+brakes no less: for that, A' = A - J' dt leaves a margin for one step of jerk, and J' is at most
+A / (8 dt) and dq_max / (8 dt^2). Samples are above that path by `MARGIN` at most, which is kept
+free at either end. A joint needs a range to turn round in, with J' too (`check_ranges`).
 
 **Periods that vary** up to T (`Periods`): a velocity that may be held for h is within the distance
-d of a limit if :math:`v h + v^2 / (2 A) \le d`, and with a jerk limit if h v and the continuous way
-to rest after it are. That is kept whatever period comes next (docs/theory_limits.md).
+d of a limit if :math:`v h + v^2 / (2 A) \le d`, and with a jerk limit if h v and the continuous
+stopping path after it are. That is kept whatever period comes next (docs/theory_limits.md).
 
-**Position-dependent velocity limits** (`Robot.ramps`) are zero at :math:`o^2 / (2 D)` before a
-position limit. At the distance x from there one admits v if :math:`v^2 / (2 D) + v\,o / D \le x`,
-the same law with o / D in place of h. With a jerk limit a way to rest at a deceleration B < D that
-ends :math:`(o / D)^2 B D / (2 (D - B))` before that point is below the limit all along; of several
-B the one that admits most counts, as a joint may go on with its own.
+**Position-dependent velocity limits** (`Robot.position_dependent_velocity`) are zero at :math:`o^2
+/ (2 D)` before a position limit. At the distance x from there one admits v if :math:`v^2 / (2 D) +
+v\,o / D \le x`, the same law with o / D in place of h. With a jerk limit a stopping path at a
+deceleration B < D that ends :math:`(o / D)^2 B D / (2 (D - B))` before that point is below the
+limit all along; of several B the one that admits most counts, as a joint may go on with its own.
 
 Sources: A. Del Prete, "Joint position and velocity bounds in discrete-time acceleration/torque
 control of robot arms", IEEE Robotics and Automation Letters 3(1), 2018, for the second order. The
@@ -69,18 +69,20 @@ MARGIN = 0.2
 """Margin that is kept free at a position limit, in units of J' dt^3; 1 / sqrt(27) is needed."""
 
 ROUNDING = 2e-14
-"""Room for what positions are rounded by while a joint brakes at constant deceleration [rad]."""
+"""Rounding of positions while a joint brakes at constant deceleration [rad]."""
 
 AT_REST = 1e-100
 """Velocity that counts as none [rad/s]: a smaller one may vanish in units of a step of jerk."""
 
 EASE = 0.5
-"""Share of its way to a position limit that a joint all but at rest may cover in a period."""
+"""Fraction of the distance to a position limit that a joint all but at rest may cover in a
+period."""
 
 REST = 0.25
-"""Where a joint that is pressed against a limit comes to rest, like `MARGIN`, and just inside."""
+"""Offset of the rest position of a joint at a limit, in units of J' dt^3, slightly above
+`MARGIN`."""
 
-SHARE = 8.0
+JERK_PERIODS = 8.0
 """Steps of jerk at least that braking takes to its full deceleration."""
 
 HALVINGS = 20
@@ -100,8 +102,8 @@ class Rates(NamedTuple):
         velocity: Largest velocity [rad/s].
         acceleration: Largest acceleration [rad/s^2].
         jerk: Largest jerk [rad/s^3].
-        deceleration: Deceleration for which there is room before its position limits [rad/s^2].
-        ramp: Deceleration D of its position-dependent velocity limit [rad/s^2].
+        deceleration: Deceleration with which it stops before its position limits [rad/s^2].
+        slope: Deceleration D of its position-dependent velocity limit [rad/s^2].
         lag: o / D of that limit [s].
     """
 
@@ -109,7 +111,7 @@ class Rates(NamedTuple):
     acceleration: float
     jerk: float
     deceleration: float
-    ramp: float
+    slope: float
     lag: float
 
 
@@ -123,7 +125,7 @@ class MotionNumbers(Record):
         dt: Period over which changes of the command are measured [s].
         hold: Longest time for which the command may be held [s].
         longest: Longest period that may come [s].
-        share: Part of a distance that is gone in the stated periods at least.
+        fraction: Part of a distance that is gone in the stated periods at least.
         lower: Lower position limits [rad], (n,): at one below which a position-dependent velocity
             limit is zero, that position.
         upper: Upper position limits [rad], (n,).
@@ -133,14 +135,14 @@ class MotionNumbers(Record):
     dt: float
     hold: float
     longest: float
-    share: float
+    fraction: float
     lower: Vector = part()
     upper: Vector = part()
     velocity: Vector = part()
     acceleration: Vector = part()
     jerk: Vector = part()
     deceleration: Vector = part()
-    ramp: Vector = part()
+    slope: Vector = part()
     lag: Vector = part()
 
 
@@ -152,8 +154,8 @@ class PositionNumbers(Record):
         lower: Lower position limits [rad], (n,).
         upper: Upper position limits [rad], (n,).
         velocity: Velocity limits [rad/s], (n,).
-        offset: Offsets of the ramps [rad/s], (n,).
-        ramp: Decelerations along the ramps [rad/s^2], (n,); inf for none.
+        offset: Offsets of the position-dependent velocity limits [rad/s], (n,).
+        slope: Decelerations along them [rad/s^2], (n,); inf for none.
     """
 
     gain: float
@@ -161,7 +163,7 @@ class PositionNumbers(Record):
     upper: Vector = part()
     velocity: Vector = part()
     offset: Vector = part()
-    ramp: Vector = part()
+    slope: Vector = part()
 
 
 class TipSpeedNumbers(Record):
@@ -179,7 +181,7 @@ class Periods(NamedTuple):
         dt: Period over which changes of the command are measured [s].
         hold: Longest time for which the command may be held [s].
         longest: Longest period that may come [s].
-        share: Part of a distance that is gone in the stated periods at least: 1, or dt / T where
+        fraction: Part of a distance that is gone in the stated periods at least: 1, or dt / T where
             nobody states them and they may last T.
         vary: Whether periods differ.
     """
@@ -187,7 +189,7 @@ class Periods(NamedTuple):
     dt: float
     hold: float
     longest: float
-    share: float
+    fraction: float
     vary: bool
 
 
@@ -246,20 +248,20 @@ def joint_limits(
         above = limits.upper[i] - step.q[i]
         below = step.q[i] - limits.lower[i]
         fastest = limits.velocity[i]
-        up = min(fastest, ramp_speed(above, limits.offset[i], limits.ramp[i]))
-        down = min(fastest, ramp_speed(below, limits.offset[i], limits.ramp[i]))
+        up = min(fastest, position_dependent_speed(above, limits.offset[i], limits.slope[i]))
+        down = min(fastest, position_dependent_speed(below, limits.offset[i], limits.slope[i]))
         lb[i] = max(lb[i], min(max(-gain * below, -down), up))
         ub[i] = min(ub[i], min(max(gain * above, -down), up))
 
 
 @compiled
-def ramp_speed(distance: float, offset: float, deceleration: float) -> float:
-    """Compute the speed that a ramp allows at a distance from a position limit [rad/s].
+def position_dependent_speed(distance: float, offset: float, deceleration: float) -> float:
+    """Compute the position-dependent velocity limit at a distance from a position limit.
 
     Args:
         distance: The distance [rad].
-        offset: Offset of the ramp [rad/s].
-        deceleration: Deceleration along the ramp [rad/s^2]; inf for a joint without one.
+        offset: Offset of the limit [rad/s].
+        deceleration: Deceleration along the limit [rad/s^2]; inf for a joint without one.
     """
     if not deceleration < np.inf:
         return np.inf
@@ -279,10 +281,12 @@ class JointLimits(Limit):
     steps of dt it never passes it as long as :math:`\kappa\,dt \le 1`; a larger :math:`\kappa` is
     cut to 1 / dt. Outside a limit the formula can ask for more than the velocity limit allows and
     then has lb > ub: both bounds are clipped to the velocity limit, so that the arm comes back as
-    fast as it may. Where the robot has ramps (`Robot.ramps`), as a Franka arm has, its velocity
-    limit shrinks to :math:`\sqrt{2 D d} - o` at a distance d from the position limit.
+    fast as it may. Where the robot has such limits (`Robot.position_dependent_velocity`), as a
+    Franka arm has, its velocity limit shrinks to :math:`\sqrt{2 D d} - o` at a distance d from the
+    position limit.
 
-    Source: equation (6) of the paper; the ramps are `getUpperJointVelocityLimits` in
+    Source: equation (6) of the paper; the position-dependent limits are
+        `getUpperJointVelocityLimits` in
     src/joint_velocity_limits.cpp of libfranka.
 
     Attributes:
@@ -294,8 +298,10 @@ class JointLimits(Limit):
     gain: float = 20.0
 
     def constants(self, robot: Robot) -> Vector:
-        """Return the gain and the first rows of `Robot.limits`, and `Robot.ramps`, (1 + 5 n,)."""
-        return np.concatenate([[self.gain], robot.limits[:3].ravel(), robot.ramps.ravel()])
+        """Return gain, position and velocity limits, and position-dependent ones, (1 + 5 n,)."""
+        return np.concatenate(
+            [[self.gain], robot.limits[:3].ravel(), robot.position_dependent_velocity.ravel()]
+        )
 
 
 def positive_rates(argument: str, value: ArrayLike) -> float | tuple[float, ...]:
@@ -383,7 +389,7 @@ def joint_rates(limits: MotionNumbers, i: int) -> Rates:
         limits.acceleration[i],
         limits.jerk[i],
         limits.deceleration[i],
-        limits.ramp[i],
+        limits.slope[i],
         limits.lag[i],
     )
 
@@ -402,7 +408,7 @@ def motion_limits(
     limits = MotionNumbers.of(constants)
     periods = constant_periods(1.0 / step.rate)
     if limits.dt > 0.0:
-        periods = Periods(limits.dt, limits.hold, limits.longest, limits.share, True)
+        periods = Periods(limits.dt, limits.hold, limits.longest, limits.fraction, True)
     for i in range(step.q.size):
         above = limits.upper[i] - step.q[i]
         below = step.q[i] - limits.lower[i]
@@ -440,18 +446,20 @@ class MotionLimits(Limit):
             np.minimum(row, limit.of(robot), out=row)
         for coupling in self.couplings * len(self.couplings):  # of chains too
             (relation,) = coupling.relations(robot)
-            shares = np.abs(relation.coefficients)
-            joints = np.flatnonzero(shares)
+            fractions = np.abs(relation.coefficients)
+            joints = np.flatnonzero(fractions)
             for i in joints:
                 others = joints[joints != i]
-                rates[:, i] = np.minimum(rates[:, i], rates[:, others] @ shares[others] / shares[i])
-        offset, steepness = robot.ramps
+                rates[:, i] = np.minimum(
+                    rates[:, i], rates[:, others] @ fractions[others] / fractions[i]
+                )
+        offset, steepness = robot.position_dependent_velocity
         with np.errstate(invalid="ignore"):  # a joint without a velocity limit
-            share = np.where(np.isinf(rates[0]), 1.0, rates[0] / (offset + rates[0]))
-        braking = np.minimum(rates[1], steepness * share)
+            fraction = np.where(np.isinf(rates[0]), 1.0, rates[0] / (offset + rates[0]))
+        braking = np.minimum(rates[1], steepness * fraction)
         lag = offset / steepness
-        room = 0.5 * offset * lag
-        stated = [np.zeros(4), lower + room, upper - room]
+        distance = 0.5 * offset * lag
+        stated = [np.zeros(4), lower + distance, upper - distance]
         numbers = np.concatenate([*stated, *rates, braking, steepness, lag])
         limits = MotionNumbers.of(numbers)
         check_ranges(limits, np.inf)
@@ -468,12 +476,12 @@ def check_ranges(limits: MotionNumbers, rate: float) -> None:
     lag = limits.lag
     braking = limits.deceleration
     with np.errstate(invalid="ignore"):  # a joint without a position-dependent velocity limit
-        lost = np.where(lag > 0.0, lag**2 * limits.ramp * braking / (limits.ramp - braking), 0.0)
+        lost = np.where(lag > 0.0, lag**2 * limits.slope * braking / (limits.slope - braking), 0.0)
         rates = [joint_rates(limits, i) for i in range(lag.size)]
         usable = np.array([usable_jerk(own, 1.0 / rate) for own in rates])
     steepest = np.minimum(braking, np.sqrt(2.0 * usable * limits.velocity))
-    room = limits.upper - limits.lower - lost
-    short = (limits.jerk < np.inf) & (steepest**3 > usable**2 * room)
+    distance = limits.upper - limits.lower - lost
+    short = (limits.jerk < np.inf) & (steepest**3 > usable**2 * distance)
     if short.any():
         i = int(np.flatnonzero(short)[0])
         step = f", and more cannot be used at {1.0 / rate:g} s a step" if rate < np.inf else ""
@@ -508,8 +516,8 @@ def merged(limits: Sequence[Limit], tasks: Sequence[Task]) -> list[Limit]:
         if isinstance(limit, RateLimits) and (limit.limit is None or np.isfinite(limit.limit).any())
     )
     others = [limit for limit in limits if not isinstance(limit, RateLimits)]
-    held = tuple(t for t in tasks if isinstance(t, JointCouplingTask) and t.weight is None)
-    return [*others, MotionLimits(rates, held)] if rates else others
+    couplings = tuple(t for t in tasks if isinstance(t, JointCouplingTask) and t.weight is None)
+    return [*others, MotionLimits(rates, couplings)] if rates else others
 
 
 @compiled
@@ -528,8 +536,8 @@ def joint_bounds(
         rates: Its limits.
         periods: Periods of the step.
     """
-    above *= periods.share
-    below *= periods.share
+    above *= periods.fraction
+    below *= periods.fraction
     if rates.jerk < np.inf:
         lower, upper = _jerk_bounds(last, before, above, below, rates, periods)
     elif rates.acceleration < np.inf:
@@ -560,8 +568,8 @@ def _acceleration_bounds(
     below -= min(max(below, 0.0), ROUNDING)
     # Outside of the range the way back is no quicker than the velocity limit.
     if rates.lag > 0.0:
-        upper = _speed_below_ramp(above, rates, periods.hold)
-        lower = -_speed_below_ramp(below, rates, periods.hold)
+        upper = _speed_within(above, rates, periods.hold)
+        lower = -_speed_within(below, rates, periods.hold)
     else:
         unit = rates.deceleration * periods.hold
         upper = unit * approach(above / (unit * periods.hold), periods.vary)
@@ -572,21 +580,21 @@ def _acceleration_bounds(
 
 
 @compiled
-def _speed_below_ramp(room: float, rates: Rates, hold: float) -> float:
-    """Compute the largest velocity [rad/s] from which a joint can brake within `room` [rad].
+def _speed_within(distance: float, rates: Rates, hold: float) -> float:
+    """Compute the largest velocity [rad/s] from which a joint can brake within `distance` [rad].
 
     A position-dependent velocity limit is zero at its end, and bounds the velocity on the way.
     """
     accel = rates.acceleration
-    ramp = rates.ramp
+    slope = rates.slope
     lag = rates.lag
-    unit = ramp * (hold + lag)
-    speed = unit * approach(room / (unit * (hold + lag)), True)
+    unit = slope * (hold + lag)
+    speed = unit * approach(distance / (unit * (hold + lag)), True)
     # Where the limit shrinks by more than the joint can brake, it has to have braked before.
-    turn = accel * lag * ramp / (ramp - accel) if ramp > accel else np.inf
+    turn = accel * lag * slope / (slope - accel) if slope > accel else np.inf
     if speed > turn:
         unit = accel * hold
-        speed = unit * approach((room - 0.5 * turn * lag) / (unit * hold), True)
+        speed = unit * approach((distance - 0.5 * turn * lag) / (unit * hold), True)
     return speed
 
 
@@ -617,14 +625,14 @@ def _jerk_bounds(
     if lb > ub:
         lb = 0.5 * (lb + ub)
         ub = lb
-    way = (jerk, min(rates.deceleration, accel - jerk * longest), np.inf)
+    profile = (jerk, min(rates.deceleration, accel - jerk * longest), np.inf)
     margin = 0.0 if periods.vary else MARGIN * unit * dt
     if rates.lag > 0.0:
-        upper = _ceiling_below_ramp(lb, ub, above, last, rates, periods)
-        lower = -_ceiling_below_ramp(-ub, -lb, below, -last, rates, periods)
+        upper = _ceiling_below_velocity_limit(lb, ub, above, last, rates, periods)
+        lower = -_ceiling_below_velocity_limit(-ub, -lb, below, -last, rates, periods)
     else:
-        upper = _ceiling(lb, ub, above - margin, last, periods, way)
-        lower = -_ceiling(-ub, -lb, below - margin, -last, periods, way)
+        upper = _ceiling(lb, ub, above - margin, last, periods, profile)
+        lower = -_ceiling(-ub, -lb, below - margin, -last, periods, profile)
     if lower < upper and max(abs(last), abs(last - before)) < unit:
         # Held at that bound, a joint at its margin would swing by it, 2 + sqrt(3) times as far in
         # each period (the zeros of a sampled triple integrator): all but at rest, it comes to rest.
@@ -636,11 +644,11 @@ def _jerk_bounds(
 
 
 @compiled
-def _easing(room: float, hold: float) -> float:
-    """Compute the velocity [rad/s] of the way over `room` [rad]; what is rounding is not gone."""
-    if abs(room) <= ROUNDING:
+def _easing(distance: float, hold: float) -> float:
+    """Compute the velocity [rad/s] over a distance [rad] that is left; 0 if it is rounding."""
+    if abs(distance) <= ROUNDING:
         return 0.0
-    return EASE * room / hold
+    return EASE * distance / hold
 
 
 @compiled
@@ -674,22 +682,22 @@ def braking(last: float, lb: float, ub: float, jerk: float, periods: Periods) ->
 
 
 @compiled
-def approach(room: float, vary: bool) -> float:
-    """Compute the largest x for which x + (x - 1) + (x - 2) + ... down to 0 is within `room`.
+def approach(distance: float, vary: bool) -> float:
+    """Compute the largest x for which x + (x - 1) + (x - 2) + ... down to 0 is within `distance`.
 
     Where periods vary, for which x + x^2 / 2 is: that holds for any sum whose steps are shorter.
     """
-    if not room > 0.0 or room == np.inf:
-        return room
+    if not distance > 0.0 or distance == np.inf:
+        return distance
     if vary:
-        return 2.0 * room / (math.sqrt(1.0 + 2.0 * room) + 1.0)
-    m = math.floor(0.5 * (math.sqrt(1.0 + 8.0 * room) - 1.0))
-    return room / (m + 1.0) + 0.5 * m
+        return 2.0 * distance / (math.sqrt(1.0 + 2.0 * distance) + 1.0)
+    m = math.floor(0.5 * (math.sqrt(1.0 + 8.0 * distance) - 1.0))
+    return distance / (m + 1.0) + 0.5 * m
 
 
 @compiled
 def stopping_distance(v: float, a: float, J: float, A: float) -> float:
-    """Compute the way of a spline from velocity v and acceleration a to rest.
+    """Compute the stopping distance of a spline from velocity v and acceleration a.
 
     The joint does not turn round: v >= -a |a| / (2 J). It brakes at A, or at -a where that is more.
     """
@@ -697,22 +705,22 @@ def stopping_distance(v: float, a: float, J: float, A: float) -> float:
     square = max(J * v + 0.5 * a * a, 0.0)
     d = min(math.sqrt(square), deepest)
     T = (a + d) / J
-    way = T * (v + T * (0.5 * a - J * T / 6.0)) + d * d * d / (6.0 * J * J)
+    distance = T * (v + T * (0.5 * a - J * T / 6.0)) + d * d * d / (6.0 * J * J)
     if square > d * d:
         v += 0.5 * (a * a - d * d) / J
         h = 0.5 * d * d / J
-        way += (v - h) * (v + h) / (2.0 * d)
-    return way
+        distance += (v - h) * (v + h) / (2.0 * d)
+    return distance
 
 
 @compiled
-def highest(v: float, last: float, periods: Periods, way: tuple[float, float, float]) -> float:
-    """Compute the highest position of the way to rest after command v, from that before it.
+def highest(v: float, last: float, periods: Periods, profile: tuple[float, float, float]) -> float:
+    """Compute the highest position of the stopping path after command v, from that before it.
 
-    The way has a jerk [rad/s^3] and a deceleration [rad/s^2]. A joint that brakes by more than the
-    third number [rad/s^2] counts as one that brakes by that.
+    The profile has a jerk [rad/s^3] and a deceleration [rad/s^2]. A joint that brakes by more than
+    the third number [rad/s^2] counts as one that brakes by that.
     """
-    J, A, most = way
+    J, A, most = profile
     last = min(last, v + most * periods.dt)
     dt = periods.dt
     a = (v - last) / dt
@@ -735,9 +743,9 @@ def highest(v: float, last: float, periods: Periods, way: tuple[float, float, fl
 
 @compiled
 def usable_jerk(rates: Rates, period: float) -> float:
-    """Compute J', with which braking takes `SHARE` periods at least to a deceleration [rad/s^3]."""
+    """Compute J' [rad/s^3], with which braking reaches a deceleration in `JERK_PERIODS` or more."""
     steepest = min(rates.deceleration / period, rates.velocity / (period * period))
-    return min(rates.jerk, steepest / SHARE)
+    return min(rates.jerk, steepest / JERK_PERIODS)
 
 
 @compiled
@@ -747,17 +755,17 @@ def _ceiling(
     end: float,
     last: float,
     periods: Periods,
-    way: tuple[float, float, float],
+    profile: tuple[float, float, float],
 ) -> float:
     """Compute the largest command in [lb, ub] whose highest position is within `end`, else lb.
 
-    The way to rest is that of `highest`.
+    The stopping path is that of `highest`.
     """
-    if highest(ub, last, periods, way) <= end:
+    if highest(ub, last, periods, profile) <= end:
         return ub
     for _ in range(HALVINGS):
         middle = 0.5 * (lb + ub)
-        if highest(middle, last, periods, way) <= end:
+        if highest(middle, last, periods, profile) <= end:
             lb = middle
         else:
             ub = middle
@@ -765,28 +773,28 @@ def _ceiling(
 
 
 @compiled
-def _ceiling_below_ramp(
-    lb: float, ub: float, room: float, last: float, rates: Rates, periods: Periods
+def _ceiling_below_velocity_limit(
+    lb: float, ub: float, distance: float, last: float, rates: Rates, periods: Periods
 ) -> float:
-    """Compute the largest command in [lb, ub] whose way to rest is within `room`, else lb.
+    """Compute the largest command in [lb, ub] whose stopping path is within a distance, else lb.
 
     Below a position-dependent velocity limit it ends before that by what the limit asks for beyond
-    the way at constant deceleration: the lower the deceleration, the less.
+    the distance at constant deceleration: the lower the deceleration, the less.
     """
-    # Below a limit that shrinks, the way to rest is counted at the samples.
-    own = Periods(periods.dt, periods.hold, periods.longest, periods.share, True)
+    # Below a limit that shrinks, the stopping path is counted at the samples.
+    own = Periods(periods.dt, periods.hold, periods.longest, periods.fraction, True)
     deceleration = rates.deceleration
     for level in range(LEVELS):
         slower = Rates(
-            rates.velocity, rates.acceleration, rates.jerk, deceleration, rates.ramp, rates.lag
+            rates.velocity, rates.acceleration, rates.jerk, deceleration, rates.slope, rates.lag
         )
         J = usable_jerk(slower, periods.longest)
         A = min(deceleration, rates.acceleration - J * periods.longest)
-        end = room - 0.5 * rates.lag * rates.lag * rates.ramp * A / (rates.ramp - A)
+        end = distance - 0.5 * rates.lag * rates.lag * rates.slope * A / (rates.slope - A)
         # One that brakes by more is behind on its way.
-        way = (J, A, A)
-        if level == 0 or highest(lb, last, own, way) <= end:
-            lb = _ceiling(lb, ub, end, last, own, way)
+        profile = (J, A, A)
+        if level == 0 or highest(lb, last, own, profile) <= end:
+            lb = _ceiling(lb, ub, end, last, own, profile)
         deceleration *= LOWER
     return lb
 
@@ -802,8 +810,8 @@ def tip_speed_bounds(
     point = triple(Placement.of(step.placements[frame]).position)
     velocity = (0.0, 0.0, 0.0)
     for j in range(step.q.size):
-        share = step.last[j] * step.moves[frame, j]
-        velocity = combined(1.0, velocity, share, point_rate(step.jacobian, j, point))
+        fraction = step.last[j] * step.support[frame, j]
+        velocity = combined(1.0, velocity, fraction, point_rate(step.jacobian, j, point))
     speed = math.sqrt(dot(velocity, velocity))
     if not (speed > 0.0 and step.rate < np.inf):
         return
@@ -811,7 +819,7 @@ def tip_speed_bounds(
     along = np.empty(step.q.size)
     total = 0.0
     for j in range(step.q.size):
-        along[j] = step.moves[frame, j] * rate_along(step.jacobian, j, point, direction)
+        along[j] = step.support[frame, j] * rate_along(step.jacobian, j, point, direction)
         total += abs(along[j])
     growth = gain / step.rate * (own.limit - speed) / total
     for j in range(step.q.size):
@@ -835,13 +843,13 @@ class TipSpeedLimit(Limit):
             \gamma\,dt\,\frac{V - s}{\sum_i |g_i|},
 
     so that the speed along v grows by at most :math:`\gamma\,dt\,(V - s)` in a step, and shrinks by
-    as much above the limit. What is left shrinks exponentially, as the way to a position limit
+    as much above the limit. What is left shrinks exponentially, as the distance to a position limit
     does.
 
     The bounds give way to those of acceleration and jerk, without which nothing ties a command to
     the last one, and to position limits. The speed may then be above V for a while: by what the
     pose adds, :math:`\dot J \dot q / \gamma`, and by what jerk takes to turn an acceleration. A
-    limit of 0.9 times the robot's own has room for both.
+    limit of 0.9 times the robot's own covers both.
 
     Attributes:
         limit: Largest speed [m/s], above 0.

@@ -40,7 +40,7 @@ from iiwa_dnn.schemes.tasks import Orientation, OrientationTask, PositionTask
 SMALLEST = 1e-3
 """Weight of the squared velocity norm beside the largest speed, which alone leaves joints free."""
 
-Tracking = Literal["paper", "next"]
+Sample = Literal["start", "end"]
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,9 @@ class DoubleIndicator(Scheme):
             `simulate` and `Controller` anchor it where they begin.
         extra_limits: Limits beside the joints' positions and velocities, for example
             `AccelerationLimits` and `JerkLimits`.
-        tracking: ``"paper"``, or ``"next"``: rows towards the next target, with 1 / dt in place
-            of both gains (`iiwa_dnn.schemes.tasks`); `Reference.ahead` goes with other gains.
+        sample: Time of the target: ``"start"`` of the control period, as in the paper, or
+            ``"end"``, with feed-forward over the period and 1 / dt in place of both gains
+            (`iiwa_dnn.schemes.tasks`). `Reference.feed_forward` goes with other gains.
     """
 
     weight: float = 0.2
@@ -73,17 +74,16 @@ class DoubleIndicator(Scheme):
     kinetic: Kinetic = "identity"
     home: tuple[float, ...] | None = None
     extra_limits: tuple[Limit, ...] = ()
-    tracking: Tracking = "paper"
+    sample: Sample = "start"
 
     def __post_init__(self) -> None:
         if checks.not_negative("weight", self.weight) > 1.0:
             raise InvalidInputError("weight", f"must be in [0, 1], not {self.weight}", self.weight)
-        checks.one_of("tracking", self.tracking, get_args(Tracking))
+        checks.one_of("sample", self.sample, get_args(Sample))
         cyclic = CyclicMotion(weight=1.0 - self.weight, gain=self.drift_gain, home=self.home)
         object.__setattr__(self, "home", cyclic.home)
         tasks = tip_tasks(self.position_gain, self.orientation_gain, self.orientation)
-        object.__setattr__(self, "ahead", self.tracking == "next")
-        if self.ahead:
+        if self.sample == "end":
             tasks = [replace(task, gain=np.inf) for task in tasks]
         energy = KineticEnergy(weight=self.weight, kinetic=self.kinetic)
         if not isinstance(self.extra_limits, Iterable):

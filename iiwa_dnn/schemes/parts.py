@@ -38,14 +38,14 @@ Checks = Mapping[str, Callable[[str, Any], Any]]
 
 @entry
 def enter_cost(address: int, step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
-    """Enter a cost's kernel, with constants (k,), P (n, n) and the cost vector q (n,)."""
+    """Call a cost's kernel, with constants (k,), P (n, n) and the cost vector q (n,)."""
 
 
 @entry
 def enter_task(
     address: int, step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
-    """Enter a task's kernel, with constants (k,), target, A (rows, n), b (rows,)."""
+    """Call a task's kernel, with constants (k,), target, A (rows, n), b (rows,)."""
 
 
 @entry
@@ -58,7 +58,7 @@ def enter_limit(
     lb: Vector,
     ub: Vector,
 ) -> None:
-    """Enter a limit's kernel, with constants (k,), G (rows, n), h (rows,), lb and ub (n,)."""
+    """Call a limit's kernel, with constants (k,), G (rows, n), h (rows,), lb and ub (n,)."""
 
 
 _IDLE = {"h": np.inf, "lb": -np.inf, "ub": np.inf}

@@ -1,10 +1,10 @@
 """Schemes: costs, tasks and limits composed into the program of a control step.
 
-A scheme is laid out for a robot once, as named views (`StepProgram`).
+A scheme is laid out for a robot once, as named views (`ProgramLayout`).
 
-`StepProgram` states which rows belong to which part. `assemble` writes all rows in one compiled
+`ProgramLayout` states which rows belong to which part. `assemble` writes all rows in one compiled
 call, each part by its own kernel; what a part's kernel reads is brought up to date before it
-(`StepProgram.refresh`). This is the only file that knows where a constant lies.
+(`ProgramLayout.refresh`). This is the only file that knows where a constant lies.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterable, Mapping, Sequence
 from enum import IntEnum
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -70,15 +70,15 @@ class Scheme:
         tasks: Equality rows, or soft tasks.
         limits: Bounds and inequality rows.
         slack: Number of slack variables.
-        ahead: Whether a control loop shows it its references one period ahead
-            (`Reference.ahead`).
+        sample: Time of the targets in a control loop: ``"start"`` or ``"end"`` of the control
+            period; at the end with the mean twist over it (`Reference.feed_forward`).
     """
 
     costs: tuple[Cost, ...]
     tasks: tuple[Task, ...]
     limits: tuple[Limit, ...]
     slack: int = 0
-    ahead: bool = False
+    sample: Literal["start", "end"] = "start"
 
     def __init__(
         self,
@@ -114,7 +114,7 @@ class Scheme:
         scheme._compose(*lists)
         return scheme
 
-    def program(self, robot: Robot) -> StepProgram:
+    def program(self, robot: Robot) -> ProgramLayout:
         """Lay the parts out for a robot.
 
         Raises:
@@ -125,7 +125,7 @@ class Scheme:
         if type(self).build_qp is not Scheme.build_qp:
             problem = f"{type(self).__name__} overrides build_qp; write a Cost, a Task or a Limit"
             raise InvalidInputError("scheme", problem, self)
-        return StepProgram(robot, self)
+        return ProgramLayout(robot, self)
 
     def build_qp(
         self,
@@ -243,11 +243,11 @@ class ProgramArrays(NamedTuple):
 
     Attributes:
         sizes: Sizes of the programs.
-        table: `StepProgram.table`.
-        constants: `StepProgram.constants`, (k,).
+        table: `ProgramLayout.table`.
+        constants: `ProgramLayout.constants`, (k,).
         jacobian: `Kinematics.jacobian`, (dof, 6).
         placements: `Kinematics.placements`, (frames, 12).
-        moves: `Robot.moves`, (frames, dof).
+        support: `Robot.support`, (frames, dof).
         inertia: `Kinematics.inertia`, (dof, dof).
         rate: Inverse of the control period [1/s]; inf outside of a loop.
         tip: Index of the first tracked frame.
@@ -258,7 +258,7 @@ class ProgramArrays(NamedTuple):
     constants: Vector
     jacobian: Matrix
     placements: Matrix
-    moves: Matrix
+    support: Matrix
     inertia: Matrix
     rate: float
     tip: int
@@ -270,7 +270,7 @@ _CLOSE = 1e-9
 """Difference of two bounds that is rounding, in units of the velocity limit."""
 
 OFF = 1e-6
-"""What a relation of joints lacks from which on it is said [rad]."""
+"""Error of a relation of joints from which on it is reported [rad]."""
 
 
 class Block(NamedTuple):
@@ -297,7 +297,7 @@ class Block(NamedTuple):
     target: int
 
 
-class StepProgram:
+class ProgramLayout:
     """A scheme laid out for a robot of `dof` joints.
 
     Attributes:
@@ -415,7 +415,7 @@ class StepProgram:
             self.constants,
             self.kinematics.jacobian,
             self.kinematics.placements,
-            self.kinematics.robot.moves,
+            self.kinematics.robot.support,
             self.kinematics.inertia,
             1.0 / dt if dt < np.inf else np.inf,
             self.robot.frame_id(self.target_frames[0]),
@@ -478,11 +478,11 @@ class StepProgram:
         return QP.from_data(data, self.sizes)
 
     def settings(self) -> dict[str, object]:
-        """Return what names in words need (`iiwa_dnn.naming.in_the_way`).
+        """Return what names in words need (`iiwa_dnn.naming.active_limits`).
 
         ``rows`` has for each inequality row its part, its number in it from 1, and its name if any,
         ``bounding`` the limits that bound without a kind of their own (`naming.KINDS`), and
-        ``ramps`` the joints whose velocity limit depends on their position.
+        ``position_dependent_velocity`` the joints whose velocity limit depends on their position.
         """
         counts = [(limit, limit.row_count(self.robot)) for limit in self.scheme.limits]
         rows: list[dict[str, object]] = []
@@ -495,8 +495,14 @@ class StepProgram:
             for limit, count in counts
             if not (count or isinstance(limit, RateLimits))
         ]
-        ramps = np.flatnonzero(np.isfinite(self.robot.ramps[1])).tolist()
-        return {"rows": rows, "bounding": names, "ramps": ramps}
+        position_dependent_velocity = np.flatnonzero(
+            np.isfinite(self.robot.position_dependent_velocity[1])
+        ).tolist()
+        return {
+            "rows": rows,
+            "bounding": names,
+            "position_dependent_velocity": position_dependent_velocity,
+        }
 
 
 def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
@@ -533,7 +539,7 @@ def assemble(
 
     Args:
         data: The program, `QP.data`, (size,), overwritten.
-        arrays: `StepProgram.arrays`.
+        arrays: `ProgramLayout.arrays`.
         q: Joint positions [rad], (dof,).
         last: Last command [rad/s], (dof,).
         before: Command before the last one [rad/s], (dof,).
@@ -549,7 +555,7 @@ def assemble(
         before,
         arrays.jacobian,
         arrays.placements,
-        arrays.moves,
+        arrays.support,
         arrays.inertia,
         targets,
         least,
@@ -594,10 +600,10 @@ class LimitNames:
     """Names of the bounds and inequality rows of a controller's programs.
 
     Attributes:
-        settings: `StepProgram.settings`.
+        settings: `ProgramLayout.settings`.
     """
 
-    def __init__(self, program: StepProgram) -> None:
+    def __init__(self, program: ProgramLayout) -> None:
         """Take the limits of a step program."""
         self.settings = program.settings()
         self._program = program
@@ -610,7 +616,7 @@ class LimitNames:
         relations of joints that the positions q (n,) [rad] do not fulfil.
         """
         near = [
-            f"{names} meet, and no direction leads apart"
+            f"{names} meet, and no direction separates them"
             if kept == MEET
             else f"{names} began nearer than {promised:g} m, and keep {kept:.3g} m"
             for (names, promised), kept in zip(self._program.pairs, least, strict=True)
@@ -629,24 +635,24 @@ class LimitNames:
         return (*near, *off)
 
     def codes(
-        self, bounds: Matrix, sides: NDArray[Any], past: Matrix, periods: Periods
+        self, bounds: Matrix, sides: NDArray[Any], motion_state: Matrix, periods: Periods
     ) -> NDArray[np.int8]:
         """Give the bounds on some sides of a program's joints their codes.
 
         Args:
             bounds: Lower and upper bounds of the joints [rad/s], (2, n).
             sides: Above 0 for an upper bound, below for a lower one, 0 for neither, (n,).
-            past: Joint positions [rad], last command and the one before [rad/s], (3, n).
+            motion_state: Joint positions [rad], last command and the one before [rad/s], (3, n).
             periods: Periods of the step.
 
         Returns:
             Places in `naming.KINDS`, from 1, negative for lower bounds; 0 where `sides` is, (n,).
         """
-        codes = np.zeros(past.shape[1], np.int8)
+        codes = np.zeros(motion_state.shape[1], np.int8)
         for i in np.flatnonzero(sides[: codes.size]).tolist():
             rates = joint_rates(self._limits, i)
             own = (bounds[0, i], bounds[1, i])
-            kind = bound_kind(own, past[1, i], past[2, i], sides[i], rates, periods)
+            kind = bound_kind(own, motion_state[1, i], motion_state[2, i], sides[i], rates, periods)
             codes[i] = kind if sides[i] > 0.0 else -kind
         return codes
 
@@ -680,8 +686,8 @@ def bound_kind(
     if rates.jerk < np.inf:
         # The velocity after which the acceleration can still be taken back in time.
         unit = dt * dt * usable_jerk(rates, periods.longest)
-        room = (rates.velocity - sign * last) / unit
-        speed = sign * last + unit * approach(room, periods.vary or rates.lag > 0.0)
+        periods_left = (rates.velocity - sign * last) / unit
+        speed = sign * last + unit * approach(periods_left, periods.vary or rates.lag > 0.0)
     kind = POSITION
     if abs(sign * (2.0 * last - before) + dt * dt * rates.jerk - value) <= close:
         kind = JERK

@@ -6,8 +6,8 @@ the box has half-extents h about the origin, along the axes. It may be flat: wit
 point, with one a segment.
 
 Along the joints :math:`1 \dots n` between a body at rest and the link, which travel by
-:math:`\delta_k`, and with a point at most :math:`r_k` from the axis of joint k, the point's way,
-and what that lacks to be linear in the joints' (twice), are at most
+:math:`\delta_k`, and with a point at most :math:`r_k` from the axis of joint k, the point's
+displacement, and twice its remainder of second order in the joints', are at most
 
 .. math::
 
@@ -15,7 +15,7 @@ and what that lacks to be linear in the joints' (twice), are at most
     B = \sum_k r_k \delta_k \Bigl(\delta_k + 2 \sum_{j<k} \delta_j\Bigr)
 
 (docs/theory_braking.md). A prismatic joint counts with :math:`r_k = 1`, turns nothing and has no
-:math:`\delta_k^2`. With velocities in place of ways they bound velocity and acceleration.
+:math:`\delta_k^2`. With velocities in place of displacements they bound velocity and acceleration.
 """
 
 import itertools
@@ -113,7 +113,7 @@ class SceneViews(NamedTuple):
         dq_max: Velocity limits of the joints [rad/s], (n,).
         bodies: A `Body` in each row, (b, 16).
         pairs: A `Pair` in each row, (k, 5).
-        moves: For each pair and joint 1 if it moves the second body alone, -1 if it moves the
+        support: For each pair and joint 1 if it moves the second body alone, -1 if it moves the
             first alone, else 0, (k, n).
         radii: For each pair and joint the largest distance of the second body from its axis [m], -1
             for a prismatic joint, 0 for one that moves neither alone, (k, n).
@@ -123,7 +123,7 @@ class SceneViews(NamedTuple):
     dq_max: Vector
     bodies: Matrix
     pairs: Matrix
-    moves: Matrix
+    support: Matrix
     radii: Matrix
 
 
@@ -210,7 +210,7 @@ def make_scene(
         robot: The robot.
         obstacles: The obstacles.
         self_collision: Whether pairs of links are watched.
-        distances: Least distance [m], and the largest rate of the way to it [1/s].
+        distances: Least distance [m], and the largest rate at which a distance shrinks to it [1/s].
         left_out: Names of the bodies of pairs that are not watched. Nor are those that no joint
             moves.
 
@@ -226,7 +226,7 @@ def make_scene(
     bodies = _bodies(robot, obstacles)
     links = len(bodies) - len(obstacles)
     pairs = [*collision_model(robot).pairs(robot)] if self_collision else []
-    carried = [k for k in range(links) if robot.moves[bodies[k].frame].any()]
+    carried = [k for k in range(links) if robot.support[bodies[k].frame].any()]
     pairs += itertools.product(range(links, len(bodies)), carried)
     frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
     rows, motions = _layout(robot, bodies, pairs)
@@ -285,7 +285,7 @@ def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArr
         write_end_rates(constants, kinematics.jacobian, kinematics.placements, rates)
     itself = [[Pair.of(row).speed > 0.0] for row in scene.pairs]
     moved = (rates > UNMOVED) | np.array(itself, dtype=bool).reshape(-1, 1)
-    return np.array(moved & scene.moves.any(axis=1, keepdims=True))
+    return np.array(moved & scene.support.any(axis=1, keepdims=True))
 
 
 def _constants(
@@ -314,7 +314,7 @@ def _constants(
 def _layout(
     robot: Robot, bodies: list[_Body], pairs: list[tuple[int, int]]
 ) -> tuple[Matrix, Matrix]:
-    """Return `SceneViews.pairs`, (k, 5), and `moves` and `radii`, (k, 2, n), of pairs of bodies."""
+    """Return `SceneViews.pairs`, (k, 5), `support` and `radii`, (k, 2, n), of pairs of bodies."""
     rows = [
         Pair.make(
             speed=bodies[i].speed,
@@ -340,25 +340,25 @@ def _motion(robot: Robot, first: _Body, second: _Body) -> Matrix:
     model = robot.model
     center, rotation, half = second.box
     placement = model.frames[second.frame].placement
-    moves = robot.moves[second.frame] - robot.moves[first.frame]
+    support = robot.support[second.frame] - robot.support[first.frame]
     radii = np.zeros(robot.dof)
     # From the second body to the base, and up to the first: nothing is farther than `reach` from
     # the joint in turn, and `offsets` lead from the joint before it.
     offsets = np.array([placement.act(center + z * rotation[:, 2]) for z in (-half[2], half[2])])
     reach = float(np.linalg.norm(offsets, axis=1).max())
-    for j in np.flatnonzero(moves > 0.0)[::-1].tolist():
+    for j in np.flatnonzero(support > 0.0)[::-1].tolist():
         # The axis may be met anywhere along itself: only what is across it counts.
         axis = np.reshape(model.joints[j + 1].createData().S, (2, 3)).sum(axis=0)
         across = np.linalg.norm(np.cross(axis, offsets), axis=1).max()
         radii[j] = reach - np.linalg.norm(offsets, axis=1).max() + across
         offsets = model.jointPlacements[j + 1].translation[np.newaxis]
         reach += robot.lengths[j]
-    for j in np.flatnonzero(moves < 0.0):
+    for j in np.flatnonzero(support < 0.0):
         reach += robot.lengths[j]  # on the way up a joint's own offset lies ahead of it
         radii[j] = reach
     slides = list(robot.slides)
-    radii[slides] = np.where(moves[slides], -1.0, 0.0)
-    return np.array([moves, radii])
+    radii[slides] = np.where(support[slides], -1.0, 0.0)
+    return np.array([support, radii])
 
 
 @compiled
@@ -370,14 +370,14 @@ def scene_views(constants: Vector, dof: int) -> SceneViews:
     pairs = head.pairs
     at_bodies = at_limits + dof
     at_pairs = at_bodies + Body.width() * bodies
-    at_moves = at_pairs + Pair.width() * pairs
-    at_radii = at_moves + dof * pairs
+    at_support = at_pairs + Pair.width() * pairs
+    at_radii = at_support + dof * pairs
     return SceneViews(
         head,
         constants[at_limits:at_bodies],
         constants[at_bodies:at_pairs].reshape(bodies, Body.width()),
-        constants[at_pairs:at_moves].reshape(pairs, Pair.width()),
-        constants[at_moves:at_radii].reshape(pairs, dof),
+        constants[at_pairs:at_support].reshape(pairs, Pair.width()),
+        constants[at_support:at_radii].reshape(pairs, dof),
         constants[at_radii : at_radii + dof * pairs].reshape(pairs, dof),
     )
 
@@ -481,26 +481,26 @@ def write_end_rates(constants: Vector, jacobian: Matrix, placements: Matrix, rat
             if dot(contact.normal, contact.normal) == 0.0:
                 rates[k, at] = np.inf
             for j in range(dof):
-                rate = abs(scene.moves[k, j] * rate_along(jacobian, j, ends[at], contact.normal))
+                rate = abs(scene.support[k, j] * rate_along(jacobian, j, ends[at], contact.normal))
                 rates[k, at] = max(rates[k, at], rate)
 
 
 @compiled
-def second_order(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> float:
+def second_order(support: Matrix, radii: Matrix, k: int, travel: Vector) -> float:
     """Compute B [m] for pair k, whose joints travel by `travel` (n,) [rad].
 
     Args:
-        moves: `SceneViews.moves`, (pairs, n).
+        support: `SceneViews.support`, (pairs, n).
         radii: `SceneViews.radii`, (pairs, n).
         k: Index of the pair.
-        travel: Way of each joint, at least 0, (n,) [rad].
+        travel: Displacement of each joint, at least 0, (n,) [rad].
     """
     n = travel.size
     B = 0.0
     turning = 0.0
     for step in range(2 * n):  # from the first body up to the common base, then down
         j = n - 1 - step if step < n else step - n
-        if moves[k, j] == 0.0 or (moves[k, j] < 0.0) != (step < n):
+        if support[k, j] == 0.0 or (support[k, j] < 0.0) != (step < n):
             continue
         if radii[k, j] < 0.0:
             B += 2.0 * travel[j] * turning
@@ -512,7 +512,7 @@ def second_order(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> float:
 
 @compiled
 def beyond(x: Triple, half: Triple) -> Triple:
-    """Return the way to a point from the nearest one of a box."""
+    """Return the vector to a point from the nearest one of a box."""
     return (
         x[0] - min(max(x[0], -half[0]), half[0]),
         x[1] - min(max(x[1], -half[1]), half[1]),
@@ -536,8 +536,8 @@ def nearest_parameter(a: Triple, u: Triple, half: Triple) -> float:
     if above <= 0.0:
         return high
     for k in range(ROUNDS):
-        share = 0.5 if k % 3 == 2 else below / (below - above)
-        middle = low + share * (high - low)
+        fraction = 0.5 if k % 3 == 2 else below / (below - above)
+        middle = low + fraction * (high - low)
         slope = dot(u, beyond(combined(1.0, a, middle, u), half))
         if slope == 0.0 or not low < middle < high:
             return middle

@@ -35,7 +35,7 @@ class StepViews(NamedTuple):
         before: Command before the last one [rad/s], (n,).
         jacobian: Joint Jacobian, `Kinematics.jacobian`, (n, 6).
         placements: Frame placements by frame index, `Kinematics.placements`, (frames, 12).
-        moves: 1 where a joint moves a frame, else 0, `Robot.moves`, (frames, n).
+        support: 1 where a joint moves a frame, else 0, `Robot.support`, (frames, n).
         inertia: Joint-space inertia matrix [kg m^2], (n, n), current if a cost needs it.
         targets: Targets of the tracked frames, `Target.data` each, (k, 18).
         least: Distance that each watched pair has to keep [m], (pairs,), a state that the limit
@@ -49,7 +49,7 @@ class StepViews(NamedTuple):
     before: Vector
     jacobian: Matrix
     placements: Matrix
-    moves: Matrix
+    support: Matrix
     inertia: Matrix
     targets: Matrix
     least: Vector
@@ -181,7 +181,7 @@ def write_velocity(
 ) -> None:
     """Write the velocity along an axis of a frame's point as seen from its base, a row (n,)."""
     for j in range(step.q.size):
-        sign = step.moves[own.frame, j] - step.moves[own.relative_to, j]
+        sign = step.support[own.frame, j] - step.support[own.relative_to, j]
         row[j] = sign * rate_along(step.jacobian, j, point, axis)
 
 
@@ -189,5 +189,5 @@ def write_velocity(
 def write_spin(step: StepViews, own: FrameConstants, axis: Vector3, row: Vector) -> None:
     """Write the angular velocity about an axis of a frame as seen from its base, a row (n,)."""
     for j in range(step.q.size):
-        sign = step.moves[own.frame, j] - step.moves[own.relative_to, j]
+        sign = step.support[own.frame, j] - step.support[own.relative_to, j]
         row[j] = sign * dot(axis, triple(Twist.of(step.jacobian[j]).angular))

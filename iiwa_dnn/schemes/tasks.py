@@ -6,8 +6,9 @@ error to zero at the rate `gain`. With a ``weight`` w the rows become the cost
 :math:`\tfrac12 w\,\|A \dot q - b\|^2`.
 
 A gain above 1 / dt is cut to it. With this one and a reference seen one period ahead
-(`Reference.ahead`) the rows ask for the next target, and an Euler step leaves nothing of the error
-but the step's curvature, :math:`\tfrac12 dt^2\,\dot q^T \nabla^2 p\,\dot q`, which does not add up.
+(`Reference.feed_forward`) the rows ask for the next target, and an Euler step leaves nothing of the
+error but the step's curvature, :math:`\tfrac12 dt^2\,\dot q^T \nabla^2 p\,\dot q`, which does not
+add up.
 """
 
 import math
@@ -605,6 +606,6 @@ class JointCouplingTask(JointTask):
         return [(self.coefficients, self.offset)]
 
     def missing(self, robot: Robot, q: Vector) -> float:
-        """Return what the relation lacks at joint positions q (n,), c_0 - c^T q [rad]."""
+        """Return the error of the relation at joint positions q (n,), c_0 - c^T q [rad]."""
         (relation,) = self.relations(robot)
         return float(relation.offset - relation.coefficients @ q)

@@ -10,8 +10,8 @@ from iiwa_dnn.simulation.noise import (
 )
 from iiwa_dnn.simulation.plants import (
     IdealPlant as IdealPlant,
-    Moved as Moved,
     MujocoPlant as MujocoPlant,
     Plant as Plant,
+    PlantState as PlantState,
 )
 from iiwa_dnn.simulation.runner import count_steps as count_steps, simulate as simulate

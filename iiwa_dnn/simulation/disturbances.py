@@ -44,11 +44,11 @@ class Disturbances:
     Attributes:
         mass_error: Relative error of the moving links' masses and inertias: each is too heavy or
             too light by this much, which of the two is drawn from the seed.
-        friction: Coulomb friction as a share of the joints' torque limits; a joint without a
+        friction: Coulomb friction as a fraction of the joints' torque limits; a joint without a
             limit has none.
         encoder_noise: Standard deviation of white noise on every encoder reading [rad].
         encoder_bits: Encoder readings are rounded to 2 pi / 2^bits [rad]; 0 rounds nothing.
-        delay: Control periods by which a velocity command arrives late.
+        delay_periods: Control periods by which a velocity command arrives late.
         push: A push on the tip, if there is one.
     """
 
@@ -56,14 +56,14 @@ class Disturbances:
     friction: float = 0.0
     encoder_noise: float = 0.0
     encoder_bits: int = 0
-    delay: int = 0
+    delay_periods: int = 0
     push: Push | None = None
 
     def __post_init__(self) -> None:
         """Check the numbers; raises InvalidInputError naming the one that is wrong."""
         for name in ("mass_error", "friction", "encoder_noise"):
             checks.not_negative(name, getattr(self, name))
-        for name in ("encoder_bits", "delay"):
+        for name in ("encoder_bits", "delay_periods"):
             checks.integer(name, getattr(self, name), 0)
         if self.mass_error >= 1.0:
             raise InvalidInputError("mass_error", "must be below 1", self.mass_error)
@@ -78,7 +78,7 @@ class Disturbances:
             friction=0.01,  # 1.76 N m at the iiwa's first two joints
             encoder_noise=1e-5,
             encoder_bits=18,  # 2.4e-5 rad
-            delay=1,
+            delay_periods=1,
             push=push,
         )
 

@@ -71,7 +71,7 @@ class Loop:
             controller: The controller.
             plant: The plant, started.
             chain: Noise, filter and estimator between controller and plant.
-            method: Method that integrates the motion of a plant that moves as it is told.
+            method: Method that integrates the motion of a plant that moves as commanded.
             q0: True joint positions at the start [rad], (n,).
         """
         self.controller = controller
@@ -109,9 +109,11 @@ class Loop:
             velocity = commands[0].dq
             action = commands[0].action
             dq = velocity
-        place = controller.placement(self.q) if self._misled else commands[0].placement
+        placement = controller.placement(self.q) if self._misled else commands[0].placement
         sent = None if self.plant.exact else dq
-        return self._move(dq, Outcome(commands, velocity, dq, self.q, place, action, clipped, sent))
+        return self._move(
+            dq, Outcome(commands, velocity, dq, self.q, placement, action, clipped, sent)
+        )
 
     def _ask(self, q: Vector, t: float) -> tuple[list[Command], Vector, Action]:
         """Ask for a step's commands, one a stage; return them, their mean, and the action.

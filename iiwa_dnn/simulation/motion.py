@@ -19,17 +19,17 @@ Motion = Literal["euler", "midpoint", "rk4"]
 VelocityField = Callable[[Vector, float], Vector]
 
 
-def check_motion(motion: str, one_clock: bool, ahead: bool) -> None:
+def check_motion(motion: str, one_clock: bool, at_end: bool) -> None:
     """Raise InvalidInputError unless a run can take this motion.
 
-    Network or physics that advance by one control period a step have one clock; `ahead` are tasks
+    Network or physics that advance by one control period a step have one clock; `at_end` are tasks
     that track the target one control period ahead.
     """
     checks.one_of("motion", motion, tuple(MOTIONS))
     problem = "must be euler in continuous mode and in physics: they have one clock"
-    if ahead:
+    if at_end:
         problem = "must be euler with tasks that track the next target"
-    if motion != "euler" and (one_clock or ahead):
+    if motion != "euler" and (one_clock or at_end):
         raise InvalidInputError("motion", problem, motion)
 
 

@@ -21,7 +21,7 @@ NOISE_ENTRIES: tuple[NoiseEntry, ...] = ("velocity", "network", "measurement")
 
 ``velocity`` [rad/s]: the joint velocity that the controller commands, before the filter: the
 paper's section IV. ``network`` [rad/s]: x of the network's state after each step's answer was
-taken, so the network has one control step to work it off; a network that settles at every step
+taken, so the network has one control step to work it off; a network that converges at every step
 forgets it. ``measurement`` [rad]: the joint positions that the controller sees; the robot, and the
 record, keep the true ones.
 """
@@ -138,7 +138,7 @@ class SignalChain:
         elif self._entry == "network":
             controller.solver.disturb(self._noise[k])
         command, clipped = clip_command(
-            qp, self._average(command), controller.control_step.plan.yielding
+            qp, self._average(command), controller.control_layout.plan.yielding
         )
         if estimator is not None:
             # The joints get the average, clipped: the estimator is told of its known part.

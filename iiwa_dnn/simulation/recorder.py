@@ -49,7 +49,7 @@ class Recorder:
         self._kinematics = Kinematics(program.robot, program.target_frames)
         self.outcomes: list[Outcome] = []
         self.last_step: int | None = None
-        self.layout = controller.control_step.layout
+        self.layout = controller.control_layout.log_layout
         self.infeasible: int | None = None
         self._names = LimitNames(program)
         self._done = 0
@@ -73,19 +73,19 @@ class Recorder:
         outcomes = self.outcomes
         self.outcomes = []
         count = len(outcomes)
-        rows = np.array([command.row for each in outcomes for command in each.commands])
+        data = np.array([command.data for each in outcomes for command in each.commands])
         steps = slice(self._done, self._done + count)
         arrays = self.arrays
         arrays["q"][steps.start + 1 : steps.stop + 1] = [each.q for each in outcomes]
         arrays["dq"][steps] = [each.dq for each in outcomes]
         arrays["dq_solver"][steps] = [each.velocity for each in outcomes]
-        stages = len(rows) // count
-        stats = log_of(rows, self.layout.sizes).stats
+        stages = len(data) // count
+        stats = log_of(data, self.layout.sizes).stats
         iterations = np.reshape(stats.iterations, (count, stages))
         arrays["iterations"][steps] = iterations.sum(axis=1)
         residuals = np.max([stats.primal, stats.dual, stats.gap], axis=0)
         arrays["kkt_residual"][steps] = residuals.reshape(count, stages).max(axis=1)
-        first = rows[::stages]  # pose, target and multipliers are the first stage's
+        first = data[::stages]  # pose, target and multipliers are the first stage's
         logs = log_of(first, self.layout.sizes)
         self._look_for_infeasible(first)
         placements = np.array([each.placement for each in outcomes])
@@ -107,9 +107,9 @@ class Recorder:
                 self._add_kinds(k, outcome.commands[0])
         self._add_kinetic_index(steps, outcomes[-1].ends)
         self._done += count
-        return rows
+        return data
 
-    def _look_for_infeasible(self, rows: Matrix) -> None:
+    def _look_for_infeasible(self, data: Matrix) -> None:
         """Solve the program of each `SEARCHED` rows (k, width) that is violated most.
 
         What the network lags behind in continuous mode may have no solution at all. The first one
@@ -117,17 +117,17 @@ class Recorder:
         """
         if self._controller.mode != "continuous" or self.infeasible is not None:
             return
-        violation = np.asarray(log_of(rows, self.layout.sizes).stats.primal)
-        for first in range(0, len(rows), SEARCHED):
+        violation = np.asarray(log_of(data, self.layout.sizes).stats.primal)
+        for first in range(0, len(data), SEARCHED):
             worst = first + int(violation[first : first + SEARCHED].argmax())
-            if self._is_infeasible(rows[worst]):
-                found = (k for k in range(first, worst) if self._is_infeasible(rows[k]))
+            if self._is_infeasible(data[worst]):
+                found = (k for k in range(first, worst) if self._is_infeasible(data[k]))
                 self.infeasible = self._done + next(found, worst)
                 return
 
-    def _is_infeasible(self, row: Vector) -> bool:
-        """Test whether the program of a row (width,) is shown to have no solution."""
-        qp = QP.from_data(log_of(row, self.layout.sizes).program, self.layout.qp_sizes)
+    def _is_infeasible(self, data: Vector) -> bool:
+        """Test whether the program of a step log (width,) is shown to have no solution."""
+        qp = QP.from_data(log_of(data, self.layout.sizes).program, self.layout.qp_sizes)
         return DNNSolver().solve(qp).status is Status.PRIMAL_INFEASIBLE
 
     def finish(self, steps: int) -> dict[str, NDArray[Any]]:
@@ -135,7 +135,7 @@ class Recorder:
         controller = self._controller
         self.arrays["t"] = controller.dt * np.arange(steps + 1, dtype=np.float64)
         placement = controller.placement(self.arrays["q"][steps])
-        targets = controller.targets(self.arrays["t"][steps] - controller.delay)
+        targets = controller.targets(self.arrays["t"][steps] - controller.path_lag)
         self._add_samples(steps, placement[np.newaxis], targets.reshape(1, -1))
         return {
             name: array[: steps + (COLUMNS[name].shape[0] == "N+1")]
@@ -163,20 +163,20 @@ class Recorder:
         if command.action is Action.NONE:
             return
         self._array("fraction")[k] = command.fraction
-        self._array("blocking")[k] = command.codes(command.blocking)
-        rows = command.blocking[self.layout.sizes.n :]
-        if rows.any():
-            self._array("blocking_rows", m=rows.size)[k] = rows
+        self._array("limiting")[k] = command.codes(command.limiting)
+        sides = command.limiting[self.layout.sizes.n :]
+        if sides.any():
+            self._array("limiting_rows", m=sides.size)[k] = sides
 
     def _add_kinds(self, k: int, command: Command) -> None:
         """Note of what kind the active bounds are in step k."""
         tol = self._controller.solver.tol
-        multipliers, _ = self.layout.multipliers(command.row, tol)
+        multipliers, _ = self.layout.multipliers(command.data, tol)
         if multipliers.any():
             qp = command.qp
             bounds = np.array([qp.lb, qp.ub])
             periods = self.layout.periods
-            kinds = self._names.codes(bounds, multipliers, command.past, periods)
+            kinds = self._names.codes(bounds, multipliers, command.motion_state, periods)
             self._array("bound_kind")[k] = kinds
 
     def _add_kinetic_index(self, steps: slice, ended: bool) -> None:

@@ -78,7 +78,7 @@ def simulate(
         q0: Joint positions at the start [rad], (n,).
         dt: Control period [s].
         duration: Length of the run [s], rounded to whole steps; None takes the reference's.
-        mode: ``"converged"``: the network settles at every step; ``"continuous"``: it advances by
+        mode: ``"converged"``: the network converges at every step; ``"continuous"``: it advances by
             one control period (`iiwa_dnn.Controller`).
         motion: ``"euler"``, ``"midpoint"`` or ``"rk4"``; ``continuous`` and physics take ``euler``.
         policy: Action at a step without solution (`iiwa_dnn.Controller`).
@@ -121,7 +121,7 @@ def simulate(
     steps = count_steps(reference, dt, duration)
     controller.anchor(start)
     controller.warn_of_start(start, 0.0, own=True, stacklevel=3)
-    check_motion(motion, mode == "continuous" or not plant.exact, controller.scheme.ahead)
+    check_motion(motion, mode == "continuous" or not plant.exact, controller.scheme.sample == "end")
     chain = SignalChain(
         noise, noise_at, filter_window, estimator, (steps, robot.dof), controller.dt, seed
     )
@@ -218,7 +218,9 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
     robot = controller.robot
     solver = controller.solver
     program = controller.program
-    integrator = solver.settler if controller.mode == "converged" else solver.follower
+    integrator = (
+        solver.solve_integrator if controller.mode == "converged" else solver.advance_integrator
+    )
     paths = by_frame(controller.reference, "").values()
     rates = (program.rate_limits or MotionLimits()).constants(robot)
     kept = dict(zip(RATES, (rates.acceleration, rates.jerk), strict=True))

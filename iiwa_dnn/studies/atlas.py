@@ -2,9 +2,9 @@
 
 Every network drives the paper's arm along a path in continuous mode, and is granted so many
 floating-point operations a control period, a program's set-up included. All gains follow one rule:
-a share of the largest step that is stable with the linearised network, the best of `SHARES` in an
-undisturbed run, with one evaluation a period or with as many as the work allows. A network of one's
-own is named as ``module:NAME`` or, in a file of the current folder, as ``file.py:NAME``.
+a fraction of the largest step that is stable with the linearised network, the best of `FRACTIONS`
+in an undisturbed run, with one evaluation a period or with as many as the work allows. A network of
+one's own is named as ``module:NAME`` or, in a file of the current folder, as ``file.py:NAME``.
 """
 
 import hashlib
@@ -75,8 +75,8 @@ DT = 2e-3
 DURATION = 0.5
 """Length of a run [s]."""
 
-SHARES = (0.05, 0.15, 0.4, 0.95)
-"""Shares of the linear limit among which every network's gain is chosen."""
+FRACTIONS = (0.05, 0.15, 0.4, 0.95)
+"""Fractions of the linear limit among which every network's gain is chosen."""
 
 PERIODS = (4e-3, 2e-3, 1e-3, 5e-4)
 """Control periods [s] against which the order of a formula is found."""
@@ -168,13 +168,13 @@ def disturbed(solver: DNNSolver, noise: Matrix) -> DNNSolver:
 
 @dataclass(frozen=True)
 class Paced(ExplicitEuler):
-    """Explicit Euler by `substeps` steps, each a share of the longest that is linearly stable.
+    """Explicit Euler by `substeps` steps, each a fraction of the longest that is linearly stable.
 
     Attributes:
-        share: Share of `Flow.linear_limit`.
+        fraction: Fraction of `Flow.linear_limit`.
     """
 
-    share: float = 0.95
+    fraction: float = 0.95
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` (size,) in place, whatever the duration; returns the steps taken.
@@ -182,22 +182,22 @@ class Paced(ExplicitEuler):
         Raises:
             InvalidInputError: No step is stable.
         """
-        step = self.share * network.flow(qp).linear_limit(state)
+        step = self.fraction * network.flow(qp).linear_limit(state)
         if not step > 0.0:
             raise InvalidInputError(
-                "network", "no explicit step is stable; `settled` would integrate it implicitly"
+                "network", "no explicit step is stable; `implicit` would integrate it implicitly"
             )
         return super().advance(network, qp, state, step * (self.substeps or 1))
 
 
 @dataclass(frozen=True)
 class CutOff(ImplicitEuler):
-    """Implicit Euler towards rest, cut off after `max_steps` linear systems."""
+    """Implicit Euler towards rest, cut off after `max_steps` linear solves."""
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
-        """Advance `state` (size,) in place; returns the linear systems solved."""
+        """Advance `state` (size,) in place; returns the linear solves."""
         n, m, p = qp.sizes
-        return self.settle(network, qp, state, np.empty(2 * n + m + p), 1e-12)[0]
+        return self.solve(network, qp, state, np.empty(2 * n + m + p), 1e-12)[0]
 
 
 class Entry(NamedTuple):
@@ -205,7 +205,7 @@ class Entry(NamedTuple):
 
     Attributes:
         network: The network, or what is documented in its place.
-        make: Makes its solver from the evaluations a control period, the share of the linear
+        make: Makes its solver from the evaluations a control period, the fraction of the linear
             limit that is its gain, and the control period [s].
         work: Operations of a program's set-up and of an evaluation, from the sizes (n, m, p).
         paced: Whether it has a gain.
@@ -217,20 +217,22 @@ class Entry(NamedTuple):
     paced: bool = True
 
 
-def still(network: Network) -> Entry:
+def constant(network: Network) -> Entry:
     """Return the entry of a network for a program that stands still."""
     return Entry(
         network,
-        lambda count, share, dt: DNNSolver(network, follower=Paced(count, share=share)),
+        lambda count, fraction, dt: DNNSolver(
+            network, advance_integrator=Paced(count, fraction=fraction)
+        ),
         network.work,
     )
 
 
-def settled(network: Network) -> Entry:
+def implicit(network: Network) -> Entry:
     """Return the entry of a network that is integrated implicitly towards rest."""
     return Entry(
         network,
-        lambda count, share, dt: DNNSolver(network, follower=CutOff(max_steps=count)),
+        lambda count, fraction, dt: DNNSolver(network, advance_integrator=CutOff(max_steps=count)),
         _condensed,
         paced=False,
     )
@@ -239,22 +241,24 @@ def settled(network: Network) -> Entry:
 def iterated(network: Network) -> Entry:
     """Return the entry of a method whose iteration is an explicit step of one rho."""
 
-    def make(count: int, share: float, dt: float) -> DNNSolver:
-        return DNNSolver(replace(network, rho=dt / count), follower=ExplicitEuler(substeps=count))
+    def make(count: int, fraction: float, dt: float) -> DNNSolver:
+        return DNNSolver(
+            replace(network, rho=dt / count), advance_integrator=ExplicitEuler(substeps=count)
+        )
 
     return Entry(network, make, network.work, paced=False)
 
 
 def zeroing(formula: Formula = EULER, **options: Any) -> Entry:
-    """Return the entry of a zeroing network, its gain a share of the formula's limit."""
-    return follows(ZeroingNetwork(**options), formula)
+    """Return the entry of a zeroing network, its gain a fraction of the formula's limit."""
+    return moving(ZeroingNetwork(**options), formula)
 
 
-def follows(network: Network, formula: Formula = EULER) -> Entry:
+def moving(network: Network, formula: Formula = EULER) -> Entry:
     """Return the entry of a network that follows a program that moves."""
 
-    def make(count: int, share: float, dt: float) -> DNNSolver:
-        rho = dt / count / (share * formula.limit)
+    def make(count: int, fraction: float, dt: float) -> DNNSolver:
+        rho = dt / count / (fraction * formula.limit)
         return TrackingSolver(replace(network, rho=rho), formula=formula, substeps=count)
 
     return Entry(network, make, network.work)
@@ -267,18 +271,18 @@ def _condensed(sizes: Sizes) -> tuple[float, float]:
 
 
 def _activated(network: Network, activation: Any) -> Entry:
-    return still(ActivatedNetwork(network=network, activation=activation))
+    return constant(ActivatedNetwork(network=network, activation=activation))
 
 
 NETWORKS: dict[str, Entry] = {
-    "projection (the paper's)": still(ProjectionNetwork()),
-    "projection, bounds by multipliers only": still(ProjectionNetwork(primal_projection=False)),
-    "one-layer": still(OneLayerNetwork(corrected=False)),
-    "one-layer, corrected": still(OneLayerNetwork()),
-    "dual": still(DualNetwork()),
-    "simplified dual": still(SimplifiedDualNetwork()),
-    "primal-dual": still(PrimalDualNetwork()),
-    "gradient": still(GradientNetwork()),
+    "projection (the paper's)": constant(ProjectionNetwork()),
+    "projection, bounds by multipliers only": constant(ProjectionNetwork(primal_projection=False)),
+    "one-layer": constant(OneLayerNetwork(corrected=False)),
+    "one-layer, corrected": constant(OneLayerNetwork()),
+    "dual": constant(DualNetwork()),
+    "simplified dual": constant(SimplifiedDualNetwork()),
+    "primal-dual": constant(PrimalDualNetwork()),
+    "gradient": constant(GradientNetwork()),
     "dual, finite time": _activated(DualNetwork(), SIGN_BI_POWER),
     "dual, fixed time": _activated(DualNetwork(), FixedTime()),
     "primal-dual, fixed time": _activated(PrimalDualNetwork(), FixedTime()),
@@ -295,8 +299,8 @@ NETWORKS: dict[str, Entry] = {
     "zeroing, noise-tolerant": zeroing(integral=0.25),
     "zeroing, growing gain": zeroing(growth=0.5),
     "zeroing, smooth": zeroing(form="smooth"),
-    "noise-suppressing": follows(NoiseSuppressingNetwork(form="projected")),
-    "projection, implicit Euler": settled(ProjectionNetwork(primal_projection=False)),
+    "noise-suppressing": moving(NoiseSuppressingNetwork(form="projected")),
+    "projection, implicit Euler": implicit(ProjectionNetwork(primal_projection=False)),
     "ADMM (OSQP)": iterated(AdmmIteration()),
 }
 """Networks of the atlas by name, and the yardstick."""
@@ -323,17 +327,17 @@ def entry_of(name: str) -> Entry:
         raise InvalidInputError("network", problem) from error
     if not isinstance(found, Entry | Network):
         raise InvalidInputError("network", f"{name} is no Network: {found!r}", found)
-    return still(found) if isinstance(found, Network) else found
+    return constant(found) if isinstance(found, Network) else found
 
 
 def _imported(name: str) -> ModuleType:
     """Import the module of a network from outside, named as module:NAME or FILE.py:NAME."""
-    place = Path(name.rpartition(":")[0])
-    is_file = place.suffix == ".py"
-    folder = str(place.resolve().parent if is_file else Path.cwd())
+    location = Path(name.rpartition(":")[0])
+    is_file = location.suffix == ".py"
+    folder = str(location.resolve().parent if is_file else Path.cwd())
     if folder not in sys.path:
         sys.path.append(folder)
-    return import_module(place.stem if is_file else place.name)
+    return import_module(location.stem if is_file else location.name)
 
 
 @dataclass(frozen=True)
@@ -346,7 +350,7 @@ class Cell:
         disturbance: Name of the disturbance.
         work: Operations a control period.
         most: Evaluations a control period at most; None: as many as the work allows.
-        share: Share of the linear limit.
+        fraction: Fraction of the linear limit.
         seeds: Number of runs.
         dt: Control period [s].
         source: Hash of the file of a network from outside: a changed one is computed anew.
@@ -357,7 +361,7 @@ class Cell:
     disturbance: str = "none"
     work: float = 10_000.0
     most: int | None = None
-    share: float = SHARES[-1]
+    fraction: float = FRACTIONS[-1]
     seeds: int = 1
     dt: float = DT
     source: str = field(default="", init=False)
@@ -414,32 +418,34 @@ class Size:
 def gain_cells(size: Size) -> list[Cell]:
     """List the cells of the search for gains, undisturbed, with the first scheme.
 
-    They are every share with one evaluation a period and with all that the work allows.
+    They are every fraction with one evaluation a period and with all that the work allows.
     """
     return [
-        Cell(network, size.schemes[0], work=size.work, share=share, most=most)
+        Cell(network, size.schemes[0], work=size.work, fraction=fraction, most=most)
         for network in size.networks
-        for share, most in product(SHARES, (None, 1))
-        if entry_of(network).paced or (share == SHARES[-1] and most is None)
+        for fraction, most in product(FRACTIONS, (None, 1))
+        if entry_of(network).paced or (fraction == FRACTIONS[-1] and most is None)
     ]
 
 
 def best_gains(
     cells: Iterable[Cell], results: Iterable[Mapping[str, Any]]
 ) -> dict[str, dict[str, Any]]:
-    """Choose each network's ``share`` and ``most``: those with the smallest residual.
+    """Choose each network's ``fraction`` and ``most``: those with the smallest residual.
 
-    Of those that solve the program, and of equals, it is the largest share with all evaluations.
+    Of those that solve the program, and of equals, it is the largest fraction with all evaluations.
     """
     ranked: dict[str, list[tuple[float, float, bool, Cell]]] = {}
     for cell, result in zip(cells, results, strict=True):
         residual = result["residual"][0]
         found = np.inf if residual is None else max(residual, SOLVED)
         ranked.setdefault(cell.network, []).append(
-            (found, -cell.share, cell.most is not None, cell)
+            (found, -cell.fraction, cell.most is not None, cell)
         )
     best = {network: min(own)[-1] for network, own in ranked.items()}
-    return {network: {"share": cell.share, "most": cell.most} for network, cell in best.items()}
+    return {
+        network: {"fraction": cell.fraction, "most": cell.most} for network, cell in best.items()
+    }
 
 
 def cells(size: Size, gains: Mapping[str, Mapping[str, Any]]) -> list[Cell]:
@@ -513,7 +519,7 @@ def _run(cell: Cell, seed: int) -> dict[str, Any]:
         count = min(count, cell.most)
     times = cell.dt * np.arange(round(DURATION / cell.dt), dtype=np.float64)
     noise = NOISES[cell.disturbance](np.random.default_rng(seed), times)
-    solver = entry.make(count, cell.share, cell.dt)
+    solver = entry.make(count, cell.fraction, cell.dt)
     path = PATHS[seed % len(PATHS)]().anchored(Configuration(robot, START))
     measured: dict[str, Any] = {}
     if cell.disturbance == "measurement":
@@ -523,7 +529,7 @@ def _run(cell: Cell, seed: int) -> dict[str, Any]:
     record = simulate(
         robot,
         scheme,
-        path.ahead(cell.dt) if cell.scheme in AHEAD else path,
+        path.feed_forward(cell.dt) if cell.scheme in AHEAD else path,
         START,
         dt=cell.dt,
         duration=DURATION,

@@ -135,7 +135,7 @@ def compare(one: Vector, other: Vector) -> int:
     return paired_difference(one, other).sign
 
 
-def places(rows: Sequence[Row]) -> dict[str, str]:
+def ranks(rows: Sequence[Row]) -> dict[str, str]:
     """Rank the networks, the best first: the first and the last place that each may have.
 
     Networks with failed runs come last, without a place.
@@ -208,8 +208,8 @@ def report(folder: Path, size: Size, rows: Sequence[Row], head: str) -> str:
 
 def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
     """Lay out the tables of a report."""
-    ranking = places(rows)
-    head = ["place", "network", "evaluations", *size.disturbances]
+    ranking = ranks(rows)
+    head = ["rank", "network", "evaluations", *size.disturbances]
     of = f"{size.schemes[0]}, {size.work:g} operations a control period"
     claims = [
         judge(rows, claim)
@@ -272,10 +272,10 @@ def _league(
 ) -> list[list[str]]:
     """Lay out what is shown of every network and disturbance, the best network first."""
     lines = []
-    for name, place in ranking.items():
+    for name, rank in ranking.items():
         found = of_every_disturbance(rows, name)
         taken = next((row["taken"] for row in found if row["taken"]), ["–"])
-        lines.append([place, name, str(taken[0]), *map(show, found)])
+        lines.append([rank, name, str(taken[0]), *map(show, found)])
     return lines
 
 

@@ -92,9 +92,14 @@ def summary(tables: Mapping[str, Table]) -> list[str]:
             for change, effect in measures[key]["changes"].items():
                 verdict = effect["verdict"]
                 found.setdefault(f"effect of {change}, on {where}", {})[name] = verdict
-    ways = list(dict.fromkeys(way for verdicts in found.values() for way in verdicts))
-    rows = [[title, *(verdicts.get(way, "–") for way in ways)] for title, verdicts in found.items()]
-    return ["## Verdicts", markdown_table(("the paper's", *ways), rows)] if found else []
+    variant_names = list(
+        dict.fromkeys(variant_name for verdicts in found.values() for variant_name in verdicts)
+    )
+    rows = [
+        [title, *(verdicts.get(variant_name, "–") for variant_name in variant_names)]
+        for title, verdicts in found.items()
+    ]
+    return ["## Verdicts", markdown_table(("the paper's", *variant_names), rows)] if found else []
 
 
 def _table1(table: Table) -> list[str]:

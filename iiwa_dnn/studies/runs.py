@@ -126,9 +126,11 @@ class HeartRun:
         options: dict[str, Any] = {name: getattr(self, name) for name in _HANDED_ON}
         implicit = self.substeps == "implicit"
         steps = None if isinstance(self.substeps, str) else self.substeps
-        follower = ImplicitEuler() if implicit else ExplicitEuler(substeps=steps)
+        advance_integrator = ImplicitEuler() if implicit else ExplicitEuler(substeps=steps)
         # Implicit steps of the flow without the projection are convex problems, and compiled.
-        solver = DNNSolver(ProjectionNetwork(primal_projection=not implicit), follower=follower)
+        solver = DNNSolver(
+            ProjectionNetwork(primal_projection=not implicit), advance_integrator=advance_integrator
+        )
         return simulate(
             paper_robot(),
             self.scheme(),

@@ -31,7 +31,7 @@ from iiwa_dnn.files import plain
 
 CONFIDENCE = 0.95
 FLAT = 0.05
-"""A series whose values differ by no more than this share of their mean is called constant."""
+"""A series whose values differ by no more than this fraction of their mean is called constant."""
 
 FACTOR = 2.0
 """Largest factor between a number and the paper's that still counts as reproduced."""

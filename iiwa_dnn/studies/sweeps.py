@@ -59,7 +59,7 @@ def sweep(
     Args:
         task: Function of a module, so that a worker can import it; its result must depend on
             nothing but its argument.
-        cells: Arguments of the task, whose hashes tell them apart.
+        cells: Arguments of the task, whose hashes distinguish them.
         folder: Folder of the finished cells; made if need be.
         workers: Number of processes, 1 for this one alone; None takes every core.
         dask: Address of a Dask scheduler that carries the cells out; None stays with joblib.

@@ -43,7 +43,7 @@ def test_everything_is_written(tmp_path, capsys, monkeypatch) -> None:
     record, metrics = results(tmp_path)
     push = {"force": [0.0, 10.0, 0.0], "start": 0.1, "duration": 0.05}
     assert metrics["settings"]["physics"]["disturbances"]["push"] == push
-    assert metrics["physics"]["max_torque_share"] < 0.5
+    assert metrics["physics"]["max_torque_fraction"] < 0.5
     assert record["torque"].shape == (200, 7)
     report = (tmp_path / "report.md").read_text()
     assert "(moments.png)" in report

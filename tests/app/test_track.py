@@ -137,7 +137,7 @@ def test_a_robots_own_limits(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", PATHS)
 def test_a_path_goes_by_its_name(name: str, tmp_path: Path) -> None:
-    record, metrics = track(tmp_path, name, "--tracking", "next", "--check", "none")
+    record, metrics = track(tmp_path, name, "--sample", "end", "--check", "none")
     own = metrics["settings"]["reference"]["name"]
     assert own == ("tilting" if name == "tilting-circle" else name)
     turns = np.ptp(record["rotation_desired"], axis=0).max() > 1e-9

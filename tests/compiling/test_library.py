@@ -15,7 +15,7 @@ from helpers_physics import run_python
 from helpers_simulation import heart, paper_robot
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.export.folder import run
-from iiwa_dnn.networks.integrators.implicit import settle
+from iiwa_dnn.networks.integrators.implicit import solve
 from iiwa_dnn.qp.dense import factor_solve, is_convex, row_dot, times
 from iiwa_dnn.qp.layout import copied
 from iiwa_dnn.qp.residuals import point_of_state, residuals_of
@@ -40,7 +40,7 @@ _P = numba.types.CPointer(_D)
 )
 def _flat(
     t, rate, q, n, last, n1, before, n2, jacobian, n3, six, placements, frames, twelve,
-    moves, m1, m2, inertia, i1, i2, targets, k, eighteen, least, pairs, constants, count,
+    support, m1, m2, inertia, i1, i2, targets, k, eighteen, least, pairs, constants, count,
     G, rows, width, h, h1, lb, l1, ub, u1,
 ):  # fmt: skip
     G[0] = 1.0
@@ -99,7 +99,7 @@ def test_an_error_in_ones_own_function_comes_with_its_traceback() -> None:
     assert len(_commands(Own(_limit), 2)) == 2  # and nothing of it stays
 
 
-@pytest.mark.parametrize("wrong", [heart_path, settle, 1.5, None, 0, -1])
+@pytest.mark.parametrize("wrong", [heart_path, solve, 1.5, None, 0, -1])
 def test_what_has_other_types_is_refused(wrong: object) -> None:
     with pytest.raises(TypeError):
         enter_limit.address(wrong)

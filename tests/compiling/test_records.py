@@ -227,7 +227,7 @@ def both(request: Any, tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, A
     folder = _package(tmp_path_factory.mktemp("records"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("IIWA_DNN_CHECKED", request.param)
-        return _module(folder / "own.py", "own"), _module(build(folder), "_kernels")
+        return _module(folder / "own.py", "nominal"), _module(build(folder), "_kernels")
 
 
 def _motion(python: Any, n: int = 2) -> Any:

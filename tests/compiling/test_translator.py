@@ -283,7 +283,7 @@ def both(request: Any, tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, A
     (folder / "own.py").write_text(KERNELS)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("IIWA_DNN_CHECKED", request.param)
-        return _module(folder / "own.py", "own"), _module(build(folder), "_kernels")
+        return _module(folder / "own.py", "nominal"), _module(build(folder), "_kernels")
 
 
 RNG = np.random.default_rng(0)
@@ -504,7 +504,7 @@ def test_a_checked_build_refuses_an_index_outside_of_its_array(
     monkeypatch.setenv("IIWA_DNN_CHECKED", "1")
     folder = _write(tmp_path, CHECKED)
     library = _module(build(folder), "_kernels")
-    python = _module(folder / "own.py", "own")
+    python = _module(folder / "own.py", "nominal")
     for name, *arguments in INSIDE:
         found = getattr(library, f"own_{name}")(*deepcopy(arguments))
         assert found == getattr(python, name)(*deepcopy(arguments))

@@ -33,10 +33,10 @@ def yielding_steps(arm: str, limits: str, policy: Policy) -> tuple[LogLayout, np
     slow = robot.with_limits(velocity=np.minimum(robot.dq_max, SPEED))
     circle = d.Circle(0.06, 1.5, begin=0.0).anchored(start)
     controller = d.Controller(slow, scheme, circle, policy=policy)
-    taken = np.array([command.row for command in driven(controller, q, STEPS)[1]])
-    layout = controller.control_step.layout
+    taken = np.array([command.data for command in driven(controller, q, STEPS)[1]])
+    layout = controller.control_layout.log_layout
     kinds = log_of(taken, layout.sizes).kind
-    taken = taken[(kinds > ProgramKind.OWN) & (kinds < ProgramKind.STOPPED)]
+    taken = taken[(kinds > ProgramKind.NOMINAL) & (kinds < ProgramKind.STOPPED)]
     assert len(taken) > 20
     return layout, taken
 
@@ -58,7 +58,7 @@ def test_solvers_and_the_proof_agree_with_an_answer_and_with_no_other(arm, limit
     logs = log_of(rows, layout.sizes)
     programs = np.ascontiguousarray(logs.program)
     points = np.ascontiguousarray(logs.point)
-    free = logs.kind < ProgramKind.HELD
+    free = logs.kind < ProgramKind.RATE_LIMITED
     joints = layout.sizes.joints
     np.testing.assert_allclose(logs.dq[free], points[free, :joints], rtol=0, atol=1e-9)
     others = points.copy()
@@ -74,9 +74,9 @@ def test_solvers_and_the_proof_agree_with_an_answer_and_with_no_other(arm, limit
 
 
 @pytest.mark.parametrize(("limits", "policy"), [("jerk", "slow"), ("braking", "relax")])
-def test_a_command_that_is_held_back_is_within_its_bounds(limits: str, policy: Policy) -> None:
+def test_a_command_that_is_rate_limited_is_within_its_bounds(limits: str, policy: Policy) -> None:
     layout, rows = yielding_steps("iiwa7", limits, policy)
-    held = log_of(rows, layout.sizes).kind == ProgramKind.HELD
+    held = log_of(rows, layout.sizes).kind == ProgramKind.RATE_LIMITED
     assert held.sum() > 20
     assert layout.excess(rows).max() <= 1e-9
 
@@ -92,6 +92,6 @@ def test_the_excess_of_an_answer_counts_its_rows_and_a_multiplier_needs_its_boun
     log.point[:] = [0.5, 1.0, 0.0, 2.0, 3.0]  # x, z and z_box
     for kind in ProgramKind:
         log.kind = kind
-        counts = kind < ProgramKind.HELD
+        counts = kind < ProgramKind.RATE_LIMITED
         np.testing.assert_allclose(layout.excess(row), 1.0 if counts else 0.0)
     np.testing.assert_array_equal(layout.multipliers(row, 1e-9)[0], [[0.0, 3.0]])

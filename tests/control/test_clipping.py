@@ -7,13 +7,13 @@ from scipy.optimize import linprog
 
 import iiwa_dnn as d
 from iiwa_dnn.control.clipping import clip_command
-from iiwa_dnn.control.relaxed import Yielding
+from iiwa_dnn.control.fallback import Yielding
 from iiwa_dnn.qp import QP
 
 
 def settling(tol: float = 1e-9, budget: float = 60.0) -> Yielding:
-    """What a controller knows of how its network settles."""
-    own = d.Controller(d.load_robot("ur5"), d.DoubleIndicator()).control_step.plan.yielding
+    """What a controller knows of how its network converges."""
+    own = d.Controller(d.load_robot("ur5"), d.DoubleIndicator()).control_layout.plan.yielding
     return own._replace(tolerance=tol, budget=int(budget))
 
 
@@ -62,7 +62,7 @@ def test_beyond_rows_the_velocity_is_the_nearest() -> None:
 
 
 def test_rows_on_slack_variables_are_left_to_the_scheme() -> None:
-    # Three joints, one slack variable: the first row is softened by it, the second is not.
+    # Three joints, one slack variable: the first row is relaxed by it, the second is not.
     qp = limited(G=[[1.0, 0.0, 0.0, -1.0], [0.0, 1.0, 0.0, 0.0]], h=[0.1, 0.1], n=4)
     clipped, which = clip_command(qp, np.array([0.9, 0.9, 0.9]), settling())
     assert_allclose(clipped, [0.9, 0.1, 0.9], rtol=0, atol=1e-8)

@@ -20,11 +20,11 @@ def test_a_command_says_in_words_what_it_is() -> None:
     far = d.Target(start.position + [0.5, 0.0, 0.0], start.rotation)
     controller = d.Controller(paper_robot(), d.DoubleIndicator(), policy="stop")
     command = controller.step(PAPER_Q0, 0.0, far)
-    assert "stopped, against joint 4 lower velocity limit; ok = False>" in repr(command)
+    assert "stopped, limited by joint 4 lower velocity limit; ok = False>" in repr(command)
     assert repr(command.qp) == "<QP of 7 variables: 0 inequalities, 6 equalities, 14 bounds>"
     controller.policy = "relax"
     relaxed = repr(controller.step(PAPER_Q0, 0.0, far))
-    assert "no solution: relaxed, against" in relaxed
+    assert "no solution: relaxed, limited by" in relaxed
 
 
 @pytest.mark.parametrize("gain", [10.2, np.inf])
@@ -39,7 +39,7 @@ def test_targets_of_two_frames_are_sampled_ahead_too(gain: float, compiled: bool
     tasks = [d.PositionTask(frame=right, gain=gain), d.PoseTask(frame=left, gain=gain)]
     scheme = d.Scheme([d.CyclicMotion()], tasks)
     if gain == np.inf:
-        references = {name: reference.ahead(1e-3) for name, reference in references.items()}
+        references = {name: reference.feed_forward(1e-3) for name, reference in references.items()}
     ahead = d.Controller(robot, scheme, references, dt=1e-3)
     one_by_one = d.Controller(robot, scheme, dt=1e-3)
     q = start.q
@@ -90,7 +90,7 @@ class Dead(d.networks.Network):
 
 
 def test_what_a_network_failed_at_is_not_its_success() -> None:
-    # The network of the relaxed programs answered, and the run was one without a failure.
+    # The network of the fallback programs answered, and the run was one without a failure.
     record = run(solver=d.DNNSolver(Dead()), duration=0.01)
     assert "9 steps unsolved in all" in d.failures(record)[0]
 
@@ -119,7 +119,7 @@ def warnings_of(controller: d.Controller, q: np.ndarray) -> list[str]:
     return [str(each.message) for each in caught]
 
 
-def following(robot: d.Robot, q: Any, path: d.Reference, *tasks: d.Task) -> list[str]:
+def next_motion_state(robot: d.Robot, q: Any, path: d.Reference, *tasks: d.Task) -> list[str]:
     scheme = d.Scheme([d.CyclicMotion()], tasks, [d.JointLimits()])
     loop = d.Controller(robot, scheme, path.anchored(d.Configuration(robot, q)), dt=1e-2)
     return warnings_of(loop, np.asarray(q, float))
@@ -136,9 +136,9 @@ def test_rank_counts_not_rows() -> None:
     for offset, said in (([0.02, -0.03, 0.0], 0), ([0.0, 0.02, 0.03], 1)):
         across = [offset[2], offset[0], offset[1]]  # the plane of y and z
         for found in (
-            following(table, [0.1, 0.2], d.Line(offset=across), d.PositionTask()),
-            following(planar, bent, d.Line(offset=offset), d.PositionTask()),
-            following(planar, bent, d.Line(offset=offset), d.PoseTask()),
+            next_motion_state(table, [0.1, 0.2], d.Line(offset=across), d.PositionTask()),
+            next_motion_state(planar, bent, d.Line(offset=offset), d.PositionTask()),
+            next_motion_state(planar, bent, d.Line(offset=offset), d.PoseTask()),
         ):
             assert [" joints cannot fulfil the " in each for each in found] == [True] * said
 
@@ -146,12 +146,14 @@ def test_rank_counts_not_rows() -> None:
 def test_a_start_in_a_singular_posture_is_named() -> None:
     planar = d.robot_from_dh([(0.4, 0.0, 0.0, 0.0)] * 3, lower=-3.0, upper=3.0, velocity=1.0)
     inwards = d.Line(offset=[-0.3, 0.0, 0.0])
-    (said,) = following(planar, np.zeros(3), inwards, d.PositionTask())
+    (said,) = next_motion_state(planar, np.zeros(3), inwards, d.PositionTask())
     assert said == (
         "3 joints cannot fulfil the 3 rows of the tasks, whose rank at the start is 1: "
-        "a singular posture, or tasks against each other"
+        "a singular posture, or tasks that contradict each other"
     )
-    (said,) = following(planar, np.zeros(3), d.Line(offset=[0.0, 0.1, 0.0]), d.PositionTask())
+    (said,) = next_motion_state(
+        planar, np.zeros(3), d.Line(offset=[0.0, 0.1, 0.0]), d.PositionTask()
+    )
     assert "beyond the arm's reach" in said  # the way there begins as the joints move
 
 
@@ -160,19 +162,19 @@ def test_a_command_in_a_singular_posture_says_so() -> None:
     planar = d.robot_from_dh([(0.4, 0.0, 0.0, 0.0)] * 3, lower=-3.0, upper=3.0, velocity=1.0)
     scheme = d.Scheme([d.CyclicMotion()], [d.PositionTask()], [d.JointLimits()])
     for q, reasons in (
-        (np.zeros(3), ("a singular posture, or tasks against each other",)),
+        (np.zeros(3), ("a singular posture, or tasks that contradict each other",)),
         (np.array([0.3, 1.0, 0.9]), ()),
     ):
         tip = d.Configuration(planar, q).position
         command = d.Controller(planar, scheme, dt=1e-2).step(q, 0.0, d.Target(tip - [0.01, 0, 0]))
-        assert command.against == reasons
+        assert command.active_limits == reasons
         assert command.ok == (not reasons)
     up = d.Target(tip + [0.0, 0.0, 0.1], d.Configuration(planar, q).rotation)
     straight = d.Controller(planar, scheme, dt=1e-2).step(q, 0.0, up)
-    assert straight.against == ("a singular posture, or tasks against each other",)
+    assert straight.active_limits == ("a singular posture, or tasks that contradict each other",)
     whole = d.Scheme([d.CyclicMotion()], [d.PoseTask()], [d.JointLimits()])
     raised = d.Controller(planar, whole, dt=1e-2).step(q, 0.0, up)
-    assert "3 joints for 6 rows of the tasks" in raised.against
+    assert "3 joints for 6 rows of the tasks" in raised.active_limits
 
 
 def test_a_start_in_degrees_is_asked_about() -> None:
@@ -201,11 +203,14 @@ class Asked(d.DNNSolver):
 @pytest.mark.parametrize("mode", ["converged", "continuous"])
 @pytest.mark.parametrize("scheme", SCHEMES.values(), ids=SCHEMES.keys())
 def test_a_compiled_step_is_its_parts_one_after_the_other(scheme, mode, substeps) -> None:
-    follower = d.ExplicitEuler(substeps)
+    advance_integrator = d.ExplicitEuler(substeps)
     robot = paper_robot()
     compiled, asked = (
         d.Controller(robot, scheme, mode=mode, dt=1e-4, solver=solver)
-        for solver in (d.DNNSolver(follower=follower), Asked(follower=follower))
+        for solver in (
+            d.DNNSolver(advance_integrator=advance_integrator),
+            Asked(advance_integrator=advance_integrator),
+        )
     )
     rng = np.random.default_rng(7)
     for seed in range(20):
@@ -247,7 +252,7 @@ CHANGED: dict[str, dict[str, Any]] = {
 def test_what_is_changed_counts_from_the_next_step_on(changed: dict[str, Any]) -> None:
     settings: dict[str, Any] = {
         "robot": paper_robot(),
-        "scheme": d.DoubleIndicator(home=PAPER_Q0, tracking="next"),
+        "scheme": d.DoubleIndicator(home=PAPER_Q0, sample="end"),
         "reference": heart(),
         "dt": 1e-4,
         "solver": d.DNNSolver(tol=1e-4),
@@ -285,10 +290,10 @@ def test_warm_up_at_a_posture_leaves_nothing_to_be_laid_out() -> None:
         d.Controller(paper_robot(), d.DoubleIndicator(), heart(), dt=DT) for _ in range(2)
     )
     warm.warm_up(PAPER_Q0)
-    laid_out = warm.control_step
+    laid_out = warm.control_layout
     np.testing.assert_array_equal(driven(warm, PAPER_Q0, 30)[0], driven(cold, PAPER_Q0, 30)[0])
-    assert warm.control_step is laid_out
-    assert cold.control_step is not laid_out
+    assert warm.control_layout is laid_out
+    assert cold.control_layout is not laid_out
     with pytest.raises(d.InvalidInputError, match=r"^q\b"):
         warm.warm_up(PAPER_Q0[:6])
 
@@ -318,7 +323,7 @@ def test_a_loop_that_jitters_says_the_period_of_each_step(mode) -> None:
     scheme = d.DoubleIndicator(home=PAPER_Q0)
     told = d.Controller(paper_robot(), scheme, heart(), dt=DT, mode=mode)
     told.step(PAPER_Q0, 0.0)
-    laid_out = told.control_step
+    laid_out = told.control_layout
     q = np.array(PAPER_Q0)
     t = 0.0
     for period in DT * random.uniform(0.5, 1.5, 300):
@@ -330,5 +335,5 @@ def test_a_loop_that_jitters_says_the_period_of_each_step(mode) -> None:
         np.testing.assert_array_equal(command.next_q, q + period * command.dq)
         q = command.next_q
         t += period
-    assert told.control_step is laid_out
+    assert told.control_layout is laid_out
     assert np.linalg.norm(dh_pose(q)[0] - heart().at(t).position) < 5e-5

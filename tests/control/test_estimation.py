@@ -63,7 +63,7 @@ def test_with_late_drives_the_estimate_is_where_the_next_command_begins() -> Non
     dt = 1e-3
     commands = np.random.default_rng(2).standard_normal((50, 2))
     q = np.cumsum(np.vstack([np.zeros((4, 2)), dt * commands]), axis=0)
-    estimator = JointEstimator(NoiseModel(velocity=1e-6, measurement=1e-6, delay=3), dt)
+    estimator = JointEstimator(NoiseModel(velocity=1e-6, measurement=1e-6, delay_periods=3), dt)
     for k in range(40):
         expected = estimator.update(q[k])
         np.testing.assert_allclose(expected, q[k + 3], rtol=0, atol=1e-14)
@@ -78,7 +78,7 @@ def shaken(estimator: JointEstimator | None) -> tuple[np.ndarray, float, float]:
     robot = paper_robot().with_limits(acceleration=10.0, jerk=100.0)
     limits = (d.AccelerationLimits(), d.JerkLimits())
     scheme = d.DoubleIndicator(position_gain=9.5, orientation_gain=9.5, extra_limits=limits)
-    controller = d.Controller(robot, scheme, d.Still().anchored(paper_start()), dt=2e-3)
+    controller = d.Controller(robot, scheme, d.FixedPose().anchored(paper_start()), dt=2e-3)
     q = np.array(PAPER_Q0)
     late = np.zeros(7)
     said = []
@@ -92,11 +92,11 @@ def shaken(estimator: JointEstimator | None) -> tuple[np.ndarray, float, float]:
         said.append(command.ok or 2 * command.limited)
         q = q + 2e-3 * late
         late = command.dq
-    return np.array(said), float(np.abs(late).max()), controller.delay
+    return np.array(said), float(np.abs(late).max()), controller.path_lag
 
 
 def test_a_loop_with_an_estimator_leaves_an_arm_at_rest_alone() -> None:
-    model = NoiseModel(velocity=1e-3, measurement=1e-4, delay=1)
+    model = NoiseModel(velocity=1e-3, measurement=1e-4, delay_periods=1)
     banged, speed, delay = shaken(None)
     estimator = JointEstimator(model, 2e-3)
     calm, slow, little = shaken(estimator)

@@ -10,7 +10,7 @@ import pytest
 import iiwa_dnn as d
 from helpers_simulation import driven
 from iiwa_dnn.control.policies import ProgramKind
-from iiwa_dnn.schemes.collisions import ROOM
+from iiwa_dnn.schemes.collisions import CLEARANCE
 from judge_distances import SLACK, Judge
 
 ROBOT = d.load_robot("iiwa7").with_limits(acceleration=10.0)
@@ -49,11 +49,11 @@ def test_an_arm_on_a_table_moves(name: str) -> None:
     robot = d.load_robot(name)
     table = d.HalfSpace([0.0, 0.0, 1.0], 0.0)
     avoidance = d.CollisionAvoidance([table], self_collision=False, distance=0.01)
-    for wish in (0.3, -0.3):
+    for request in (0.3, -0.3):
         shield = d.Shield(robot, 0.01, [table], 0.01)
         path = [robot.start_posture()]
         for _ in range(100):
-            path.append(path[-1] + 0.01 * shield.step(path[-1], np.full(robot.dof, wish)).dq)
+            path.append(path[-1] + 0.01 * shield.step(path[-1], np.full(robot.dof, request)).dq)
         assert np.ptp(path, axis=0).max() > 0.1
         found = judged(robot, avoidance, np.array(path))
         assert (found >= np.minimum(found[0], 0.01) - SLACK).all()
@@ -97,15 +97,15 @@ def test_a_pair_that_begins_nearer_comes_no_nearer_and_then_keeps_its_distance(
     own = controller._state.motion.least
     pressed, _ = driven(controller, START.q, 100, at(0.2))
     begun = judged(ROBOT, avoidance, pressed[:1]).min()
-    assert own.min() == pytest.approx(LEAST - nearer - ROOM, abs=2e-6)
-    assert sum(words.endswith(f"keep {own.min():.3g} m") for words in first[0].against) == 1
+    assert own.min() == pytest.approx(LEAST - nearer - CLEARANCE, abs=2e-6)
+    assert sum(words.endswith(f"keep {own.min():.3g} m") for words in first[0].active_limits) == 1
     assert judged(ROBOT, avoidance, pressed).min() > begun - SLACK
     left, _ = driven(controller, pressed[-1], 300, at(-0.2))
     assert judged(ROBOT, avoidance, left[-1:]).min() > LEAST
     again, last = driven(controller, left[-1], 400, at(0.2, 0.1))
     assert (controller._state.motion.least[: len(avoidance.scene(ROBOT).pairs)] == LEAST).all()
     assert judged(ROBOT, avoidance, again).min() > LEAST - SLACK
-    assert not any("nearer" in words for words in last[-1].against)
+    assert not any("nearer" in words for words in last[-1].active_limits)
 
 
 def test_fast_requests_beside_a_pair_that_began_nearer_move_the_arm() -> None:
@@ -125,7 +125,7 @@ def test_a_pair_that_begins_nearer_is_not_asked_to_retreat() -> None:
     _, scheme = beside(0.005)
     path, commands = driven(d.Controller(ROBOT, scheme, dt=DT), START.q, 50, at(0.0))
     assert np.abs(path - START.q).max() < 1e-9
-    assert {command.kind for command in commands} == {ProgramKind.OWN}
+    assert {command.kind for command in commands} == {ProgramKind.NOMINAL}
     assert all((command.qp.h >= 0.0).all() for command in commands)
 
 
@@ -158,7 +158,7 @@ def test_a_command_that_was_computed_counts_as_the_start_of_what_is_sent() -> No
 
 
 def test_a_link_that_a_ball_sits_in_is_stopped_and_says_why() -> None:
-    """The ball's middle on a link's axis: no direction leads apart."""
+    """The ball's middle on a link's axis: no direction separates them."""
     capsule = next(
         c for c in d.robot.collision.collision_model(ROBOT).capsules if "link_7" in c.link
     )
@@ -171,7 +171,10 @@ def test_a_link_that_a_ball_sits_in_is_stopped_and_says_why() -> None:
     np.testing.assert_array_equal(path, np.tile(START.q, (21, 1)))
     for command in commands:
         assert command.kind is ProgramKind.STOPPED
-        assert "iiwa7_link_7 and Sphere 1 meet, and no direction leads apart" in command.against
+        assert (
+            "iiwa7_link_7 and Sphere 1 meet, and no direction separates them"
+            in command.active_limits
+        )
 
 
 def test_an_obstacle_that_a_new_scheme_has_elsewhere_pushes_the_arm_back() -> None:

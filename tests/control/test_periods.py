@@ -145,9 +145,9 @@ def test_a_period_above_the_longest_warns_once_and_is_a_reason() -> None:
     target = d.Target(np.array([0.2, 0.3, 0.9]))
     with pytest.warns(UserWarning, match=r"a period of 0\.007 s is above the longest, 0\.006 s"):
         late = made.step(q, 0.0, target, elapsed=7e-3)
-    assert late.against[0] == "period exceeded"
-    assert made.step(late.next_q, DT, target, dt=8e-3).against[0] == "period exceeded"
-    assert "period exceeded" not in made.step(q, 2 * DT, target, dt=LONGEST).against
+    assert late.active_limits[0] == "period exceeded"
+    assert made.step(late.next_q, DT, target, dt=8e-3).active_limits[0] == "period exceeded"
+    assert "period exceeded" not in made.step(q, 2 * DT, target, dt=LONGEST).active_limits
 
 
 def test_the_clock_of_a_path_falls_behind_by_what_has_passed() -> None:
@@ -162,7 +162,7 @@ def test_the_clock_of_a_path_falls_behind_by_what_has_passed() -> None:
     for k in range(200):
         command = made.step(q, t, elapsed=5e-3 if k else DT)
         q = q + 5e-3 * command.dq
-        behind.append(t - made.delay)
+        behind.append(t - made.path_lag)
         t += 5e-3
     assert np.diff(behind).min() > 0.0
     assert behind[-1] - behind[-2] == pytest.approx(5e-3 * command.fraction)
@@ -188,7 +188,7 @@ def test_a_shield_passes_no_limit_whatever_period_comes(said: str, jerk: float) 
             measured = {"dt": period, "elapsed": elapsed, "neither": DT}[said]
             stated = {} if said == "neither" else {said: measured}
             command = shield.step(q, **request, **stated)
-            np.testing.assert_allclose(command.command.past[0], q, atol=1e-12)
+            np.testing.assert_allclose(command.command.motion_state[0], q, atol=1e-12)
             turned = (command.dq - last) / measured - slope
             slope = slope + turned
             assert np.abs(slope).max() <= 10.0 + 1e-6
@@ -209,7 +209,7 @@ def test_a_shield_takes_the_period_of_a_command_without_a_longest_one() -> None:
         q, last = q + period * command.dq, command.dq
     with pytest.raises(d.InvalidInputError, match="elapsed: needs a longest_period"):
         shield.step(q, elapsed=1e-3)
-    np.testing.assert_array_equal(shield.step(q, dt=1e-3).command.past[0], q)
+    np.testing.assert_array_equal(shield.step(q, dt=1e-3).command.motion_state[0], q)
 
 
 @pytest.mark.parametrize("late", [10, 40])
@@ -225,7 +225,7 @@ def test_drives_that_are_late_pass_no_limit(late: int, jitter: bool) -> None:
         measured = path[max(len(path) - 1 - late, 0)]
         steps = int(random.integers(1, 3)) if jitter else 1
         command = shield.step(measured, request, **({"dt": steps * 1e-3} if jitter else {}))
-        assert "measured positions taken over" not in command.reasons
+        assert "resynchronised to measured positions" not in command.reasons
         path += [path[-1] + (i + 1) * 1e-3 * command.dq for i in range(steps)]
         assert (path[-1] <= PLAIN.q_upper).all()
         assert (path[-1] >= PLAIN.q_lower).all()
@@ -238,11 +238,11 @@ def test_a_blocked_arm_is_found_and_goes_on_from_where_it_is_and_what_is_under_w
     for _ in range(20):
         shield.step(q, np.full(7, 0.5))
     blocked = []
-    while not blocked or "measured positions taken over" not in blocked[-1].reasons:
+    while not blocked or "resynchronised to measured positions" not in blocked[-1].reasons:
         blocked.append(shield.step(q, np.full(7, 0.5)))
     # 20 ms until it should have begun to move, 40 ms until it should be 0.02 rad on.
     assert 38 <= len(blocked) <= 42
-    np.testing.assert_allclose(blocked[-1].command.past[0], q + 0.02 * 0.5, atol=1e-12)
+    np.testing.assert_allclose(blocked[-1].command.motion_state[0], q + 0.02 * 0.5, atol=1e-12)
     twin = pickle.loads(pickle.dumps(shield))
     np.testing.assert_array_equal(
         twin.step(q, twist=[0.1] * 6).dq, shield.step(q, twist=[0.1] * 6).dq
@@ -269,8 +269,8 @@ def test_a_shield_names_a_period_above_the_longest() -> None:
     q = np.array(PLAIN.start_posture())
     with pytest.warns(UserWarning, match="above the longest"):
         command = shield.step(q, np.zeros(7), elapsed=1.0)
-    assert command.limits == ("period exceeded",)
-    assert shield.step(q, np.zeros(7), elapsed=DT).limits == ()
+    assert command.active_limits == ("period exceeded",)
+    assert shield.step(q, np.zeros(7), elapsed=DT).active_limits == ()
 
 
 @pytest.mark.parametrize("said", ["dt", "elapsed"])

@@ -40,7 +40,7 @@ def own_program(controller: d.Controller, q: np.ndarray, target: d.Target) -> d.
 
 
 def linear_factor(qp: d.QP) -> float:
-    """The largest share of b within the limits, by scipy's linear program."""
+    """The largest fraction of b within the limits, by scipy's linear program."""
     n, m, p = qp.sizes
     found = linprog(
         np.append(np.zeros(n), -1.0),
@@ -61,8 +61,8 @@ def two_joints(b: float, **others: Any) -> d.QP:
     )
 
 
-def test_the_scaling_factor_and_the_bounds_in_the_way_are_those_of_the_linear_program() -> None:
-    """In the way are the bounds that help when they are widened."""
+def test_the_scaling_factor_and_the_bounds_limiting_are_those_of_the_linear_program() -> None:
+    """Limiting are the bounds that help when they are widened."""
     checked = 0
     blamed = 0
     for seed in range(80):
@@ -71,7 +71,7 @@ def test_the_scaling_factor_and_the_bounds_in_the_way_are_those_of_the_linear_pr
         command = controller.step(q, 0.0, target)
         factor = linear_factor(own)
         if command.kind is not ProgramKind.SCALED:
-            assert command.kind is (ProgramKind.OWN if factor == 1.0 else ProgramKind.SOFTENED)
+            assert command.kind is (ProgramKind.NOMINAL if factor == 1.0 else ProgramKind.RELAXED)
             races = np.abs(own.A @ command.dq).max() < 0.05 * np.abs(command.dq).max()
             assert factor == 1.0 or 0.999 * factor < 0.1 or races
             continue
@@ -83,14 +83,14 @@ def test_the_scaling_factor_and_the_bounds_in_the_way_are_those_of_the_linear_pr
             wider.lb[i] -= 1e-3
             wider.ub[i] += 1e-3
             gain = linear_factor(wider) - factor
-            assert (gain > 1e-8) == (command.blocking[i] != 0)
-            blamed += int(command.blocking[i] != 0)
+            assert (gain > 1e-8) == (command.limiting[i] != 0)
+            blamed += int(command.limiting[i] != 0)
     assert checked > 20
     assert blamed > 10
 
 
 @pytest.mark.parametrize("policy", ["slow", "relax"])
-def test_the_softened_program_is_the_pages(policy: Policy) -> None:
+def test_the_relaxed_program_is_the_pages(policy: Policy) -> None:
     for seed in (0, 3, 6, 9):  # so3: the weights are those of a pose
         controller, q, target = posed(seed)
         controller.policy = policy
@@ -98,7 +98,7 @@ def test_the_softened_program_is_the_pages(policy: Policy) -> None:
         still = d.Target(target.position, target.rotation)  # where the reference rests, both soften
         own.b[:] = own_program(controller, q, still).b
         command = controller.step(q, 0.0, still)
-        assert (command.action, command.kind) == (Action.RELAX, ProgramKind.SOFTENED)
+        assert (command.action, command.kind) == (Action.RELAX, ProgramKind.RELAXED)
         own.b[:] *= min(1.0, 10.0 / np.abs(own.b).max())  # no arm is quicker
         rows = WEIGHTS @ own.A
         drift = -0.02 * own.q / max(1.0, np.abs(own.q).max())
@@ -134,31 +134,31 @@ def test_a_wall_is_kept_and_a_row_that_asks_for_motion_gets_what_the_joints_can(
     """Both joints together retreat by 2 at most, and the task pushes the other way."""
     command = decide(two_joints(12.0, G=[[1.0, 1.0]], h=[h]), policy)
     assert command.action in (Action.SLOW, Action.RELAX)
-    assert command.kind is ProgramKind.SOFTENED or h > 0.0
+    assert command.kind is ProgramKind.RELAXED or h > 0.0
     given = h if h >= -2.0 else -2.0 * 0.999
     assert command.qp.h[0] == pytest.approx(given, abs=1e-8)
     assert command.dq.sum() <= given + 1e-8
     assert (np.abs(command.dq) <= 1.0).all()
-    assert command.blocking[-1] == 1
+    assert command.limiting[-1] == 1
 
 
 @pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
 def test_limits_that_contradict_each_other_stop_the_arm(policy: Policy) -> None:
     qp = two_joints(0.5, G=[[1.0, 1.0]], h=[0.5])
-    qp.lb[:] = 0.5  # both joints have to come back, and the wall leaves room for half of it
+    qp.lb[:] = 0.5  # both joints have to come back, and the wall leaves a margin for half of it
     command = decide(qp, policy)
     assert (command.action, command.kind) == (Action.STOP, ProgramKind.STOPPED)
     assert not command.dq.any()
-    np.testing.assert_array_equal(command.qp.data, qp.data)  # its own program is handed out
-    assert command.blocking[-1] == 1
+    np.testing.assert_array_equal(command.qp.data, qp.data)  # its nominal program is handed out
+    assert command.limiting[-1] == 1
 
 
-@pytest.mark.parametrize(("row", "kind"), [(0.2, ProgramKind.SCALED), (0.04, ProgramKind.SOFTENED)])
-def test_slow_softens_where_the_joints_race_for_next_to_nothing(row, kind) -> None:
+@pytest.mark.parametrize(("row", "kind"), [(0.2, ProgramKind.SCALED), (0.04, ProgramKind.RELAXED)])
+def test_slow_relaxes_where_the_joints_race_for_next_to_nothing(row, kind) -> None:
     qp = d.QP(np.eye(1), np.zeros(1), A=[[row]], b=[1.5 * row], lb=[-1.0], ub=[1.0])
     command = decide(qp, "slow")
     assert (command.action, command.kind) == (Action.SLOW, kind)
-    if kind is ProgramKind.SOFTENED:
+    if kind is ProgramKind.RELAXED:
         damped = 1.5 * row * row / (row * row + 0.05**2 + 1e-4)
         assert command.dq[0] == pytest.approx(damped, rel=1e-9)
         assert command.fraction == pytest.approx(row * damped / (1.5 * row), rel=1e-9)
@@ -169,7 +169,7 @@ def test_the_clock_never_rests() -> None:
     qp = d.QP(np.eye(2), [0.0, -9.0], A=[[1e-3, 0.0]], b=[5.0], lb=[-1.0] * 2, ub=[1.0] * 2)
     command = decide(qp, "slow")
     assert (command.action, command.fraction) == (Action.SLOW, 0.1)
-    # And towards the posture that the cost wishes for; the cost itself counts 1e-4.
+    # And towards the posture that the cost prefers; the cost itself counts 1e-4.
     expected = [5e-3 / (1e-6 + 0.05**2 + 1e-4), 0.05**2 * 0.02 / (0.05**2 + 1e-4)]
     np.testing.assert_allclose(command.dq, np.minimum(expected, 1.0), rtol=1e-5)
 
@@ -191,4 +191,4 @@ def test_the_codes_in_a_record_stay_what_they_are() -> None:
     assert codes == {"none": 0, "slow": 2, "relax": 3, "stop": 4, "euler": 5}
     assert {code: name for name, code in codes.items() if code} == ACTIONS
     kinds = {kind.name: int(kind) for kind in ProgramKind}
-    assert kinds == {"OWN": 0, "SCALED": 1, "SOFTENED": 2, "HELD": 3, "STOPPED": 4}
+    assert kinds == {"NOMINAL": 0, "SCALED": 1, "RELAXED": 2, "RATE_LIMITED": 3, "STOPPED": 4}

@@ -31,7 +31,7 @@ def test_poses_that_can_be_reached_are_reached_within_the_limits(name: str) -> N
         assert answer.found
         assert max(error(robot, answer.q, target)) <= 1.001e-9
         assert robot.outside(answer.q) == ""
-        assert answer.in_the_way == ()
+        assert answer.active_limits == ()
 
 
 def test_the_answer_is_the_nearest_of_those_that_the_starts_lead_to() -> None:
@@ -62,10 +62,10 @@ def test_a_pose_out_of_reach_gives_the_stretched_arm() -> None:
     straight = np.linalg.norm(d.Configuration(robot, np.zeros(7)).position - shoulder)
     assert reach == pytest.approx(straight, abs=1e-3)
     assert answer.position_error == pytest.approx(3.0 - straight, abs=1e-3)
-    assert answer.in_the_way == ()
+    assert answer.active_limits == ()
 
 
-def test_a_limit_in_the_way_is_named() -> None:
+def test_a_limit_limiting_is_named() -> None:
     robot = d.load_robot("iiwa7")
     q = np.array([0.3, 0.6, 0.0, -1.2, 0.0, 0.8, 0.2])
     target = pose_of(robot, q)
@@ -77,7 +77,7 @@ def test_a_limit_in_the_way_is_named() -> None:
     # The distance from shoulder to wrist is a function of the elbow's angle alone.
     assert abs(answer.nearest.q[3]) == pytest.approx(1.0, abs=1e-9)
     side = "lower" if answer.nearest.q[3] < 0.0 else "upper"
-    assert f"joint 4 {side} position limit" in answer.in_the_way
+    assert f"joint 4 {side} position limit" in answer.active_limits
 
 
 def test_obstacles_are_kept_clear_of_and_named() -> None:
@@ -93,13 +93,13 @@ def test_obstacles_are_kept_clear_of_and_named() -> None:
     ball = d.Sphere(target.position, 0.1)
     barred = d.solve_pose(robot, target, q0, obstacles=[ball], starts=5)
     assert not barred.found
-    assert any("Sphere 1" in limit for limit in barred.in_the_way)
+    assert any("Sphere 1" in limit for limit in barred.active_limits)
     scene = d.CollisionAvoidance([ball]).scene(robot)
     assert scene.nearest(barred.nearest.q[None], np.zeros(1))[0] >= 0.02 - 1e-6
 
 
 @pytest.mark.parametrize("upper", [2000.0, 100.0, 10.0, 0.5])
-def test_a_long_slide_is_gone_along_in_steps_of_its_range(upper: float) -> None:
+def test_a_long_slide_is_executed_in_steps_of_its_range(upper: float) -> None:
     """One start from the far end, for a slide alone and for one that carries an arm."""
     alone = d.robot_from_dh([(0, 0, 0, 0)], lower=0, upper=upper, velocity=1, prismatic=[1])
     carried = d.robot_from_dh(
@@ -120,7 +120,7 @@ def test_a_long_slide_is_gone_along_in_steps_of_its_range(upper: float) -> None:
             assert robot.outside(answer.q) == ""
 
 
-def test_a_slide_without_limits_is_gone_along() -> None:
+def test_a_slide_without_limits_is_executed() -> None:
     slide = d.robot_from_dh([(0, 0, 0, 0)], prismatic=[1])
     answer = d.solve_pose(slide, pose_of(slide, np.array([12345.0])), [0.5], starts=1)
     assert answer.q == pytest.approx([12345.0], abs=1e-9)

@@ -42,7 +42,7 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("velocity", lambda: NoiseModel(velocity=-1.0)),
     ("bias_walk", lambda: NoiseModel(bias_walk=np.nan)),
     ("bias", lambda: NoiseModel(bias=np.inf)),
-    ("delay", lambda: NoiseModel(delay=-1)),
+    ("delay_periods", lambda: NoiseModel(delay_periods=-1)),
     ("dt", lambda: JointEstimator(NoiseModel(), 0.0)),
     ("filter_window", lambda: MovingAverage(0)),
     ("filter_window", lambda: MovingAverage(2.5)),  # type: ignore[arg-type]

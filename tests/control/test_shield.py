@@ -1,4 +1,4 @@
-"""A shield gives the wish itself where the limits admit it, and a safe command close to it else."""
+"""A shield gives the request where the limits admit it, and a safe command close to it else."""
 
 import copy
 import itertools
@@ -23,12 +23,12 @@ SMOOTH = PLAIN.with_limits(acceleration=10.0, jerk=500.0)
 BALL = d.Sphere([0.36, 0.16, 0.64], 0.05)
 
 
-def drive(shield, steps, q=START, **wish: Any) -> tuple[np.ndarray, list[ShieldCommand]]:
+def drive(shield, steps, q=START, **requested: Any) -> tuple[np.ndarray, list[ShieldCommand]]:
     """Follow every command from q; return the joint positions (steps + 1, n) and the commands."""
     path = [q]
     commands = []
     for _ in range(steps):
-        commands.append(shield.step(path[-1], **wish))
+        commands.append(shield.step(path[-1], **requested))
         path.append(path[-1] + shield.dt * commands[-1].dq)
     return np.array(path), commands
 
@@ -40,7 +40,7 @@ def limits_broken(path: np.ndarray, robot: d.Robot) -> list[Any]:
 
 @pytest.mark.parametrize("robot", [PLAIN, ROBOT, SMOOTH])
 @pytest.mark.parametrize("obstacles", [None, [BALL]])
-def test_an_admissible_wish_goes_through_to_the_last_bit(robot, obstacles) -> None:
+def test_an_admissible_request_goes_through_to_the_last_bit(robot, obstacles) -> None:
     """A slow sum of sines from rest breaks no limit, and stays away from all of them."""
     shield = d.Shield(robot, DT, obstacles)
     random = np.random.default_rng(0)
@@ -48,11 +48,11 @@ def test_an_admissible_wish_goes_through_to_the_last_bit(robot, obstacles) -> No
     rate = random.uniform(0.5, 3.0, 7)
     q = START
     for k in range(2000):
-        wish = speed * np.sin(rate * k * DT) ** 3
-        command = shield.step(q, wish)
-        np.testing.assert_array_equal(command.dq, wish)
+        requested = speed * np.sin(rate * k * DT) ** 3
+        command = shield.step(q, requested)
+        np.testing.assert_array_equal(command.dq, requested)
         assert not command.clipped
-        assert command.limits == ()
+        assert command.active_limits == ()
         q = q + DT * command.dq
 
 
@@ -64,12 +64,12 @@ def test_a_clipped_command_is_the_nearest_one_by_another_solver(robot: d.Robot) 
     q = START
     compared = 0
     for _ in range(600):
-        wish = 2.0 * robot.dq_max * random.standard_normal(7)
-        command = shield.step(q, wish)
+        requested = 2.0 * robot.dq_max * random.standard_normal(7)
+        command = shield.step(q, requested)
         if command.command.ok:
             qp = command.command.limits
             if robot is not SMOOTH:
-                np.testing.assert_array_equal(qp.q, -wish)
+                np.testing.assert_array_equal(qp.q, -requested)
             nearest = qpsolvers.solve_problem(
                 qp.to_qpsolvers(), "proxqp", eps_abs=1e-11, eps_rel=0.0, max_iter=10_000
             )
@@ -82,21 +82,21 @@ def test_a_clipped_command_is_the_nearest_one_by_another_solver(robot: d.Robot) 
 
 
 @pytest.mark.parametrize(
-    ("wish", "swing", "most"),
+    ("requested", "swing", "most"),
     [
         (np.array([0.3, -0.2, 0.1, 0.4, -0.3, 0.2, 0.1]), 0.0, 1e-9),
         (np.full(7, 0.5), 0.2, 3.0 * 500.0 * DT**2),
     ],
 )
-def test_a_wish_that_jumps_is_reached_and_not_passed(wish, swing, most) -> None:
+def test_a_request_that_jumps_is_reached_and_not_passed(requested, swing, most) -> None:
     shield = d.Shield(SMOOTH, DT)
     path = [START]
     limits = []
     for k in range(400):
-        moving = wish * (1.0 + swing * np.sin(2.0 * k * DT))
+        moving = requested * (1.0 + swing * np.sin(2.0 * k * DT))
         command = shield.step(path[-1], moving)
         assert (np.abs(command.dq) <= np.abs(moving) + most).all()
-        limits.append(command.limits)
+        limits.append(command.active_limits)
         path.append(path[-1] + DT * command.dq)
     np.testing.assert_array_equal(command.dq, moving)
     assert any("jerk" in name for name in limits[0])
@@ -105,7 +105,7 @@ def test_a_wish_that_jumps_is_reached_and_not_passed(wish, swing, most) -> None:
 
 @pytest.mark.parametrize("robot", [PLAIN, ROBOT, SMOOTH])
 def test_positions_are_reached_and_not_passed(robot: d.Robot) -> None:
-    """From a single wish, as a chunk of a policy brings it."""
+    """From a single request, as a chunk of a policy brings it."""
     goal = START + np.array([0.4, 0.2, -0.3, -0.5, 0.1, 0.6, -0.2])
     shield = d.Shield(robot, DT, timeout=np.inf)
     first = shield.step(START, position=goal)
@@ -159,25 +159,25 @@ def test_a_pinch_of_two_joints_leaves_the_others_free() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wish", "reason"),
+    ("requested", "reason"),
     [
-        ({"dq": np.full(7, np.nan)}, "wish not finite"),
-        ({"position": np.full(7, np.inf)}, "wish not finite"),
-        ({}, "wish too old"),
+        ({"dq": np.full(7, np.nan)}, "request not finite"),
+        ({"position": np.full(7, np.inf)}, "request not finite"),
+        ({}, "request timed out"),
     ],
 )
-def test_without_a_wish_the_arm_brakes_and_goes_on_without_a_jump(wish, reason) -> None:
+def test_without_a_request_the_arm_brakes_and_goes_on_without_a_jump(requested, reason) -> None:
     shield = d.Shield(SMOOTH, DT, timeout=0.05)
     speed = np.full(7, 0.2)
     begun, _ = drive(shield, 300, dq=speed)
-    braked, commands = drive(shield, 400, begun[-1], **wish)
+    braked, commands = drive(shield, 400, begun[-1], **requested)
     resumed, _ = drive(shield, 300, braked[-1], dq=speed)
     path = np.vstack([begun, braked[1:], resumed[1:]])
     assert limits_broken(path, SMOOTH) == []
-    assert commands[-1].limits == (reason,)
+    assert commands[-1].active_limits == (reason,)
     assert not commands[-1].dq.any()
-    if not wish:  # it counts for `timeout`
-        ends = [command.limits for command in commands[:51]]
+    if not requested:  # it counts for `timeout`
+        ends = [command.active_limits for command in commands[:51]]
         assert ends[:50] == [()] * 50
         assert ends[50][0] == reason
     np.testing.assert_array_equal(np.diff(path, axis=0)[-1], np.diff(resumed, axis=0)[-1])
@@ -186,18 +186,18 @@ def test_without_a_wish_the_arm_brakes_and_goes_on_without_a_jump(wish, reason) 
 
 @pytest.mark.parametrize("size", [1e6, 1e100, 1e300])
 @pytest.mark.parametrize("obstacles", [None, [BALL]])
-def test_wishes_of_any_size_are_answered(size: float, obstacles: list[d.Sphere] | None) -> None:
-    """The arm goes where a wish of 900 rad/s leads, and limits are named."""
+def test_requests_of_any_size_are_answered(size: float, obstacles: list[d.Sphere] | None) -> None:
+    """The arm goes where a request of 900 rad/s leads, and limits are named."""
     paths = []
     for speed in (900.0, size):
         shield = d.Shield(ROBOT, DT, obstacles)
         path, commands = drive(shield, 30, dq=np.full(7, speed))
-        assert commands[-1].limits
+        assert commands[-1].active_limits
         paths.append(path)
     np.testing.assert_allclose(paths[1], paths[0], atol=1e-6)
     assert np.ptp(paths[1], axis=0).max() > 1e-3
-    for wish in ({"position": np.full(7, size)}, {"twist": np.full(6, size)}):
-        path, commands = drive(d.Shield(PLAIN, DT, obstacles), 30, **wish)
+    for requested in ({"position": np.full(7, size)}, {"twist": np.full(6, size)}):
+        path, commands = drive(d.Shield(PLAIN, DT, obstacles), 30, **requested)
         assert np.ptp(path, axis=0).max() > 1e-3
         assert breaches(path, DT, PLAIN.q_lower, PLAIN.q_upper, PLAIN.dq_max) == []
 
@@ -209,10 +209,10 @@ def test_a_halt_lasts_until_the_reset() -> None:
     rest, commands = drive(shield, 100, path[-1], dq=np.full(7, 0.2))
     assert limits_broken(np.vstack([path, rest[1:]]), ROBOT) == []
     assert not commands[-1].dq.any()
-    assert commands[-1].limits == ("halted",)
+    assert commands[-1].active_limits == ("halted",)
     shield.reset()
-    assert shield.step(rest[-1]).limits == ("no wish",)
-    assert shield.step(rest[-1], np.full(7, 1e-3)).limits == ()
+    assert shield.step(rest[-1]).active_limits == ("no request",)
+    assert shield.step(rest[-1], np.full(7, 1e-3)).active_limits == ()
 
 
 @pytest.mark.parametrize("copied", [copy.copy, lambda each: pickle.loads(pickle.dumps(each))])
@@ -232,10 +232,10 @@ def test_measured_positions_count_only_where_they_are_far() -> None:
     shield = d.Shield(ROBOT, DT, tracking_error=0.01)
     shield.step(START, np.zeros(7))
     near = shield.step(START + 0.009, np.zeros(7))
-    np.testing.assert_array_equal(near.command.past[0], START)
+    np.testing.assert_array_equal(near.command.motion_state[0], START)
     far = shield.step(START + 0.011, np.zeros(7))
-    np.testing.assert_array_equal(far.command.past[0], START + 0.011)
-    assert far.limits == ("measured positions taken over",)
+    np.testing.assert_array_equal(far.command.motion_state[0], START + 0.011)
+    assert far.active_limits == ("resynchronised to measured positions",)
 
 
 def test_margin_and_stopping_time_are_those_of_closed_forms() -> None:
@@ -260,17 +260,19 @@ def test_margin_and_stopping_time_are_those_of_closed_forms() -> None:
         ({"dq": np.zeros(6)}, "dq: must have shape"),
         ({"twist": np.zeros(7)}, "twist: must have shape"),
         ({"position": "home"}, "position: must be numbers"),
-        ({"dq": np.zeros(7), "twist": np.zeros(6)}, "several wishes"),
+        ({"dq": np.zeros(7), "twist": np.zeros(6)}, "pass exactly one of dq, twist, position"),
         ({"dq": np.zeros(7), "q": np.full(7, np.nan)}, "q: must be finite"),
         ({"twist": np.zeros(6), "frame": "bogus"}, "no frame 'bogus'"),
     ],
 )
-def test_wrong_wishes_are_refused_and_change_nothing(arguments: dict[str, Any], words: str) -> None:
+def test_wrong_requests_are_refused_and_change_nothing(
+    arguments: dict[str, Any], words: str
+) -> None:
     shield = d.Shield(ROBOT, DT)
     shield.step(START, np.full(7, 0.01))
     with pytest.raises(d.IiwaDnnError, match=words):
         shield.step(**{"q": START} | arguments)
-    shield.step(START)  # the last wish counts
+    shield.step(START)  # the last request counts
     np.testing.assert_array_equal(shield.step(START, np.full(7, 0.02)).dq, np.full(7, 0.02))
 
 
@@ -279,10 +281,10 @@ def test_an_arm_of_many_joints_has_a_shield(joints: int) -> None:
     """A target has 18 numbers: the velocities of more joints go into several."""
     robot = d.robot_from_dh([(0.1, 0.0, 0.0, 0.0)] * joints, lower=-2.0, upper=2.0, velocity=1.0)
     shield = d.Shield(robot)
-    wish = np.linspace(-0.5, 0.5, joints)
-    np.testing.assert_array_equal(shield.step(np.zeros(joints), wish).dq, wish)
-    path, _ = drive(shield, 400, np.zeros(joints), position=0.1 * wish)
-    np.testing.assert_allclose(shield.step(path[-1]).next_q, 0.1 * wish, atol=1e-9)
+    requested = np.linspace(-0.5, 0.5, joints)
+    np.testing.assert_array_equal(shield.step(np.zeros(joints), requested).dq, requested)
+    path, _ = drive(shield, 400, np.zeros(joints), position=0.1 * requested)
+    np.testing.assert_allclose(shield.step(path[-1]).next_q, 0.1 * requested, atol=1e-9)
 
 
 def test_a_request_is_cut_by_the_joints_own_limit_and_the_cut_is_a_reason() -> None:
@@ -292,7 +294,7 @@ def test_a_request_is_cut_by_the_joints_own_limit_and_the_cut_is_a_reason() -> N
     shield = d.Shield(slide)
     path, commands = drive(shield, 1000, np.array([100.0]), dq=np.array([2000.0]))
     assert commands[-1].dq == 2000.0
-    assert commands[-1].limits == ()
+    assert commands[-1].active_limits == ()
     path, commands = drive(d.Shield(slide), 1000, np.array([100.0]), position=np.array([1000.0]))
     speeds = np.diff(path[:, 0]) / DT
     top = int(speeds.argmax())
@@ -300,9 +302,9 @@ def test_a_request_is_cut_by_the_joints_own_limit_and_the_cut_is_a_reason() -> N
     assert (np.diff(speeds[: top + 1]) >= -0.2).all()
     assert (np.diff(speeds[top:]) <= 0.2).all()
     far = d.Shield(PLAIN).step(START, np.full(7, 1e3))
-    assert far.limits[0] == "request cut"
-    assert d.Shield(PLAIN).step(START, twist=np.full(6, 1e4)).limits[0] == "request cut"
-    assert "request cut" not in d.Shield(PLAIN).step(START, np.full(7, 50.0)).limits
+    assert far.active_limits[0] == "request cut"
+    assert d.Shield(PLAIN).step(START, twist=np.full(6, 1e4)).active_limits[0] == "request cut"
+    assert "request cut" not in d.Shield(PLAIN).step(START, np.full(7, 50.0)).active_limits
 
 
 def test_next_q_is_where_the_command_leads() -> None:
@@ -344,7 +346,7 @@ def test_threads_may_share_a_shield() -> None:
     found.sort(key=lambda command: command.t)
     assert len({command.t for command in found}) == 900
     for before, after in itertools.pairwise(found):
-        np.testing.assert_array_equal(after.command.past[1], before.dq)
+        np.testing.assert_array_equal(after.command.motion_state[1], before.dq)
         assert np.abs(after.dq - before.dq).max() <= 10.0 * DT + 1e-12
 
 
@@ -361,7 +363,7 @@ def test_positions_are_reached_to_the_nanometre(dt: float) -> None:
         path, commands = drive(shield, int(4.0 / dt), q, position=goal)
         q = path[-1]
         np.testing.assert_allclose(q, goal, atol=1e-12)
-        assert commands[-1].limits == ()
+        assert commands[-1].active_limits == ()
         assert ((path - goal) * sides).max() < 1e-12
 
 
@@ -384,14 +386,14 @@ def least_time(x: float, goal: float, upper: float, limits: tuple[float, ...]) -
 def test_joints_of_an_fr3_arrive_below_their_velocity_limits(joint: int, short: float) -> None:
     """Five of seven rested 32 to 49 mrad from their limits, where 6 to 11 were enough."""
     robot = d.load_robot("fr3")
-    offset, steepness = robot.ramps[:, joint]
+    offset, steepness = robot.position_dependent_velocity[:, joint]
     start = np.array(robot.start_posture())
     goal = start.copy()
     goal[joint] = robot.q_upper[joint] - offset**2 / (2.0 * steepness) - short
     shield = d.Shield(robot, 1e-3, timeout=np.inf)
     path, commands = drive(shield, 2600, start, position=goal)
     np.testing.assert_allclose(path[-1], goal, atol=1e-9)
-    assert commands[-1].limits == ()
+    assert commands[-1].active_limits == ()
     q = path[:, joint]
     room = np.sqrt(2.0 * steepness * (robot.q_upper[joint] - q[1:])) - offset
     assert (np.diff(q) / 1e-3 <= room + 1e-9).all()
@@ -403,13 +405,13 @@ def test_joints_of_an_fr3_arrive_below_their_velocity_limits(joint: int, short: 
 
 def test_what_a_velocity_limit_does_not_let_an_fr3_reach_is_named() -> None:
     robot = d.load_robot("fr3")
-    offset, steepness = robot.ramps[:, 0]
+    offset, steepness = robot.position_dependent_velocity[:, 0]
     goal = np.array(robot.start_posture())
     goal[0] = robot.q_upper[0] - 1e-3
     path, commands = drive(d.Shield(robot, 1e-3), 2500, robot.start_posture(), position=goal)
     left = robot.q_upper[0] - offset**2 / (2.0 * steepness) - path[-1, 0]
     assert 0.0 <= left < 1e-4
-    assert commands[-1].limits == ("joint 1 upper position-dependent velocity limit",)
+    assert commands[-1].active_limits == ("joint 1 upper position-dependent velocity limit",)
 
 
 @pytest.mark.parametrize("name", ["iiwa7", "panda", "ur5"])
@@ -424,11 +426,11 @@ def test_a_twist_beyond_the_reach_is_said_and_does_not_slide(name: str) -> None:
     sideways = (tip - tip[0]) - np.outer((tip - tip[0]) @ away, away)
     assert np.linalg.norm(sideways, axis=1).max() < 0.01
     assert all(command.clipped for command in commands[400::50])
-    assert commands[-1].limits[0] == "singular posture"
+    assert commands[-1].active_limits[0] == "singular posture"
 
 
 def test_a_twist_that_is_fulfilled_is_not_clipped() -> None:
     path, commands = drive(d.Shield(ROBOT, DT), 100, twist=[0.0, 0.0, 0.02, 0.0, 0.0, 0.0])
-    assert commands[-1].limits == ()
+    assert commands[-1].active_limits == ()
     J = d.Configuration(ROBOT, path[-2]).jacobian
     np.testing.assert_allclose(J @ commands[-1].dq, [0, 0, 0.02, 0, 0, 0], atol=4e-4)

@@ -87,10 +87,10 @@ def test_each_arm_is_a_shield(robot: Robot, kind: str, longest: float | None) ->
             assert many.next_q[i].tobytes() == command.next_q.tobytes()
         assert many.clipped.tolist() == [command.clipped] * 3
         if k % 10 == 0:
-            assert many.active_limits(1) == command.limits
+            assert many.active_limits(1) == command.active_limits
             assert shields.stopping_time(2) == command.stopping_time
             assert shields.margin(0) == pytest.approx(command.margin, abs=1e-15)
-        limited += bool(command.limits)
+        limited += bool(command.active_limits)
         q = command.next_q
         if k == 300:
             q = q + 0.05  # farther than the tracking error

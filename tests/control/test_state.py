@@ -106,7 +106,7 @@ def test_threads_keep_the_acceleration_limit_between_them() -> None:
     with ThreadPoolExecutor(2) as pool:
         commands = [*pool.map(lambda _: controller.step(q, k * DT), range(600))]
     for command in commands:
-        change = np.abs(command.dq - command.past[1]).max()
+        change = np.abs(command.dq - command.motion_state[1]).max()
         assert change <= ACCELERATION * DT * (1.0 + 1e-9)
 
 
@@ -159,7 +159,7 @@ def test_what_a_step_asks_may_read_the_controller_and_not_move_it() -> None:
     controller = d.Controller(paper_robot(), LIMITED, path, dt=DT)
     first = controller.step(PAPER_Q0, 0.0).dq
     q = np.array(PAPER_Q0)
-    path.asks = lambda: (controller.positions, controller.delay, controller.program.sizes)
+    path.asks = lambda: (controller.positions, controller.path_lag, controller.program.sizes)
     np.testing.assert_allclose(controller.step(q, 0.0).dq, first, rtol=0, atol=1e-9)
     for asks in (
         lambda: controller.step(q + 0.1, 0.0),
@@ -194,10 +194,10 @@ def test_a_command_says_the_same_when_the_period_has_changed() -> None:
     controller, q, k = moving()
     far = d.Target(paper_start().position + [0.1, 0.0, 0.0], paper_start().rotation)
     command = controller.step(q, k * DT, far)
-    said = command.against
+    said = command.active_limits
     assert any("acceleration" in name for name in said)
     controller.step(q, k * DT, far, dt=20.0 * DT)
-    assert command.against == said
+    assert command.active_limits == said
 
 
 @pytest.mark.parametrize("times", [1, 2])

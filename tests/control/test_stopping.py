@@ -82,24 +82,30 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
 def test_what_sets_off_away_has_gone_the_square_of_the_joints_part(periods: float) -> None:
     motion = stopping.Motion(np.ones(1), np.ones(1), periods, True, 0.0)
     part, away = (
-        np.array([stopping.way_along(motion, x, b, k, 1.0) for k in range(int(periods) + 1)])
+        np.array(
+            [stopping.displacement_after(motion, x, b, k, 1.0) for k in range(int(periods) + 1)]
+        )
         for x, b in ((1.0, 0.0), (1.0 / (3.0 * periods), 1.0))
     )
     assert (away / away[-1] >= (part / part[-1]) ** 2 - 1e-12).all()
 
 
 @pytest.mark.parametrize("cubic", [False, True])
-def test_the_way_along_a_motion_is_the_sum_of_its_velocities(cubic: bool) -> None:
+def test_the_displacement_along_a_motion_is_the_sum_of_its_velocities(cubic: bool) -> None:
     random = np.random.default_rng(4)
     for _ in range(300):
         M = float(random.integers(1, 40))
         x, before = random.standard_normal(2)
-        b = stopping.bend_of(x, before, M, False) if cubic else 0.0
+        b = stopping.cubic_coefficient(x, before, M, False) if cubic else 0.0
         motion = stopping.Motion(np.array([x]), np.array([b]), M, cubic, 0.0)
         velocities = [stopping.velocity_at(x, b, u, cubic) for u in np.arange(M) / M]
-        ways = np.append(0.0, np.cumsum(velocities)) * 1e-3
-        assert stopping.least_way(motion, x, b, 1e-3) == pytest.approx(ways.min(), abs=1e-12)
-        assert stopping.way_along(motion, x, b, M, 1e-3) == pytest.approx(ways[-1], abs=1e-12)
+        displacements = np.append(0.0, np.cumsum(velocities)) * 1e-3
+        assert stopping.least_displacement(motion, x, b, 1e-3) == pytest.approx(
+            displacements.min(), abs=1e-12
+        )
+        assert stopping.displacement_after(motion, x, b, M, 1e-3) == pytest.approx(
+            displacements[-1], abs=1e-12
+        )
 
 
 def gone(periods: np.ndarray, x: Any, a: Any, time: float, says: bool) -> np.ndarray:
@@ -107,22 +113,22 @@ def gone(periods: np.ndarray, x: Any, a: Any, time: float, says: bool) -> np.nda
 
     They brake along the cubics through their last two velocities that end there, solved for here.
     """
-    way = periods[0] * x
-    ways = [0.0 * x, way]
+    displacement = periods[0] * x
+    displacements = [0.0 * x, displacement]
     for last, period in pairwise(periods):
         r = period if says else last
-        following = 0.0 * x
+        next_motion_state = 0.0 * x
         if r < time:
             # v(t) = (t - time)^2 (c + k t), with v(0) = x and v(-r) = x - r a
             c = x / time**2
             k = (c - (x - r * a) / (r + time) ** 2) / r
-            following = (r - time) ** 2 * (c + k * r)
-        a = (following - x) / r
-        x = following
+            next_motion_state = (r - time) ** 2 * (c + k * r)
+        a = (next_motion_state - x) / r
+        x = next_motion_state
         time = max(time - r, 0.0)
-        way = way + period * x
-        ways.append(way)
-    return np.array(ways)
+        displacement = displacement + period * x
+        displacements.append(displacement)
+    return np.array(displacements)
 
 
 @pytest.mark.parametrize("says", [False, True])
@@ -139,11 +145,11 @@ def test_the_way_to_rest_in_any_periods_is_no_less_than_the_checked_one(
     bounds = []
     longest = []
     for own, rate in zip(x, a, strict=True):
-        b = stopping.bend_of(own, own - rate, M, True)
+        b = stopping.cubic_coefficient(own, own - rate, M, True)
         motion = stopping.Motion(np.array([own]), np.array([b]), M + 1.0, True, stopping.UNEVEN)
-        bounds.append(stopping.least_way(motion, own, b, 1.0) - motion.uneven * abs(b))
-        b = stopping.bend_of(own, own - rate, M, False)
-        longest.append(stopping.least_way(motion, own, b, 1.0))
+        bounds.append(stopping.least_displacement(motion, own, b, 1.0) - motion.uneven * abs(b))
+        b = stopping.cubic_coefficient(own, own - rate, M, False)
+        longest.append(stopping.least_displacement(motion, own, b, 1.0))
     least = np.full(x.size, np.inf)
     short = np.full(int(50 * M), 0.02)
     runs = [np.append(short[::step], np.ones(25)) for step in range(1, 7)]
@@ -167,7 +173,7 @@ def approached(parts, target, steps, dt=4e-3, q=START.q, robot=ROBOT) -> tuple[n
     """Joint positions of an arm on its way to a target, and what is left at the end [m]."""
     scheme = d.DoubleIndicator(orientation="none", extra_limits=parts)
     path, commands = driven(d.Controller(robot, scheme, dt=dt), q, steps, target)
-    # A braking motion leaves the bounds of a step: the program in the record has them wider.
+    # A stopping motion leaves the bounds of a step: the program in the record has them wider.
     assert max(command.solution.residuals.primal for command in commands) < 1e-8
     goal = commands[-1].targets[0, :3]
     left = np.linalg.norm(d.Configuration(robot, path[-1]).position - goal)
@@ -277,7 +283,7 @@ def test_an_arm_that_braked_in_continuous_mode_goes_on() -> None:
     assert not all(braked[braked.index(True) :])
 
 
-def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:
+def test_a_ball_that_no_joint_can_evade_is_said_to_be_limiting() -> None:
     # Upright, no joint moves the arm away from above: the row was weakened to 0 dq <= 0.
     q = np.zeros(7)
     conf = d.Configuration(ROBOT, q)
@@ -296,7 +302,7 @@ def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:
 
 
 @pytest.mark.parametrize(
-    ("moves", "radii", "expected"),
+    ("support", "radii", "expected"),
     [
         # What slides after a turn is turned with it; what slides before it is not.
         ([1.0, 1.0], [-1.0, 0.5], 0.05 * 0.1),
@@ -305,9 +311,9 @@ def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:
         ([-1.0, -1.0], [-1.0, 0.5], 0.05 * 0.1 + 2.0 * 0.2 * 0.1),
     ],
 )
-def test_joints_that_slide_and_turn_bend_a_way(moves, radii, expected) -> None:
+def test_joints_that_slide_and_turn_curve_a_path(support, radii, expected) -> None:
     travel = np.array([0.2, 0.1])
-    found = second_order(np.array([moves]), np.array([radii]), 0, travel)
+    found = second_order(np.array([support]), np.array([radii]), 0, travel)
     assert found == pytest.approx(expected)
 
 

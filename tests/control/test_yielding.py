@@ -51,7 +51,7 @@ def test_a_jump_is_made_good_without_swinging(limits: tuple[d.Limit, ...]) -> No
     assert judged(path, jerk=JERK if len(limits) == 2 else np.inf) == []
     assert distance[-1] < 1e-6
     assert np.diff(distance).max() < 1e-6  # it never moves away
-    assert commands[-1].kind is ProgramKind.OWN
+    assert commands[-1].kind is ProgramKind.NOMINAL
 
 
 def test_near_a_singular_pose_a_path_that_fits_is_caught_up_with() -> None:
@@ -92,7 +92,7 @@ def test_a_path_beside_position_limits_is_braked_for_in_time() -> None:
     path = d.Heart(scale=0.02, period=6.0).anchored(paper_start())
     controller = d.Controller(robot, scheme, path, dt=2e-3)
     driven(controller, PAPER_Q0, 4000)
-    assert controller.delay < 0.55
+    assert controller.path_lag < 0.55
 
 
 @pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
@@ -151,7 +151,7 @@ def test_a_stopped_arm_goes_on_where_the_task_has_a_solution_again(limits) -> No
         command = controller.step(start.q, 1e-3 * k, far)
         assert command.action is Action.STOP
         assert not command.dq.any()
-        assert "against joint" in repr(command)
+        assert "limited by joint" in repr(command)
         np.testing.assert_array_equal([command.qp.lb, command.qp.ub], command.bounds)
     near = d.Target(start.position + [1e-5, 0.0, 0.0], start.rotation)
     again = [controller.step(start.q, 3e-3, near), controller.step(start.q, 4e-3, near)]

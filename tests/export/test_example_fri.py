@@ -37,7 +37,7 @@ def compile_client(sdk: Path, folder: Path) -> Path:
 if "FRI_SDK" in os.environ:
 
     def test_the_exported_client_draws_the_heart_as_python_does(tmp_path: Path) -> None:
-        scheme = DoubleIndicator(tracking="next")
+        scheme = DoubleIndicator(sample="end")
         q0 = paper_start().q
         export.c99(Controller(paper_robot(), scheme, heart(), dt=5e-3), tmp_path, q0)
         program = compile_client(Path(os.environ["FRI_SDK"]), tmp_path)

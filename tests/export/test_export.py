@@ -83,7 +83,7 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
     exported = loaded(c99(controller, tmp_path, q0))
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
     take_kernels_kinematics(controller)
-    width = controller.control_step.layout.width
+    width = controller.control_layout.log_layout.width
     dt = controller.dt
     q = q0.copy()
     active = 0
@@ -95,7 +95,7 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
         row = np.frombuffer(exported._memory)[:width]
         assert target.tobytes() == command.targets.tobytes()
         assert (dq.tobytes(), action) == (command.dq.tobytes(), command.action)
-        assert row.tobytes() == command.row.tobytes()
+        assert row.tobytes() == command.data.tobytes()
         actions.add(action)
         active += bool((np.abs([*command.solution.z, *command.solution.z_box]) > 1e-9).any())
         q = q + dt * dq
@@ -179,7 +179,7 @@ def test_the_code_is_plain_c_and_its_memory_is_stated(
     assert set(re.findall(r"#include <(\S+)\.h>", code)) == included
     assert not re.search(r"\b(malloc|free|alloca|printf|fopen|goto|setjmp|restrict)\b", code)
     for words in (
-        "static inline ptrdiff_t control_step_take_step(struct arena *arena, Vector row,",
+        "static inline ptrdiff_t control_cycle_take_step(struct arena *arena, Vector data,",
         "/* Tighten the bounds to those of `JointLimits`, whose constants these are.",
         " * iiwa_dnn/schemes/limits.py: joint_limits */",
     ):
@@ -206,7 +206,7 @@ def test_size_without_global_state(
     made = tmp_path / "controller.o"
     run(f"{prefix}gcc", *WARNINGS, *flags, "-Os", "-c", "-o", made, heart / "controller.c")
     text, data, bss = map(int, run(f"{prefix}size", made).splitlines()[1].split()[:3])
-    assert text <= most  # with the relaxed programs, each of a size of its own
+    assert text <= most  # with the fallback programs, each of a size of its own
     assert data == bss == 0
 
 
@@ -221,7 +221,7 @@ def test_inputs_that_are_no_numbers_change_nothing(exported: ExportedController)
         pointers = [ctypes.c_void_p(array.ctypes.data) for array in (q, target, dq)]
         memory = bytes(exported._memory)
         assert exported._library.controller_step(exported._memory, *pointers) == -1
-        assert bytes(exported._memory) == memory  # `past` held the refused positions
+        assert bytes(exported._memory) == memory  # `motion_state` held the refused positions
         assert not dq.any()
         np.testing.assert_array_equal(exported.step(row[1:8], row[8:26]).dq, before)
 

@@ -28,22 +28,22 @@ BALL = Sphere([0.36, 0.16, 0.64], 0.05)
 def test_the_c_of_a_shield_gives_its_commands(
     robot: Robot, obstacles: list[Sphere] | None, apart: float, tmp_path: Path
 ) -> None:
-    """Wishes are held, jump, fall silent for longer than the timeout, are no numbers; then halt."""
+    """Requests are held, jump, time out, are no numbers; then comes a halt."""
     shield = Shield(robot, DT, obstacles, timeout=0.02)
     export.c99(shield, tmp_path)
     exported = export.load(tmp_path)
     random = np.random.default_rng(0)
     q = START
-    wish: np.ndarray | None = None
+    request: np.ndarray | None = None
     for k in range(1500):
         if k % 40 == 0:
-            wish = random.standard_normal(7) * np.exp(random.standard_normal())
+            request = random.standard_normal(7) * np.exp(random.standard_normal())
         elif k % 120 == 1:
-            wish = None
+            request = None
         elif k % 250 == 2:
-            wish = np.full(7, np.nan)
-        command = shield.step(q, wish)
-        found = exported.shield_step(q, wish)
+            request = np.full(7, np.nan)
+        command = shield.step(q, request)
+        found = exported.shield_step(q, request)
         np.testing.assert_allclose(found.dq, command.dq, rtol=0.0, atol=apart)
         assert found.action == command.command.action
         q = q + DT * command.dq
@@ -60,7 +60,7 @@ def test_the_example_asks_the_shield(tmp_path: Path) -> None:
     run("make", "example", "CFLAGS=-O0", cwd=tmp_path)
     turned = float(run(tmp_path / "example").split()[2]) - START[0]
     assert turned == pytest.approx(0.1, abs=2e-3)  # 0.1 rad/s for 1 s, less the time to start
-    assert "wish" in (tmp_path / "README.md").read_text(encoding="utf-8")
+    assert "request" in (tmp_path / "README.md").read_text(encoding="utf-8")
 
 
 def test_a_shield_of_many_joints_stays_within_its_memory(tmp_path: Path) -> None:
@@ -71,9 +71,9 @@ def test_a_shield_of_many_joints_stays_within_its_memory(tmp_path: Path) -> None
     exported = export.load(tmp_path)
     q = np.zeros(20)
     for k in range(200):
-        wish = np.sin(np.arange(20.0) + 0.1 * k)
-        command = shield.step(q, wish)
-        np.testing.assert_array_equal(exported.shield_step(q, wish).dq, command.dq)
+        request = np.sin(np.arange(20.0) + 0.1 * k)
+        command = shield.step(q, request)
+        np.testing.assert_array_equal(exported.shield_step(q, request).dq, command.dq)
         q = command.next_q
 
 

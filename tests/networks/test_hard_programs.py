@@ -9,20 +9,20 @@ import programs
 from iiwa_dnn import QP, DNNSolver
 
 
-def test_degenerate_vertices_settle() -> None:
+def test_degenerate_vertices_converges() -> None:
     for seed in range(300):
         problem = programs.degenerate(np.random.default_rng([7, seed])).to_qpsolvers()
         assert iiwa_dnn.solve_problem(problem).is_optimal(2e-9), seed
 
 
 @pytest.mark.parametrize("kind", programs.SCALINGS)
-def test_badly_scaled_programs_settle(kind: str) -> None:
+def test_badly_scaled_programs_converges(kind: str) -> None:
     for seed in range(20):
         problem = programs.badly_scaled(np.random.default_rng([8, seed]), kind).to_qpsolvers()
         assert iiwa_dnn.solve_problem(problem, tol=1e-6).is_optimal(1.1e-6), seed
 
 
-def test_variables_in_other_units_settle() -> None:
+def test_variables_in_other_units_converges() -> None:
     for seed in range(20):
         rng = np.random.default_rng([9, seed])
         qp, x = programs.strictly_convex(rng, 6, 1e3, spoilt=False)
@@ -41,7 +41,7 @@ def test_one_variable_and_one_row_of_another_scale(P: float, G: float, h: float)
     assert solution.z[0] == pytest.approx(-P * h / G / G, rel=1e-9)
 
 
-def test_a_large_cold_program_settles() -> None:
+def test_a_large_cold_program_converges() -> None:
     qp, known = programs.strictly_convex(np.random.default_rng(44), 160, 1e2, spoilt=False)
     solution = DNNSolver().solve(qp)
     assert solution.found

@@ -218,7 +218,7 @@ def test_the_yardsticks_iterations_are_osqps() -> None:
     np.testing.assert_allclose(state[:6], x, atol=1e-4)
 
 
-def test_singular_cost_settles_but_not_with_the_dual_networks() -> None:
+def test_singular_cost_converges_but_not_with_the_dual_networks() -> None:
     nothing = d.QP(np.zeros((1, 1)), [1.0], lb=[-1.0])
     assert d.OneLayerNetwork().rates(nothing, np.zeros(1)) == [-0.5]
     qp = d.QP(np.diag([1.0, 0.0]), [0.0, 1.0], A=[[1.0, 1.0]], b=[1.0], lb=[-5.0, -5.0])
@@ -275,7 +275,7 @@ def test_a_state_without_x_is_not_disturbed() -> None:
         (lambda: d.ImplicitEuler(max_steps=0), "max_steps"),
         (lambda: TrackingSolver(formula="euler"), "formula"),
         (lambda: d.DNNSolver(network=d.ExplicitEuler()), "network"),
-        (lambda: d.DNNSolver(settler=d.ExplicitEuler()), "settler"),
+        (lambda: d.DNNSolver(solve_integrator=d.ExplicitEuler()), "solve_integrator"),
         (lambda: d.DNNSolver().solve(MANY_BOUNDS.to_qpsolvers()), "qp"),
         (lambda: d.DNNSolver().advance(MANY_BOUNDS.to_qpsolvers(), 1e-4), "qp"),
         *[

@@ -22,7 +22,7 @@ def test_every_dense_problem_of_qpsolvers(name: str) -> None:
     assert d.solve_problem(problem).is_optimal(1e-8)
 
 
-def test_warm_start_needs_fewer_systems_and_reset_forgets() -> None:
+def test_warm_start_needs_fewer_linear_solves_and_reset_forgets() -> None:
     rng = np.random.default_rng(8)
     qp, _ = known_qp(rng, 7, 3, 3)
     solver = d.DNNSolver()
@@ -65,7 +65,9 @@ def test_a_program_without_an_answer_does_not_spoil_the_next() -> None:
 
 def test_settings_are_frozen_and_reach_the_compiled_answer() -> None:
     solver = d.DNNSolver(
-        tol=1e-12, settler=d.ImplicitEuler(max_steps=7), follower=d.ExplicitEuler(substeps=9)
+        tol=1e-12,
+        solve_integrator=d.ImplicitEuler(max_steps=7),
+        advance_integrator=d.ExplicitEuler(substeps=9),
     )
     with pytest.raises(AttributeError):
         solver.tol = 1e-6
@@ -82,12 +84,12 @@ def test_settings_are_frozen_and_reach_the_compiled_answer() -> None:
 
 
 def test_sharpened_answers_are_daqps_where_the_cost_is_nearly_flat() -> None:
-    # The programs of an arm that follows its tip and hardly wishes for a posture.
+    # The programs of an arm that follows its tip and hardly requests for a posture.
     rng, plain, sharp = np.random.default_rng(17), 0.0, 0.0
     for _ in range(200):
-        J, wish = rng.standard_normal((6, 7)), rng.standard_normal(7)
+        J, request = rng.standard_normal((6, 7)), rng.standard_normal(7)
         P = J.T @ J + 1e-6 * np.eye(7)
-        q = -J.T @ rng.standard_normal(6) - 1e-6 * wish
+        q = -J.T @ rng.standard_normal(6) - 1e-6 * request
         bound = rng.uniform(0.05, 3.0, 7)
         problem = qpsolvers.Problem(P, q, lb=-bound, ub=bound)
         expected = qpsolvers.solve_problem(problem, "daqp", primal_tol=1e-12, dual_tol=1e-12).x
@@ -155,7 +157,7 @@ def test_a_warm_state_that_is_no_number_costs_no_call() -> None:
 
 
 def test_a_relative_tolerance_takes_what_an_absolute_one_leaves() -> None:
-    """A gap of 1e-9 is one rounding of a cost of 1e7; ten linear systems are too few for 1e-12."""
+    """A gap of 1e-9 is one rounding of a cost of 1e7; ten linear solves are too few for 1e-12."""
     problem = qpsolvers.Problem(
         np.diag([61.0, 2e9, 61.0, 2e9, 1000.0, 100.0]),
         np.zeros(6),
@@ -183,7 +185,7 @@ def test_a_network_that_diverges_says_so() -> None:
     qp, _ = known_qp(np.random.default_rng(27), 7, 3, 0)
     seen = []
     for network in (d.ProjectionNetwork(), d.PrimalDualNetwork()):
-        unstable = d.DNNSolver(network, follower=d.ExplicitEuler(substeps=1))
+        unstable = d.DNNSolver(network, advance_integrator=d.ExplicitEuler(substeps=1))
         ends = [unstable.advance(qp, 2.5 * network.rho) for _ in range(400)]
         seen += [end.status for end in ends]
         for end in ends:
@@ -196,7 +198,7 @@ def test_a_network_that_diverges_says_so() -> None:
     assert seen.index(d.Status.DIVERGED) < seen.index(d.Status.NOT_FINITE)
 
 
-def test_solve_problem_starts_cold_whoever_shares_its_solver() -> None:
+def test_solve_problem_starts_cold_whoever_fractions_its_solver() -> None:
     made = [programs.strictly_convex(np.random.default_rng([59, k]), 7)[0] for k in range(20)]
     cold = [d.DNNSolver().solve(qp).x for qp in made]
     solver = d.DNNSolver()

@@ -14,7 +14,7 @@ SEEDS = st.integers(0, 2**32 - 1)
 @given(SEEDS, st.sampled_from([1e-1, 1e-4, 1e-9, 1e-13, 1e-16]), st.integers(1, 40))
 def test_found_means_that_the_residuals_are_below_the_tolerance(seed, tol, budget) -> None:
     qp, _ = programs.strictly_convex(np.random.default_rng(seed))
-    solver = DNNSolver(tol=tol, settler=iiwa_dnn.ImplicitEuler(max_steps=budget))
+    solver = DNNSolver(tol=tol, solve_integrator=iiwa_dnn.ImplicitEuler(max_steps=budget))
     solution = solver.solve(qp)
     residuals = qp.residuals(solution.point)
     assert solution.residuals == residuals

@@ -89,7 +89,7 @@ def test_derivatives_and_drift_by_finite_differences(form: str, case: int) -> No
 
 
 @pytest.mark.parametrize("form", ["projected", "smooth"])
-def test_settles_with_bounds_and_inequalities(form: str) -> None:
+def test_converges_with_bounds_and_inequalities(form: str) -> None:
     rng = np.random.default_rng(2)
     for case in range(5):
         qp, x = known_qp(rng, 6, 2, case, inequalities=3)
@@ -179,7 +179,7 @@ def test_the_residual_is_of_the_declared_order(formula) -> None:
 
 def test_a_moving_program_leaves_no_error_where_another_network_lags() -> None:
     network = ZeroingNetwork(rho=0.05)
-    still = type("Still", (ZeroingNetwork,), {"flow": lambda s, q, r=None: network.flow(q)})
+    still = type("FixedPose", (ZeroingNetwork,), {"flow": lambda s, q, r=None: network.flow(q)})
     solver, blind = TrackingSolver(network), TrackingSolver(still(rho=0.05))
     for k in range(1000):
         for one in (solver, blind):

@@ -156,7 +156,7 @@ def test_largest_residual_does_not_lose_a_nan() -> None:
 def test_a_solution_that_was_not_found_carries_no_x() -> None:
     qp, _ = known_qp(np.random.default_rng(2), 4, 1, 1)
     good = DNNSolver().solve(qp)
-    bad = good._replace(status=Status.NOT_SETTLED).to_qpsolvers(qp.to_qpsolvers())
+    bad = good._replace(status=Status.NOT_CONVERGED).to_qpsolvers(qp.to_qpsolvers())
     assert bad.found is False
     assert bad.x is None
     assert bad.primal_residual() == np.inf

@@ -41,11 +41,11 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize(("kind", "count", "share"), [
+@pytest.mark.parametrize(("kind", "count", "fraction"), [
     ("whole numbers", 300, 0.3), ("strictly convex", 150, 0.4), ("an arm's shape", 40, 0.9),
     ("rows badly scaled", 3, 0.6),
 ])  # fmt: skip
-def test_no_bound_is_below_the_true_error(kind: str, count: int, share: float) -> None:
+def test_no_bound_is_below_the_true_error(kind: str, count: int, fraction: float) -> None:
     proven = 0
     for seed in range(count):
         rng = np.random.default_rng([26, seed])
@@ -55,7 +55,7 @@ def test_no_bound_is_below_the_true_error(kind: str, count: int, share: float) -
             shift = 10.0 ** rng.uniform(-15.0, 0.0) * rng.standard_normal(solution.point.size)
             solution = solution._replace(point=solution.point + shift)
         proven += judged(qp, solution)[0].bound < np.inf
-    assert proven >= share * count
+    assert proven >= fraction * count
 
 
 def held(qp: QP, x: list[Fraction]) -> list[int]:

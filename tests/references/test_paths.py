@@ -102,7 +102,7 @@ def test_closed_paths_repeat_after_their_period_and_not_before(reference: d.Refe
 
 
 @pytest.mark.parametrize(
-    "reference", [*CLOSED, *OPEN, *SOFT, d.Still()], ids=lambda path: type(path).__name__
+    "reference", [*CLOSED, *OPEN, *SOFT, d.FixedPose()], ids=lambda path: type(path).__name__
 )
 def test_an_anchor_moves_the_start_and_keeps_the_axes(reference: d.Reference) -> None:
     anchored = reference.anchored(POSE)
@@ -245,7 +245,7 @@ REFUSED = [
     (d.Tilting, {"begin": -1.0}, "begin"),
     (d.Lissajous, {"begin": math.inf}, "begin"),
     (d.Tilting, {"along": Nodding()}, "along"),
-    (d.Still, {"period": 0.0}, "period"),
+    (d.FixedPose, {"period": 0.0}, "period"),
     (d.Heart().at, {"t": math.nan}, "t"),
     (d.Heart().sample, {"times": 1.0}, "times"),
     (d.Heart().anchored, {"pose": FLAT}, "rotation"),

@@ -18,8 +18,8 @@ pytestmark = pytest.mark.filterwarnings("ignore:smoothing has")
 def recorded(times: NDArray[np.float64], whole: bool) -> tuple[Any, Rotation, Any, Rotation]:
     """Points and orientations of two turns, or of three eased ones, and the same with noise."""
     rng = np.random.default_rng(7)
-    share = times / T if whole else 3.0 * (times / T) ** 2 - 2.0 * (times / T) ** 3
-    angle = 2.0 * np.pi * share
+    fraction = times / T if whole else 3.0 * (times / T) ** 2 - 2.0 * (times / T) ** 3
+    angle = 2.0 * np.pi * fraction
     points = 0.1 * np.stack([np.cos(angle), np.sin(2.0 * angle), 0.0 * angle], axis=1)
     turns = Rotation.from_rotvec(np.stack([0.0 * angle, 0.0 * angle, angle], axis=1))
     noisy = points + NOISE * rng.standard_normal(points.shape)

@@ -167,8 +167,8 @@ def test_a_pause_is_one() -> None:
 def test_dense_smooth_rows_have_the_digits_of_scipys_splines(closed: bool) -> None:
     """A circle at 30 Hz, at constant speed if it is closed, else begun and ended slowly."""
     t = np.arange(301) / 30.0
-    share = t / 10.0 if closed else 3.0 * (t / 10.0) ** 2 - 2.0 * (t / 10.0) ** 3
-    angle = 2.0 * np.pi * share
+    fraction = t / 10.0 if closed else 3.0 * (t / 10.0) ** 2 - 2.0 * (t / 10.0) ** 3
+    angle = 2.0 * np.pi * fraction
     points = 0.1 * np.stack([np.cos(angle), np.sin(angle), np.zeros(301)], axis=1)
     points[-1] = points[0]
     turns = Rotation.from_rotvec(np.stack([np.sin(angle), 0.4 * np.sin(2 * angle), 0 * t], axis=1))

@@ -349,24 +349,24 @@ def test_the_policies_are_named_with_their_steps():
         "(t = 0.3 s); limited most often by no bound, but a singular posture, a path out of "
         "reach or conflicting tasks; another start (--q0) may help",
     ]
-    blocking = np.zeros((10, 7), int)
+    limiting = np.zeros((10, 7), int)
     for joint in range(5):
-        blocking[: 8 - joint, joint] = 2
-    half = slowed([0.4] * 8 + [1.0] * 2, blocking=blocking)  # 5.2 of 10 periods
+        limiting[: 8 - joint, joint] = 2
+    half = slowed([0.4] * 8 + [1.0] * 2, limiting=limiting)  # 5.2 of 10 periods
     limits = "joint 1 upper velocity limit, joint 2 upper velocity limit, "
     limits += "joint 3 upper velocity limit"
     advice = "more time for the path (--period, --stretch) may help"
     assert failures(half)[1].endswith(f"limited most often by {limits}; {advice}")
-    held = slowed([0.4] * 8 + [1.0] * 2, blocking=np.where(blocking, 3, 0))
+    held = slowed([0.4] * 8 + [1.0] * 2, limiting=np.where(limiting, 3, 0))
     assert "; each joint is limited by itself, so the tip leaves the path" in failures(held)[1]
     assert "leaves the path" not in failures(half)[1]
-    out_of_reach = slowed([0.4] * 8 + [1.0] * 2, blocking=np.minimum(blocking, 1))
+    out_of_reach = slowed([0.4] * 8 + [1.0] * 2, limiting=np.minimum(limiting, 1))
     assert failures(out_of_reach)[1].endswith("joint 3 upper position limit")
-    seldom = slowed([0.4] * 10, blocking=np.where(np.arange(10)[:, None] < 4, blocking, 0))
+    seldom = slowed([0.4] * 10, limiting=np.where(np.arange(10)[:, None] < 4, limiting, 0))
     assert "limited most often by no bound, " in failures(seldom)[1]  # of 6 steps, and limits of 4
-    at_speed = slowed([0.4] * 10, blocking=2 * blocking)
+    at_speed = slowed([0.4] * 10, limiting=2 * limiting)
     assert failures(at_speed)[1].endswith("path at speed or elsewhere (heart, line: at rest)")
-    too_quick = slowed([0.4] * 10, blocking=2 * blocking, settings={"start_speed": 0.0})
+    too_quick = slowed([0.4] * 10, limiting=2 * limiting, settings={"start_speed": 0.0})
     assert failures(too_quick)[1].endswith(advice)
     far = slowed([0.4] * 10, settings={"beyond_reach": 0.32})
     assert failures(far)[1].startswith("the path leads 0.32 m beyond the arm's reach")
@@ -413,17 +413,17 @@ def test_limits_that_act_are_counted_and_named_the_longest_first():
     time = {"time_s": pytest.approx(0.4)}
     assert active[2:4] == [{**ROWS[1], "steps": 2, "step": 4, **time}, bounds[2]]
     assert active[4] == {**ROWS[2], "steps": 1, "step": 9, "time_s": pytest.approx(0.9)}
-    assert metrics["incidents"]["blocking"] == []
+    assert metrics["incidents"]["limiting"] == []
     assert failures(record) == []
     assert not any((compute_metrics(make_record())["incidents"] | {"path_time_s": 0}).values())
 
 
-def test_clipped_steps_and_limits_in_the_way():
-    clipped, blocking, rows = (np.zeros((10, n), int) for n in (7, 7, 3))
+def test_clipped_steps_and_limits_limiting():
+    clipped, limiting, rows = (np.zeros((10, n), int) for n in (7, 7, 3))
     clipped[2:5, 3] = clipped[4, 1] = 1
-    blocking[6, 0], blocking[7, 0], blocking[2, 4], rows[2:9, 0] = 2, 1, -1, 1
+    limiting[6, 0], limiting[7, 0], limiting[2, 4], rows[2:9, 0] = 2, 1, -1, 1
     record = make_record(
-        clipped=clipped, blocking=blocking, blocking_rows=rows, action=np.eye(10, dtype=int)[6] * 3,
+        clipped=clipped, limiting=limiting, limiting_rows=rows, action=np.eye(10, dtype=int)[6] * 3,
         settings={"rows": ROWS, "joints": [f"arm_{letter}" for letter in "abcdefg"]},
     )  # fmt: skip
     incidents = compute_metrics(record)["incidents"]
@@ -454,24 +454,24 @@ def test_the_nearest_pair_is_named():
 LIMITS = [100.0, 100.0, 50.0, 50.0, 50.0, 20.0, np.inf]
 
 
-def physics_record(share: float = 0.5) -> Record:
+def physics_record(fraction: float = 0.5) -> Record:
     """10 s in steps of 0.1 s, 5 mm off at first, torques below their limits by a factor."""
     position, torque = np.zeros((101, 3)), np.zeros((100, 7))
     position[:5, 1], position[5:, 1] = 5e-3, 1e-4
-    torque[3, 2], torque[4, 0], torque[5, 6] = -share * 50.0, 0.9 * share * 100.0, 1e6
+    torque[3, 2], torque[4, 0], torque[5, 6] = -fraction * 50.0, 0.9 * fraction * 100.0, 1e6
     settings = {"torque_max": LIMITS, "physics": {"timestep": 1e-3}}
     return make_record(steps=100, position=position, torque=torque, settings=settings)
 
 
-def test_settled_error_and_torques():
+def test_converged_error_and_torques():
     assert "physics" not in compute_metrics(make_record())
     physics = compute_metrics(physics_record())["physics"]
     assert physics["max_position_error_settled_m"] == pytest.approx(1e-4)
     assert physics["max_torque_n_m"] == pytest.approx([45.0, 0, 25.0, 0, 0, 0, 1e6])
-    assert physics["max_torque_share"] == pytest.approx(0.5)
+    assert physics["max_torque_fraction"] == pytest.approx(0.5)
     # The sample at the time of settling counts.
     late = compute_metrics(sample(physics_record(), "position", 5, [0.0, 3e-3, 0.0]))
     assert late["physics"]["max_position_error_settled_m"] == 3e-3
-    (reason,) = failures(physics_record(share=1.0))
+    (reason,) = failures(physics_record(fraction=1.0))
     assert reason == "torque limit reached by joint 3, first at step 3 (t = 0.3 s); 1 step"
-    assert failures(physics_record(share=0.999)) == []
+    assert failures(physics_record(fraction=0.999)) == []

@@ -142,7 +142,7 @@ def test_curves_are_told_apart_without_colour_and_by_their_joints_names(heart):
     assert axes.get_legend_handles_labels()[1] == [*"abcdefg", "limit"]
 
 
-def test_limits_that_differ_are_one_line_for_shares_of_them():
+def test_limits_that_differ_are_one_line_for_fractions_of_them():
     limit = np.array([320.0, 320, 176, 176, 110, 40, 40])
     torque = np.tile(0.9 * limit, (10, 1))
     torque[5, 1] = 42.0  # beyond what joint 7 may, far from what joint 2 may

@@ -98,6 +98,19 @@ def test_a_file_of_before_all_three_gaps_is_read_and_judged_by_the_first(tmp_pat
     assert check["max_solution_gap"] == 1e-9
 
 
+def test_a_file_of_before_the_fields_words_is_read(tmp_path):
+    limiting = np.zeros((10, 7), np.int8)
+    limiting[3, 2] = -4
+    make_record(limiting=limiting).save(tmp_path / "now.npz")
+    with np.load(tmp_path / "now.npz") as stored:
+        arrays = dict(stored)
+    arrays["limiting"] = arrays.pop("limiting")
+    arrays["limiting_rows"] = arrays.pop("limiting_rows")
+    np.savez(tmp_path / "before.npz", **arrays)
+    read = Record.load(tmp_path / "before.npz")
+    np.testing.assert_array_equal(read.limiting, limiting)
+
+
 def test_a_record_does_not_change_with_what_it_was_made_of():
     q, settings = np.zeros((11, 7)), {"dt": 0.1, "scheme": {"weight": 0.2}}
     record = make_record(q=q, settings=settings)

@@ -128,13 +128,13 @@ def test_a_failed_run_lists_every_reason(tmp_path):
     assert re.match(r"verdict +path completed 0.0 %\n", summary(d.compute_metrics(stuck)))
 
 
-def test_active_and_blocking_limits_have_rows(tmp_path):
+def test_active_and_limiting_limits_have_rows(tmp_path):
     rows = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(9)]
-    multiplier, blocking = np.zeros((10, 9)), np.zeros((10, 9), int)
-    multiplier[:6, 2], blocking[8] = np.linspace(0.4, 0.1, 6), 1
+    multiplier, limiting = np.zeros((10, 9)), np.zeros((10, 9), int)
+    multiplier[:6, 2], limiting[8] = np.linspace(0.4, 0.1, 6), 1
     record = make_record(
         row_multiplier=multiplier,
-        blocking_rows=blocking,
+        limiting_rows=limiting,
         action=np.eye(10, dtype=int)[8] * 3,
         settings={"rows": rows},
     )

@@ -116,7 +116,7 @@ def test_a_controller_warns_of_links_that_no_row_watches(tmp_path, monkeypatch) 
     monkeypatch.setattr(collision, "make_collision_model", partial(make_collision_model, samples=9))
     robot = arm_of(tmp_path, p1=MASS, p2=MASS + COVER, p3=MASS + DRAWN)
     avoidance = iiwa_dnn.CollisionAvoidance([BALL])
-    still = iiwa_dnn.Still().anchored(iiwa_dnn.Configuration(robot, np.zeros(3)))
+    still = iiwa_dnn.FixedPose().anchored(iiwa_dnn.Configuration(robot, np.zeros(3)))
     paper = iiwa_dnn.DoubleIndicator(orientation="none", extra_limits=(avoidance,))
     with pytest.warns(UserWarning, match="no <collision> geometry: p1, p3$") as caught:
         record = iiwa_dnn.simulate(robot, paper, still, np.zeros(3), dt=0.01, duration=0.02)

@@ -36,7 +36,7 @@ def test_the_jacobian_of_any_frame_is_the_derivative_of_its_pose(name: str) -> N
         found = Configuration(robot, q).frame(frame)
         np.testing.assert_allclose(found.jacobian, pose_jacobian(pose, q), rtol=0, atol=1e-6)
         assert found.jacobian.shape == (6, robot.dof)
-        moved = robot.moves[robot.frame_id(frame)]
+        moved = robot.support[robot.frame_id(frame)]
         np.testing.assert_array_equal(moved, np.any(found.jacobian != 0.0, axis=0))
     conf = Configuration(robot, q)
     np.testing.assert_array_equal(conf.pose, found.pose)

@@ -37,7 +37,7 @@ def test_bounds_are_the_papers_formula(q, lower, upper, speed, gain, dt) -> None
 def test_the_fr3s_velocity_limits_end_before_its_position_limits() -> None:
     # libfranka's rate_limiting.h: sqrt(2 d (upper - q)) - offset, none below it.
     robot = d.load_robot("fr3")
-    offset, deceleration = robot.ramps
+    offset, deceleration = robot.position_dependent_velocity
     for left in (0.0, 1e-4, 5e-3, 0.05, 0.5):
         qp = rows_of(d.JointLimits(gain=20.0), d.Configuration(robot, robot.q_upper - left))
         ramp = np.maximum(np.sqrt(2.0 * deceleration * left) - offset, 0.0)
@@ -46,14 +46,14 @@ def test_the_fr3s_velocity_limits_end_before_its_position_limits() -> None:
         assert_array_equal(qp.lb, -robot.dq_max)
 
 
-@pytest.mark.parametrize("share", [0.5, 2.0])
-def test_each_joint_may_add_an_equal_part_of_what_is_left(share: float) -> None:
+@pytest.mark.parametrize("fraction", [0.5, 2.0])
+def test_each_joint_may_add_an_equal_part_of_what_is_left(fraction: float) -> None:
     jacobian = paper_start().jacobian[:3]
     speed = np.linalg.norm(jacobian @ LAST)
     along = jacobian.T @ jacobian @ LAST / speed
-    qp = rows_of(d.TipSpeedLimit(share * speed, gain=50.0), paper_start(), dt=DT, dq=LAST)
+    qp = rows_of(d.TipSpeedLimit(fraction * speed, gain=50.0), paper_start(), dt=DT, dq=LAST)
     # At their bounds the joints close the gain's part of the gap in one step.
-    growth = 50.0 * DT * (share - 1.0) * speed / np.abs(along).sum()
+    growth = 50.0 * DT * (fraction - 1.0) * speed / np.abs(along).sum()
     moves = np.abs(along) > 1e-12
     expected = LAST + np.sign(along) * growth
     assert_allclose(qp.ub, np.where(moves & (along > 0.0), expected, np.inf), rtol=1e-12)

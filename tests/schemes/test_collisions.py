@@ -68,12 +68,12 @@ def test_rows_are_the_gradients_of_the_distances(name: str) -> None:
         assert apart.sum() > 20
         one, other = -G[0::2][apart], -G[1::2][apart]
         across = other - one
-        share = ((slope[apart] - one) * across).sum(axis=1) / (across**2).sum(axis=1)
+        fraction = ((slope[apart] - one) * across).sum(axis=1) / (across**2).sum(axis=1)
         higher = (left[0::2] - left[1::2])[apart]
         lying += (np.abs(higher) < 1e-9).sum()
-        share = np.where(np.abs(higher) < 1e-9, np.clip(share, 0.0, 1.0), higher > 0.0)
+        fraction = np.where(np.abs(higher) < 1e-9, np.clip(fraction, 0.0, 1.0), higher > 0.0)
         # Second differences at the kinks of boxes.
-        found = one + share[:, np.newaxis] * across
+        found = one + fraction[:, np.newaxis] * across
         np.testing.assert_allclose(found, slope[apart], rtol=0, atol=1e-5)
     assert lying > 5
 
@@ -95,16 +95,16 @@ def test_points_move_on_curves_that_h_allows_for() -> None:
     # Three parallel joints that bend a stretched arm need all of it: half, as the bound is twice.
     motions = [(np.array([0.0, 0.3, 0, 0, 0, 0, 0]), np.array([0.0, 1, 0, -1, 0, 1, 0]))]
     motions += [(q, ROBOT.dq_max * random.choice([-1.0, 1.0], 7)) for q in postures(40)]
-    shares = []
+    fractions = []
     for q, last in motions:
         G, still = rows(floor, q, dt=dt)
         allowed = still - rows(floor, q, dt=dt, dq=last)[1]
         after = rows(floor, q + dt * last)[1]
         counted = (allowed > 0.0) & (allowed < still) & (np.maximum(still, after) < 9.0)
         curved = np.abs(still - dt * (G @ last) - after)
-        shares.append(curved[counted] / allowed[counted])
-    assert np.concatenate(shares).max() < 0.5
-    assert shares[0].max() > 0.45
+        fractions.append(curved[counted] / allowed[counted])
+    assert np.concatenate(fractions).max() < 0.5
+    assert fractions[0].max() > 0.45
 
 
 def test_within_what_a_step_may_take_h_asks_for_all_of_it_at_once() -> None:

@@ -24,7 +24,7 @@ def scheme(*limits: Any) -> d.DoubleIndicator:
 @pytest.mark.filterwarnings("ignore:a gain of 10.2")  # nothing is closed in a loop here
 @pytest.mark.parametrize("limits", [(A, None), (None, J), (A, J)], ids=["A", "J", "A and J"])
 def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(limits) -> None:
-    """Each bound in the way, beside the rates of the command that lies at it."""
+    """Each limiting bound, beside the rates of the command that lies at it."""
     kinds = zip((d.AccelerationLimits, d.JerkLimits), limits, strict=True)
     robot = paper_robot()
     controlled = d.Controller(
@@ -33,7 +33,7 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(limits) -> N
     seen = set()
     _, commands = driven(controlled, PAPER_Q0, 400, FAR)
     for k, command in enumerate(commands):
-        _, last, before = command.past
+        _, last, before = command.motion_state
         rates = np.abs(
             [
                 command.dq / robot.dq_max,
@@ -42,8 +42,8 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(limits) -> N
             ]
         )
         names = repr(command)
-        for joint in np.flatnonzero(command.blocking[: command.dq.size]):
-            bound = command.bounds[int(command.blocking[joint] > 0), joint]
+        for joint in np.flatnonzero(command.limiting[: command.dq.size]):
+            bound = command.bounds[int(command.limiting[joint] > 0), joint]
             if abs(command.dq[joint] - bound) > 1e-9:
                 continue
             word = names.split(f"joint {joint + 1} ")[1].split()[1]
@@ -58,7 +58,7 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(limits) -> N
 def test_at_a_position_limit_it_is_that_ones() -> None:
     robot = paper_robot().with_limits(upper=np.array(PAPER_Q0) + 3e-5)
     command = d.Controller(robot, scheme(d.AccelerationLimits(A)), dt=DT).step(PAPER_Q0, 0.0, FAR)
-    assert command.against[0].endswith(" upper position limit")
+    assert command.active_limits[0].endswith(" upper position limit")
 
 
 def test_command_and_report_say_the_same_row() -> None:
@@ -67,7 +67,7 @@ def test_command_and_report_say_the_same_row() -> None:
     row = "of CollisionAvoidance (iiwa7_link_7 and HalfSpace 1)"
     command = d.Controller(paper_robot(), avoiding, dt=DT).step(PAPER_Q0, 0.0, FAR)
     with pytest.warns(UserWarning, match="0.5 m"):
-        record = run(avoiding, d.Still().anchored(FAR), duration=DT)
+        record = run(avoiding, d.FixedPose().anchored(FAR), duration=DT)
     assert row in repr(command)
     assert row in " ".join(d.failures(record))
 
@@ -76,5 +76,5 @@ def test_a_record_tells_the_kinds_of_active_bounds_too() -> None:
     path = d.Waypoints([0.0, 0.4], [[0.0, 0.0, 0.0], 0.3 * SIDEWAYS]).anchored(paper_start())
     record = run(scheme(d.AccelerationLimits(A)), path, duration=0.2)
     incidents = d.compute_metrics(record)["incidents"]
-    said = {limit["limit"] for limit in incidents["blocking"] + incidents["active"]}
+    said = {limit["limit"] for limit in incidents["limiting"] + incidents["active"]}
     assert said == {"acceleration"}

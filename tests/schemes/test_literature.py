@@ -107,10 +107,10 @@ def test_the_largest_speed_is_that_of_a_linear_program() -> None:
 def test_the_rows_ask_for_the_next_target(gain: float) -> None:
     q = np.array(PAPER_Q0) + 0.1 * np.random.default_rng(3).normal(size=7)
     conf, t = d.Configuration(paper_robot(), q), 1.7
-    scheme = d.DoubleIndicator(home=PAPER_Q0, tracking="next")
+    scheme = d.DoubleIndicator(home=PAPER_Q0, sample="end")
     if gain < np.inf:
         scheme = d.DoubleIndicator(home=PAPER_Q0, position_gain=gain, orientation_gain=gain)
-    qp = scheme.build_qp(conf, PATH.ahead(DT).at(t), DT)
+    qp = scheme.build_qp(conf, PATH.feed_forward(DT).at(t), DT)
     now, then = PATH.at(t), PATH.at(t + DT)
     left = 1.0 - min(gain * DT, 1.0)
     moved = then.position - conf.position - left * (now.position - conf.position)
@@ -123,7 +123,7 @@ def test_the_rows_ask_for_the_next_target(gain: float) -> None:
 def test_the_error_towards_the_next_target_is_of_second_order_and_does_not_add_up() -> None:
     largest = []
     for dt in (2e-3, 1e-3):
-        record = run(d.DoubleIndicator(tracking="next"), PATH, dt=dt, duration=1.6)
+        record = run(d.DoubleIndicator(sample="end"), PATH, dt=dt, duration=1.6)
         settled = record.t > 0.1
         distance = np.linalg.norm(position_error(record), axis=1)
         largest.append((distance[settled].max(), orientation_error(record)[settled].max()))

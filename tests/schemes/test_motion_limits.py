@@ -40,14 +40,14 @@ def adversary(q: float, upper: float, limits: Any, dt: float, draws: Any, out: A
     """Drive a joint in [-upper, upper] by hostile choices; returns the least room of its bounds."""
     V, A, J = limits
     periods = constant_periods(dt)
-    last = before = room = wish = 0.0
+    last = before = room = request = 0.0
     mode, left = 0, 0
     for k in range(len(out)):
         lb, ub = joint_bounds(last, before, upper - q, q + upper, (V, A, J, A, INF, 0.0), periods)
         room = min(room, ub - lb)
         if left == 0:
             mode, left = int(4.0 * draws[k, 0]), 1 + int(400.0 * draws[k, 1])
-            wish = (2.0 * draws[k, 2] - 1.0) * min(V, 10.0)
+            request = (2.0 * draws[k, 2] - 1.0) * min(V, 10.0)
         left -= 1
         v = ub
         if mode == 1:
@@ -55,7 +55,7 @@ def adversary(q: float, upper: float, limits: Any, dt: float, draws: Any, out: A
         elif mode == 2:
             v = lb + (ub - lb) * draws[k, 3]
         elif mode == 3:
-            v = min(max(wish, lb), ub)
+            v = min(max(request, lb), ub)
         q += dt * v
         before, last = last, v
         out[k] = q
@@ -271,13 +271,13 @@ def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
     """Feed a joint's position back, with noise; returns its largest excursion in the last part."""
     V, A, J = limits
     periods = constant_periods(dt)
-    last = before = wished = largest = 0.0
+    last = before = requested = largest = 0.0
     for k in range(len(noise)):
-        wish = min(max(-gain * (q + noise[k]), -V), V)
-        change = min(max(wish - wished, -A * dt), A * dt)
-        wished = wish
+        request = min(max(-gain * (q + noise[k]), -V), V)
+        change = min(max(request - requested, -A * dt), A * dt)
+        requested = request
         lb, ub = joint_bounds(last, before, 1e3, 1e3, (V, A, J, A, INF, 0.0), periods)
-        v = wish + braking(last - wish + change, lb - wish, ub - wish, J, periods)
+        v = request + braking(last - request + change, lb - request, ub - request, J, periods)
         before, last = last, min(max(v, lb), ub)
         q += dt * last
         if k > 3 * len(noise) // 4:

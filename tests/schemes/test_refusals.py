@@ -48,7 +48,7 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
     (lambda: d.Manipulability(weight=-1.0), "weight"),
     (lambda: bi_criteria(ROBOT, 1.5), "weight"),
     (lambda: d.PseudoInverse(orientation="euler"), "orientation"),  # type: ignore[arg-type]
-    (lambda: d.DoubleIndicator(tracking="last"), "tracking"),  # type: ignore[arg-type]
+    (lambda: d.DoubleIndicator(sample="last"), "sample"),  # type: ignore[arg-type]
     (lambda: d.DoubleIndicator(home=(0.0, np.nan)), "home"),
     (lambda: d.DoubleIndicator(limit_gain=0.0), "gain"),  # nothing would move
     (lambda: d.DoubleIndicator(kinetic="mass"), "kinetic"),  # type: ignore[arg-type]
@@ -86,7 +86,7 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
         "obstacles: there is no pair",
     ),
     (lambda: d.CollisionAvoidance().scene(ROBOT.with_limits(velocity=np.inf)), "robot"),
-    (lambda: run(d.DoubleIndicator(tracking="next"), motion="rk4"), "motion: .*next target"),
+    (lambda: run(d.DoubleIndicator(sample="end"), motion="rk4"), "motion: .*next target"),
     *[
         (lambda text=text: read(text), rf".*toml: .*{problem}")
         for text, problem in (

@@ -67,7 +67,9 @@ def test_a_control_loop(example: Example) -> None:
 
 
 def test_a_control_loop_with_noise_and_a_jerk_limit(example: Example) -> None:
-    text = example("control_loop.py", "100", "--noise", "1e-4", "--jerk", "200", "--delay", "2")
+    text = example(
+        "control_loop.py", "100", "--noise", "1e-4", "--jerk", "200", "--delay-periods", "2"
+    )
     assert 0.0 < number(r"largest (\S+) m\b", text) < 1e-3
 
 

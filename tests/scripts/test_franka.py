@@ -90,11 +90,11 @@ def server() -> Iterator[subprocess.Popen[bytes]]:
         (1.0, 0.02, 5.0, "", ""),
         (1.0, 0.1, 0.5, "", ""),  # as quick as the limits let it
         (60.0, 0.1, 2.0, "gc.disable = Timer(1.0, raise_signal, [SIGINT]).start", ""),  # Ctrl-C
-        (9.0, 0.1, 0.5, "franka.with_room = lambda robot: robot", "discontinuity"),
+        (9.0, 0.1, 0.5, "franka.with_reserve = lambda robot: robot", "discontinuity"),
     ],
-    ids=["slow", "too quick", "interrupted", "without room"],
+    ids=["slow", "too quick", "interrupted", "without reserve"],
 )
-def test_the_motion_is_accepted_with_room_for_lost_commands(
+def test_the_motion_is_accepted_with_reserve_for_lost_commands(
     server, duration: float, radius: float, period: float, before: str, fault: str
 ) -> None:
     code = (

@@ -87,9 +87,9 @@ def test_joints_that_begin_off_a_relation_come_to_it(name: str, off: float, jerk
     lacking = [controller.scheme.tasks[1].missing(robot, each) for each in path]
     assert lacking[0] == pytest.approx(off)
     assert abs(lacking[-1]) < 1e-6
-    said = [words for words in commands[0].against if "off their JointCouplingTask" in words]
+    said = [words for words in commands[0].active_limits if "off their JointCouplingTask" in words]
     assert said == [f"{' and '.join(PAIRS[name])}: {off:.3g} rad off their JointCouplingTask"]
-    assert not any("JointCouplingTask" in words for words in commands[-1].against)
+    assert not any("JointCouplingTask" in words for words in commands[-1].active_limits)
 
 
 def test_a_start_off_a_relation_is_said_once() -> None:
@@ -128,7 +128,7 @@ def test_a_halted_arm_outside_its_limits_stays_there() -> None:
 
 
 def test_braking_from_a_velocity_that_others_chose_is_tested() -> None:
-    """If the arm can stop, the motion to rest is in hand from then on."""
+    """If the arm can stop, the stopping motion is stored from then on."""
     controller, q, target = coupled("ur5", 0.0)
     controller.step(q, 0.0, target)
     away = np.array([0.3, 0.0, 0.0, 0.0, 0.0, 0.2])

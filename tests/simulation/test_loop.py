@@ -131,7 +131,9 @@ def test_cyclic_motion_comes_back_and_minimum_energy_drifts() -> None:
 
 
 def test_a_network_that_diverges_is_called_that() -> None:
-    solver = d.DNNSolver(d.PrimalDualNetwork(rho=1e-5), follower=d.ExplicitEuler(substeps=1))
+    solver = d.DNNSolver(
+        d.PrimalDualNetwork(rho=1e-5), advance_integrator=d.ExplicitEuler(substeps=1)
+    )
     circle = d.Circle(0.05, period=1.0).anchored(paper_start())
     record = run(reference=circle, solver=solver, mode="continuous", duration=0.2)
     reasons = d.failures(record)
@@ -253,7 +255,7 @@ def test_a_path_that_begins_elsewhere_is_warned_of() -> None:
 def test_a_path_at_speed_is_told_from_one_that_is_too_quick(path: Any, reason: str) -> None:
     """Both ask for too much in the first step."""
     start = paper_start()
-    scheme = d.DoubleIndicator(extra_limits=(d.AccelerationLimits(),), tracking="next")
+    scheme = d.DoubleIndicator(extra_limits=(d.AccelerationLimits(),), sample="end")
     robot = paper_robot().with_limits(acceleration=0.05)
     anchored = path.anchored(start)
     record = d.simulate(robot, scheme, anchored, start.q, dt=5e-3, duration=0.02, policy="slow")

@@ -57,15 +57,15 @@ def test_a_command_that_was_handed_out_stays_as_it_was(monkeypatch: pytest.Monke
 
     def noted(*arguments: Any) -> Command:
         command = compute(*arguments)
-        handed.append((command, command.row.copy()))
+        handed.append((command, command.data.copy()))
         return command
 
     monkeypatch.setattr(Controller, "compute", noted)
     record = run(noise=1e-3, noise_at="measurement", duration=0.02)
     assert len(handed) == 20
     for k, (command, row) in enumerate(handed):
-        np.testing.assert_array_equal(command.row, row)
-        seen = Configuration(paper_robot(), command.past[0]).position
+        np.testing.assert_array_equal(command.data, row)
+        seen = Configuration(paper_robot(), command.motion_state[0]).position
         np.testing.assert_allclose(command.placement[9:], seen, rtol=0, atol=1e-12)
         true = Configuration(paper_robot(), record.q[k]).position
         np.testing.assert_allclose(record.position[k], true, rtol=0, atol=1e-12)

@@ -64,7 +64,7 @@ def test_all_disturbances_but_the_push(disturbed):
     error = distance(disturbed)
     assert 2e-5 < error.max() <= 2e-3  # they do disturb
     assert limits_are_kept(disturbed)
-    assert disturbed.settings["physics"]["disturbances"]["delay"] == 1
+    assert disturbed.settings["physics"]["disturbances"]["delay_periods"] == 1
 
 
 def test_back_within_a_second_after_the_push(disturbed):

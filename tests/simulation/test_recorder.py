@@ -11,20 +11,20 @@ from iiwa_dnn.control.policies import Action
 from iiwa_dnn.schemes.program import ProgramSizes
 
 
-def test_a_decision_is_noted_at_its_step_with_the_bound_in_the_way() -> None:
-    """A joint that is in the way is driven at its velocity limit, to that side."""
+def test_a_decision_is_noted_at_its_step_with_the_bound_limiting() -> None:
+    """A joint that is limiting is driven at its velocity limit, to that side."""
     slow = {"robot": paper_robot().with_limits(velocity=0.15), "reference": heart(period=2.0)}
     record = run(**slow, duration=0.2)
     decided = record.action != Action.NONE
     assert 100 < decided.sum() < 200
     assert_array_equal(record.fraction < 1.0, decided)
-    assert_array_equal((record.blocking != 0).any(axis=1), decided)
-    step, joint = np.nonzero(record.blocking)
-    assert_array_equal(record.blocking[step, joint], 2 * np.sign(record.dq[step, joint]))
+    assert_array_equal((record.limiting != 0).any(axis=1), decided)
+    step, joint = np.nonzero(record.limiting)
+    assert_array_equal(record.limiting[step, joint], 2 * np.sign(record.dq[step, joint]))
     assert (np.abs(record.dq[step, joint]) > 0.998 * 0.15).all()
     stopped = run(**slow, duration=0.2, policy="stop")
     assert stopped.steps == 1 + np.flatnonzero(decided)[0]
-    assert (np.abs(stopped.blocking[-1]) == 2).sum() == 1
+    assert (np.abs(stopped.limiting[-1]) == 2).sum() == 1
 
 
 def test_a_record_states_the_robots_rates_and_those_that_the_scheme_names() -> None:

@@ -47,7 +47,7 @@ def test_an_arm_pulled_beyond_its_reach_stretches_and_comes_back(dt: float) -> N
 @pytest.mark.parametrize("dt", [2e-3, 1e-2])
 def test_the_slow_policy_keeps_to_the_path_up_to_the_singular_pose(dt: float) -> None:
     record = stretched_run("slow", dt)
-    creeps = int(np.flatnonzero(record.kind == ProgramKind.SOFTENED)[0])
+    creeps = int(np.flatnonzero(record.kind == ProgramKind.RELAXED)[0])
     assert record.fraction[:creeps].min() >= 0.1
     assert np.abs(record.dq[-1]).max() < 0.1
     error = np.linalg.norm(record.position - record.position_desired, axis=1)

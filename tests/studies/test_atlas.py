@@ -28,13 +28,13 @@ def test_every_scheme_answers_the_task(name: str) -> None:
 def test_networks_keep_the_path_under_every_disturbance(kind, monkeypatch) -> None:
     monkeypatch.setattr(atlas, "DURATION", 0.2)
     for name, most in (("zeroing, Euler", 2), ("dual", None)):  # whose state holds no x
-        cell = atlas.Cell(name, disturbance=kind, most=most, share=0.4, seeds=2)
+        cell = atlas.Cell(name, disturbance=kind, most=most, fraction=0.4, seeds=2)
         once, again = (atlas.measure(cell) for _ in range(2))
         assert once["failures"] == []
         assert len(once["rms_error_m"]) == 2
         assert max(once["rms_error_m"]) < 2e-3
         assert once == again  # the seed draws all of it
-        quiet = atlas.measure(atlas.Cell(name, most=most, share=0.4))
+        quiet = atlas.measure(atlas.Cell(name, most=most, fraction=0.4))
         assert (once["residual"][:1] == quiet["residual"]) == (kind == "none")
 
 
@@ -77,11 +77,11 @@ def test_the_linear_limit_is_where_steps_stop_to_come_nearer(name: str) -> None:
     rates = network.flow(qp).rates
     start = rng.standard_normal(network.state_size(qp))
     limit = network.flow(qp).linear_limit(start)  # without bounds it is the same everywhere
-    for share, nearer in ((0.97, True), (1.03, False)):
+    for fraction, nearer in ((0.97, True), (1.03, False)):
         state = start
         sizes = []
         for k in range(1200):
-            state = state + share * limit * rates(state)
+            state = state + fraction * limit * rates(state)
             if k >= 600:
                 sizes.append(np.linalg.norm(rates(state)))
         assert bool(sizes[-1] < max(sizes[0], 1e-9)) is nearer  # below that it is rounding
@@ -177,7 +177,7 @@ def test_verdicts_are_computed_by_pairs(better: list, worse: list, verdict: str)
     assert atlas_report.judge(rows, atlas_report.Claim("", "dual", "gradient"))[-1] == verdict
 
 
-def test_ties_share_their_places_and_failures_have_none() -> None:
+def test_ties_share_their_ranks_and_failures_have_none() -> None:
     names = ["dual", "gradient", "one-layer", "primal-dual"]
     values = [[1.0, 1.2, 1.1], [30.0, 36.0, 33.0], [1.2, 1.0, 1.1], [None, 1.0, 1.0]]
     rows = [
@@ -185,27 +185,29 @@ def test_ties_share_their_places_and_failures_have_none() -> None:
         for kind in ("none", "white")
         for name, numbers in zip(names, values, strict=True)
     ]
-    places = {"dual": "1–2", "one-layer": "1–2", "gradient": "3", "primal-dual": "–"}
-    assert atlas_report.places(rows) == places
+    ranks = {"dual": "1–2", "one-layer": "1–2", "gradient": "3", "primal-dual": "–"}
+    assert atlas_report.ranks(rows) == ranks
 
 
-def test_each_networks_gain_is_the_best_of_the_same_shares() -> None:
+def test_each_networks_gain_is_the_best_of_the_same_fractions() -> None:
     size = atlas.Size(["dual", "ADMM (OSQP)"], disturbances=["none"], work=1e4)
     cells = atlas.gain_cells(size)
-    pairs = [(share, most) for share in atlas.SHARES for most in (None, 1)]
-    assert [(cell.share, cell.most) for cell in cells] == [*pairs, (atlas.SHARES[-1], None)]
+    pairs = [(fraction, most) for fraction in atlas.FRACTIONS for most in (None, 1)]
+    assert [(cell.fraction, cell.most) for cell in cells] == [*pairs, (atlas.FRACTIONS[-1], None)]
     residuals = [[3.0], [5.0], [2.0], [1.0], [None], [4.0], [4.0], [4.0], [None]]
     found = atlas.best_gains(cells, [{"residual": residual} for residual in residuals])
-    assert found["dual"] == {"share": atlas.SHARES[1], "most": 1}
-    assert found["ADMM (OSQP)"] == {"share": atlas.SHARES[-1], "most": None}
+    assert found["dual"] == {"fraction": atlas.FRACTIONS[1], "most": 1}
+    assert found["ADMM (OSQP)"] == {"fraction": atlas.FRACTIONS[-1], "most": None}
     solved = [[1e-15], [1e-16], [2e-15], [1e-14], [None], [4.0], [1e-12], [1e-17], [None]]
     found = atlas.best_gains(cells, [{"residual": residual} for residual in solved])
-    assert found["dual"] == {"share": atlas.SHARES[-1], "most": None}, "rounding decides nothing"
+    assert found["dual"] == {"fraction": atlas.FRACTIONS[-1], "most": None}, (
+        "rounding decides nothing"
+    )
 
 
 def test_formulas_have_their_orders_against_the_control_period() -> None:
     cells = [
-        atlas.Cell(f"zeroing, {name}", work=atlas.UNLIMITED, most=1, dt=dt, share=0.4)
+        atlas.Cell(f"zeroing, {name}", work=atlas.UNLIMITED, most=1, dt=dt, fraction=0.4)
         for name in ("Euler", "Taylor 3")
         for dt in atlas.PERIODS[1:]
     ]

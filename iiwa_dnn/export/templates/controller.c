@@ -13,10 +13,10 @@
 /* ---- Interface ---- */
 
 /* What a step is laid out with; tables, and the kinematics in the controller. */
-static inline control_step_StepPlan controller_plan(struct controller *c)
+static inline control_cycle_ControlPlan controller_plan(struct controller *c)
 {
     (void)c;
-    const control_step_StepPlan plan = @plan@;
+    const control_cycle_ControlPlan plan = @plan@;
     return plan;
 }
 
@@ -39,10 +39,10 @@ int controller_step(struct controller *c, const double *q, const double *target,
 {
     bool full = false;
     struct arena arena = controller_arena(c, &full);
-    const control_step_StepPlan plan = controller_plan(c);
+    const control_cycle_ControlPlan plan = controller_plan(c);
     const robot_kinematics_kernel_ModelTables model = @model@;
-    const Vector row = {c->log, @width@};
-    const control_command_StepLog log = @log_of@row, &plan.arrays.sizes);
+    const Vector data = {c->log, @width@};
+    const control_command_StepLog log = @log_of@data, &plan.arrays.sizes);
     const Vector motion_state = {c->motion_state, @motion@};
     const Vector next_motion_state = {c->next_motion_state, @motion@};
     const Vector state = {c->state, @state@};
@@ -54,7 +54,7 @@ int controller_step(struct controller *c, const double *q, const double *target,
     }
     memcpy(log.targets.data, target, sizeof(double) * 18 * CONTROLLER_FRAMES);
     @kinematics@&model, joints, plan.arrays.jacobian, plan.arrays.placements, plan.arrays.inertia);
-    const ptrdiff_t action = @take_step@row, &plan, joints, motion_state, next_motion_state, state, t, false);
+    const ptrdiff_t action = @take_step@data, &plan, joints, motion_state, next_motion_state, state, t, false);
     if (full || action == CONTROLLER_INVALID) {
         memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
         return CONTROLLER_INVALID;

@@ -1,10 +1,10 @@
 
-/* Compute the safe command dq (CONTROLLER_DOF) [rad/s] for a wish [rad/s], each CONTROLLER_DT seconds.
+/* Compute the safe command dq (CONTROLLER_DOF) [rad/s] for a request [rad/s], each CONTROLLER_DT seconds.
  *
- * Without a new wish (NULL) the last one counts, for @timeout@ s. Without any, or if it is not
+ * Without a new request (NULL) the last one counts, for @timeout@ s. Without any, or if it is not
  * finite, the arm brakes and stays. Returns an action, as controller_step does.
  */
-int shield_step(struct controller *c, const double *q, const double *wish, double *dq);
+int shield_step(struct controller *c, const double *q, const double *request, double *dq);
 
-/* Brake from now on, whatever is wished for. */
+/* Brake from now on, whatever is requested. */
 void shield_halt(struct controller *c);

@@ -11,7 +11,7 @@
 #define ROUNDS 200 /* of which the time is the mean */
 #endif
 
-/* Ten times the tolerance to which the network settles: now and then one of two ways to compute takes
+/* Ten times the tolerance to which the network converges: now and then one of two ways to compute takes
  * a step of it more. Elsewhere commands differ by rounding. */
 #define TOLERANCE @tolerance@
 

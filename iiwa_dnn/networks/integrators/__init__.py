@@ -1,6 +1,6 @@
 """Integrators of a network's ODE."""
 
-from iiwa_dnn.networks.integrators.base import Integrator, Settled
+from iiwa_dnn.networks.integrators.base import Integrator, Progress
 from iiwa_dnn.networks.integrators.explicit import SAFETY, ExplicitEuler
 from iiwa_dnn.networks.integrators.implicit import ImplicitEuler
 
@@ -9,5 +9,5 @@ __all__ = [
     "ExplicitEuler",
     "ImplicitEuler",
     "Integrator",
-    "Settled",
+    "Progress",
 ]

@@ -1,4 +1,4 @@
-"""Integrator of a network: it advances a state by a time, or until the network has settled."""
+"""Integrator of a network: it advances a state by a time, or until the network has converged."""
 
 from typing import Any, NamedTuple, Protocol
 
@@ -8,23 +8,23 @@ from iiwa_dnn.networks.base import Network, settings_of
 from iiwa_dnn.qp.layout import QPViews, Vector
 from iiwa_dnn.qp.program import QP
 
-Settled = tuple[int, float, float, float, float]
+Progress = tuple[int, float, float, float, float]
 """Progress of a network, and the residuals of the point that its state stands for.
 
-``(iterations, network_time, primal, dual, gap)``: linear systems solved (implicit) or steps taken
+``(iterations, network_time, primal, dual, gap)``: linear solves (implicit) or steps taken
 (explicit), the time that passed in units of rho, and qpsolvers' three residuals. A plain tuple,
 since a control loop asks for it at every step.
 """
 
 Answered = tuple[float, float, float, float, float]
-"""What `Settled` holds, as compiled code returns it."""
+"""What `Progress` holds, as compiled code returns it."""
 
 
 class SolveStats(Record):
     """Statistics of a solve.
 
     Attributes:
-        iterations: Linear systems solved, or steps taken.
+        iterations: Linear solves, or steps taken.
         time: Network time that passed [rho].
         primal: Primal residual.
         dual: Dual residual.
@@ -43,7 +43,7 @@ class AnswerSettings(Record):
 
     Attributes:
         tolerance: Tolerance of the residuals.
-        budget: Largest number of linear systems.
+        budget: Largest number of linear solves.
         duration: Time to advance [rho]; 0 to solve.
         substeps: Number of explicit sub-steps; 0 for as many as stability needs.
         network: Constants of the network, (k,).
@@ -62,7 +62,7 @@ def enter_answer(
 ) -> Answered:
     """Enter a compiled answer at an address.
 
-    It advances the state (size,), by a time or until it has settled, writes the point
+    It advances the state (size,), by a time or until it has converged, writes the point
     (2n + m + p,) that it stands for, and returns what `Answered` holds. `rates` is the address of
     the network's function.
     """

@@ -16,7 +16,7 @@ from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
 
 SAFETY = 0.95
-"""Share of the computed stable step that is used: the bound itself is only marginally stable."""
+"""Fraction of the computed stable step that is used: the bound itself is only marginally stable."""
 
 MOST = 1_000_000
 """Largest number of sub-steps that stability may ask for in one `advance`."""

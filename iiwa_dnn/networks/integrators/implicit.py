@@ -1,11 +1,11 @@
 r"""Implicit Euler with growing steps: pseudo-transient continuation to the equilibrium.
 
-**The rules** of `settle`: first a linearly implicit step that is so long that it is Newton's step
+**The rules** of `solve`: first a linearly implicit step that is so long that it is Newton's step
 on the active set. A warm start in a control loop needs only that. If it does not halve the largest
 rate, a backward Euler step follows, ten times as long as the last one. Both may undo each other's
 work, so the end comes when some rounds have not halved the smallest of all rates.
 
-**The primal projection.** `advance` integrates the network as it is. `settle` leaves the projection
+**The primal projection.** `advance` integrates the network as it is. `solve` leaves the projection
 of x out, with which a step would no longer be a convex problem
 (`iiwa_dnn.networks.integrators.implicit_steps`): at the equilibrium the multipliers alone keep the
 bounds, so the answer is the same, and the one that is handed out is put inside its bounds.
@@ -30,7 +30,7 @@ from iiwa_dnn.networks.integrators.base import (
     Answered,
     AnswerSettings,
     Integrator,
-    Settled,
+    Progress,
 )
 from iiwa_dnn.networks.integrators.implicit_steps import (
     Condensed,
@@ -51,7 +51,7 @@ STUCK = 15
 """Rounds in which the smallest rate so far is not halved, before the end: there is no solution, or
 rounding keeps the residuals above the tolerance."""
 MAX_NEWTON = 50
-"""Newton iterations of one backward Euler step of `settle`, half as many as one of `advance`."""
+"""Newton iterations of one backward Euler step of `solve`, half as many as one of `advance`."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class ImplicitEuler(Integrator):
 
     Attributes:
         step: Longest step of `advance`, in units of rho.
-        max_steps: Budget of `settle` in linear systems.
+        max_steps: Budget of `solve` in linear solves.
     """
 
     step: float = 1.0
@@ -77,19 +77,19 @@ class ImplicitEuler(Integrator):
         """Advance `state` in place by `duration` [rho] in equal steps no longer than `step`.
 
         Returns:
-            Linear systems solved; the state is NaN where one could not be.
+            Linear solves; the state is NaN where one could not be.
         """
         count = max(1, math.ceil(duration / self.step))
         check_size("state", state, network.state_size(qp))
         length = duration / count
         if is_projection(network) and not network.primal_projection:
-            return sum(step_program(qp.data, *qp.sizes, state, length) for _ in range(count))
+            return sum(program_layout(qp.data, *qp.sizes, state, length) for _ in range(count))
         flow = network.flow(qp)
         for _ in range(count):
             state += pseudo_transient.linear_change(flow, state, length, flow.rates(state))
         return count
 
-    def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
+    def solve(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Progress:
         """Advance a state (size,) in place until the KKT residuals of its point are at most `tol`.
 
         The point (2 n + m + p,) is overwritten. The projection network is integrated without its
@@ -99,32 +99,34 @@ class ImplicitEuler(Integrator):
             n, m, p = qp.sizes
             check_size("state", state, 3 * n + m + p)
             check_size("point", point, 2 * n + m + p)
-            settled = settle_program(qp.data, qp.sizes, state, point, tol, self.max_steps)
-            return int(settled[0]), *settled[1:]
-        return pseudo_transient.settle(network, qp, state, point, tol, self.max_steps)
+            stats = solve_program(qp.data, qp.sizes, state, point, tol, self.max_steps)
+            return int(stats[0]), *stats[1:]
+        return pseudo_transient.solve(network, qp, state, point, tol, self.max_steps)
 
 
 @compiled
-def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -> int:
+def program_layout(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -> int:
     """Advance a state `s` (size,) in place by one backward Euler step of a program, `QP.data`.
 
     Returns:
-        Linear systems solved; none and a state of NaN if one could not be.
+        Linear solves; none and a state of NaN if one could not be.
     """
     rows = s.size - n
     matrix = Condensed(
         np.empty(rows), np.zeros(m + p), np.zeros((n, n)), np.empty((n, n)), np.empty(rows)
     )
     new = np.empty(s.size)
-    systems = backward_euler(qp_views(data, n, m, p), s, step, new, 1e-12, 2 * MAX_NEWTON, matrix)
-    if systems < 0:
+    linear_solves = backward_euler(
+        qp_views(data, n, m, p), s, step, new, 1e-12, 2 * MAX_NEWTON, matrix
+    )
+    if linear_solves < 0:
         new[:] = np.nan
     copied(s, new)
-    return max(systems, 0)
+    return max(linear_solves, 0)
 
 
 @compiled
-def settle(qp: QPViews, rates: int, settings: AnswerSettings, s: Vector, point: Vector) -> Answered:
+def solve(qp: QPViews, rates: int, settings: AnswerSettings, s: Vector, point: Vector) -> Answered:
     """Solve by `solve_within`: a compiled answer (`enter_answer`), of the projection network."""
     return solve_within(qp, settings.tolerance, int(settings.budget), s, point)
 
@@ -133,10 +135,10 @@ def settle(qp: QPViews, rates: int, settings: AnswerSettings, s: Vector, point: 
 def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector) -> Answered:
     """Advance `s` (size,) in place until the residuals of `point` (size,) are at most `tol`.
 
-    It ends after a budget of linear systems too.
+    It ends after a budget of linear solves too.
 
     Returns:
-        ``(systems, time, primal, dual, gap)``: linear systems solved, network time that passed
+        ``(linear_solves, time, primal, dual, gap)``: linear solves, network time that passed
         [rho], and the residuals of `point`.
     """
     n = qp.q.size
@@ -148,12 +150,12 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
     then = np.empty(s.size)
     new = np.empty(s.size)
     step = SHORTEST
-    systems = 0
+    linear_solves = 0
     time = 0.0
     stuck = 0
     rate = field(qp, s, now)
     smallest = np.inf
-    while systems < budget:
+    while linear_solves < budget:
         stuck += 1
         if rate < 0.5 * smallest:
             smallest = rate
@@ -161,9 +163,9 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
         if not rate > tol:
             primal, dual, gap = kkt_point(qp, s, point)
             if within(primal, dual, gap, tol):
-                return systems, time, primal, dual, gap
+                return linear_solves, time, primal, dual, gap
         mark_active(qp, s, now, matrix.active)
-        systems += 1
+        linear_solves += 1
         if linear_step(qp, s, now, LONGEST, matrix, new):
             new_rate = field(qp, new, then)
             if new_rate < 0.5 * rate:
@@ -177,9 +179,9 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
             if stuck > STUCK or fits(qp, point, tol, 0.0):
                 break
         taken = backward_euler(
-            qp, s, step, new, 0.1 * rate, min(MAX_NEWTON, budget - systems), matrix
+            qp, s, step, new, 0.1 * rate, min(MAX_NEWTON, budget - linear_solves), matrix
         )
-        systems += max(taken, -taken)
+        linear_solves += max(taken, -taken)
         if taken < 0:
             step *= 0.1
             continue
@@ -189,13 +191,13 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
         if step < LONGEST:
             step *= GROWTH
     primal, dual, gap = kkt_point(qp, s, point)
-    return systems, time, primal, dual, gap
+    return linear_solves, time, primal, dual, gap
 
 
 @released
-def settle_program(
-    data: Vector, sizes: Sizes, s: Vector, point: Vector, tol: float, max_systems: int
+def solve_program(
+    data: Vector, sizes: Sizes, s: Vector, point: Vector, tol: float, max_linear_solves: int
 ) -> Answered:
-    """Settle the projection network from `s` (size,) for a program's flat array; see `settle`."""
+    """Solve by the projection network from `s` (size,) for a program's flat array; see `solve`."""
     n, m, p = sizes
-    return solve_within(qp_views(data, n, m, p), tol, max_systems, s, point)
+    return solve_within(qp_views(data, n, m, p), tol, max_linear_solves, s, point)

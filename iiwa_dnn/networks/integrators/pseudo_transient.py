@@ -1,6 +1,6 @@
 """Linearly implicit steps of any network: one Newton iteration of backward Euler, on all states.
 
-`settle` takes longer ones as the rates fall (switched evolution relaxation). The projection network
+`solve` takes longer ones as the rates fall (switched evolution relaxation). The projection network
 has compiled loops (`iiwa_dnn.networks.integrators.implicit`).
 
 Source: C. T. Kelley and D. E. Keyes, "Convergence analysis of pseudo-transient continuation",
@@ -10,33 +10,33 @@ SIAM J. Numer. Anal. 35 (1998).
 import numpy as np
 
 from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.networks.integrators.base import Settled
+from iiwa_dnn.networks.integrators.base import Progress
 from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import within
 
 LONGEST = 1e8
-"""Longest implicit step of a network that settles [rho]."""
+"""Longest implicit step of a network that converges [rho]."""
 SHORTEST = 1e-6
 """Step [rho] below which the field is not followed any more."""
 
 
-def settle(
-    network: Network, qp: QP, state: Vector, point: Vector, tol: float, max_systems: int
-) -> Settled:
-    """Advance `state` (size,) with growing implicit steps; arguments as `Integrator.settle`'s."""
+def solve(
+    network: Network, qp: QP, state: Vector, point: Vector, tol: float, max_linear_solves: int
+) -> Progress:
+    """Advance `state` (size,) with growing implicit steps; arguments as `Integrator.solve`'s."""
     flow = network.flow(qp)
     step = 1.0
-    systems = 0
+    linear_solves = 0
     time = 0.0
     rates = flow.rates(state)
     rate = float(np.abs(rates).max())
-    while systems < max_systems and step >= SHORTEST:
+    while linear_solves < max_linear_solves and step >= SHORTEST:
         if not rate > tol:
             residuals = flow.read(qp, state, point)
             if within(*residuals, tol) or rate != rate:
-                return systems, time, *residuals
-        systems += 1
+                return linear_solves, time, *residuals
+        linear_solves += 1
         new = state + linear_change(flow, state, step, rates)
         new_rates = flow.rates(new)
         new_rate = float(np.abs(new_rates).max())
@@ -51,7 +51,7 @@ def settle(
         state[:] = new
         rates = new_rates
         rate = new_rate
-    return systems, time, *flow.read(qp, state, point)
+    return linear_solves, time, *flow.read(qp, state, point)
 
 
 def linear_change(flow: Flow, state: Vector, step: float, rates: Vector) -> Vector:

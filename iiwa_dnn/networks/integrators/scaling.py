@@ -1,4 +1,4 @@
-"""Units in which nothing of a program stands out, and a steeper cost.
+"""Equilibrated units of a program, and a steeper cost.
 
 The variables and the rows of A and G get factors with which all rows of the KKT matrix have a size
 near 1, and the cost gets one too. For the network that is another time constant for each entry of
@@ -6,7 +6,7 @@ its state; its equilibria are the same. The factors are powers of two, so that n
 residuals are the same but for units.
 
 An implicit step of length h [rho] leaves the fraction 1 / (1 + h c) of an error along which the
-cost has the curvature c, so that a steeper cost settles sooner where it is nearly flat.
+cost has the curvature c, so that a steeper cost converges sooner where it is nearly flat.
 """
 
 import math
@@ -104,7 +104,7 @@ class Scaling(NamedTuple):
 def balanced(qp: QP, largest: float) -> Scaling:
     """Scale a program so that the rows of its KKT matrix have a size near 1.
 
-    The largest entry of the cost is given. A large one settles sooner where the cost is nearly
+    The largest entry of the cost is given. A large one converges sooner where the cost is nearly
     flat, a small one where active rows are nearly dependent.
     """
     n, m, p = qp.sizes

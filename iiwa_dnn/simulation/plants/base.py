@@ -8,7 +8,7 @@ from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.robot import Robot
 
 
-class Moved(NamedTuple):
+class PlantState(NamedTuple):
     """The state of a plant after a control period.
 
     Attributes:
@@ -26,7 +26,7 @@ class Plant(ABC):
     """A robot that a run moves: `start` once, then `read` and `move` at every control step.
 
     Attributes:
-        exact: Whether the joints move as they are told and are read as they are.
+        exact: Whether the joints move as commanded and are read as they are.
     """
 
     exact: ClassVar[bool] = False
@@ -50,7 +50,7 @@ class Plant(ABC):
         """Measure the joint positions [rad], (n,); every call is a new reading."""
 
     @abstractmethod
-    def move(self, command: Vector) -> Moved:
+    def move(self, command: Vector) -> PlantState:
         """Follow a velocity command (n,) [rad/s] for one control period."""
 
 
@@ -69,7 +69,7 @@ class IdealPlant(Plant):
         """Measure the joint positions [rad], (n,), exactly."""
         return self._q
 
-    def move(self, command: Vector) -> Moved:
+    def move(self, command: Vector) -> PlantState:
         """Move by dt times the command (n,) [rad/s]."""
         self._q = self._q + self._dt * command
-        return Moved(self._q)
+        return PlantState(self._q)

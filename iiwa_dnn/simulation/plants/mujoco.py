@@ -18,7 +18,7 @@ from iiwa_dnn.robot.mujoco_model import (
     torque_limits,
 )
 from iiwa_dnn.simulation.disturbances import Disturbances, Encoder
-from iiwa_dnn.simulation.plants.base import Moved, Plant
+from iiwa_dnn.simulation.plants.base import Plant, PlantState
 from iiwa_dnn.simulation.plants.torque_control import TorqueController, TorqueGains
 
 _COARSEST = 1e-3  # the longest physics step that is accepted [s]
@@ -84,7 +84,7 @@ class MujocoPlant(Plant):
         self._mj.mj_forward(self._model, self._data)
         self._encoder = Encoder(wrong.encoder_noise, wrong.encoder_bits, seed)
         self._torques = TorqueController(robot, dt, timestep, self.gains, self.dynamics, q0)
-        self._late: list[Vector] = [np.zeros(robot.dof)] * wrong.delay
+        self._late: list[Vector] = [np.zeros(robot.dof)] * wrong.delay_periods
         self._reading: Vector | None = None
         return self._settings()
 
@@ -93,7 +93,7 @@ class MujocoPlant(Plant):
         self._reading = self._encoder(self._data.qpos)
         return self._reading.copy()
 
-    def move(self, command: Vector) -> Moved:
+    def move(self, command: Vector) -> PlantState:
         """Follow a velocity command (n,) [rad/s], late by the delay, for one control period.
 
         The first physics step goes by the last `read`, if there was one since the last move. A
@@ -113,7 +113,7 @@ class MujocoPlant(Plant):
         bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC)
         in_arm = any(self._data.warning[int(kind)].number > 0 for kind in bad)
         fault = "the physics diverged" if in_arm or self._torques.diverged else None
-        return Moved(np.array(self._data.qpos), largest, fault)
+        return PlantState(np.array(self._data.qpos), largest, fault)
 
     def _step(self, torque: Vector) -> None:
         """Hold joint torques (n,) [N m] for one physics step."""

@@ -43,7 +43,7 @@ class TorqueGains:
         bandwidth: Bandwidth of the position error [rad/s].
         observer_bandwidth: Bandwidth of the observer [rad/s].
         leash: Largest lead of the desired position over the measured one [rad], so that it does
-            not wind up where the arm is held back.
+            not wind up where the arm is rate-limited.
     """
 
     bandwidth: float = 60.0

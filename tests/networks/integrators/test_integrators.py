@@ -59,7 +59,7 @@ def test_a_state_or_a_point_of_another_size_is_refused(network, integrator) -> N
     wrong = (0, 18, 20, 19000)
     for call, states, points in (
         (lambda s, p: integrator.advance(network, BOUNDS, s, 1.0), wrong, ()),
-        (lambda s, p: d.ImplicitEuler().settle(network, BOUNDS, s, p, 1e-6), wrong, (0, 13, 15)),
+        (lambda s, p: d.ImplicitEuler().solve(network, BOUNDS, s, p, 1e-6), wrong, (0, 13, 15)),
         (lambda s, p: network.rates(BOUNDS, s), wrong, ()),
         (lambda s, p: network.stable_step(BOUNDS, s), wrong, ()),
         (lambda s, p: network.flow(BOUNDS).read(BOUNDS, s, p), (8,), (0, 13, 15)),

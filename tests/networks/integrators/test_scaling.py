@@ -44,9 +44,9 @@ def test_programs_in_other_units_are_solved_and_right(what: str, flat: bool) -> 
             rows if what in ("rows", "all") else np.ones(p + m),
             float(cost[0]) if what in ("cost", "all") else 1.0,
         )
-        solution = DNNSolver(settler=ImplicitEuler(max_steps=400)).solve(qp)
+        solution = DNNSolver(solve_integrator=ImplicitEuler(max_steps=400)).solve(qp)
         found[solution.status] += 1
-        assert solution.status in (Status.SOLVED, Status.NOT_SETTLED), seed
+        assert solution.status in (Status.SOLVED, Status.NOT_CONVERGED), seed
         assert not solution.found or error(qp, solution.x, known[:n]) < 1e-6, seed
     assert found[Status.SOLVED] >= 59
 
@@ -70,7 +70,7 @@ def test_tiny_feasible_sets(flat: bool) -> None:
     for seed in range(60):
         rng = np.random.default_rng([25, flat, seed])
         qp, point = programs.with_point(rng, flat, room=10.0 ** rng.uniform(-12.0, -3.0))
-        solution = DNNSolver(settler=ImplicitEuler(max_steps=400)).solve(qp)
+        solution = DNNSolver(solve_integrator=ImplicitEuler(max_steps=400)).solve(qp)
         assert solution.found, seed
         assert error(qp, solution.x, point[: qp.q.size]) < 1e-6
 
@@ -79,7 +79,7 @@ def test_costs_of_a_condition_up_to_1e11() -> None:
     for seed in range(100):
         rng = np.random.default_rng([26, seed])
         qp, x = programs.strictly_convex(rng, int(rng.integers(2, 19)), 1e11)
-        solution = DNNSolver(settler=ImplicitEuler(max_steps=400)).solve(qp)
+        solution = DNNSolver(solve_integrator=ImplicitEuler(max_steps=400)).solve(qp)
         assert solution.found, seed
         assert error(qp, solution.x, x) < 1e-6
 
@@ -131,12 +131,12 @@ def test_scaled_units_round_nothing() -> None:
         assert (largest >= 0.05).all()
 
 
-def test_the_budget_counts_the_linear_systems_of_all_attempts() -> None:
+def test_the_budget_counts_the_linear_linear_solves_of_all_attempts() -> None:
     for seed in range(20):
         rng = np.random.default_rng([24, seed])
         qp = programs.infeasible(rng) if seed % 2 else programs.strictly_convex(rng)[0]
         for most in (1, 7, 40):
-            solver = DNNSolver(settler=ImplicitEuler(max_steps=most))
+            solver = DNNSolver(solve_integrator=ImplicitEuler(max_steps=most))
             solution = solver.solve(qp)
             assert 0 < solution.iterations <= most
             assert solver.sharpen(qp, solution).iterations <= most

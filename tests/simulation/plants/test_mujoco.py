@@ -43,15 +43,15 @@ def test_a_second_start_gives_the_same_run_and_another_seed_another(robot):
     assert not np.array_equal(drive(plant, 50), first)
 
 
-@pytest.mark.parametrize("delay", [0, 1, 7])
-def test_a_command_arrives_late_by_the_delay(robot, delay):
-    late = drive(started(robot, disturbances=Disturbances(delay=delay)), 30)
+@pytest.mark.parametrize("delay_periods", [0, 1, 7])
+def test_a_command_arrives_late_by_the_delay(robot, delay_periods):
+    late = drive(started(robot, disturbances=Disturbances(delay_periods=delay_periods)), 30)
     still = started(robot)
-    for _ in range(delay):
+    for _ in range(delay_periods):
         still.read()
         still.move(np.zeros(7))
-    np.testing.assert_array_equal(late[delay:], drive(still, 30 - delay))
-    assert np.abs(late[:delay] - START).max(initial=0.0) < 1e-9
+    np.testing.assert_array_equal(late[delay_periods:], drive(still, 30 - delay_periods))
+    assert np.abs(late[:delay_periods] - START).max(initial=0.0) < 1e-9
 
 
 def test_the_push_has_the_impulse_that_is_asked_for(robot):

@@ -58,16 +58,16 @@ def test_an_offset_dies_out_at_the_stated_bandwidth(robot):
     offset = 1e-3 * np.array([1, -1, 1, -1, 1, -1, 1.0])
     torques, arm = loop(robot, START + offset)
     torques._q_desired = START.copy()
-    shares = []
+    fractions = []
     for _ in range(800):
         arm.step(torques.torque(arm.q))
-        shares.append(np.abs((arm.q - START) / offset).max())
+        fractions.append(np.abs((arm.q - START) / offset).max())
     # Critically damped: (1 + w t) exp(-w t).
     at = TIMESTEP * np.arange(1, 801)
     w = torques.gains.bandwidth
     ideal = (1.0 + w * at) * np.exp(-w * at)
-    assert np.abs(np.array(shares) - ideal).max() < 0.03
-    assert shares[-1] < 1e-4
+    assert np.abs(np.array(fractions) - ideal).max() < 0.03
+    assert fractions[-1] < 1e-4
 
 
 def test_torques_stay_within_the_limits_and_it_does_not_wind_up(robot):

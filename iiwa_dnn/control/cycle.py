@@ -1,7 +1,7 @@
 """A whole control step in one compiled call: targets, program and the network's answer.
 
-For seven joints the way into compiled code is a large part of the cost of a call, so a control loop
-enters it once a step.
+For seven joints the entry into compiled code is a large part of the cost of a call, so a control
+loop enters it once a step.
 """
 
 import math
@@ -16,20 +16,20 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.command import (
     ADVANCED,
+    NOT_CONVERGED,
     NOT_FINITE,
-    NOT_SETTLED,
     SOLVED,
     StepLog,
     lay_out_log,
     log_of,
     note_command,
 )
-from iiwa_dnn.control.relaxed import Yielding, largest_entry, relaxed_size
+from iiwa_dnn.control.fallback import Yielding, fallback_size, largest_entry
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.yielding import (
     BRAKE,
+    NOMINAL,
     NONE,
-    OWN,
     guard_step,
     make_yielding,
     yield_step,
@@ -37,7 +37,7 @@ from iiwa_dnn.control.yielding import (
 from iiwa_dnn.networks.integrators.base import (
     AnswerSettings,
     CompiledAnswer,
-    Settled,
+    Progress,
     SolveStats,
     enter_answer,
 )
@@ -47,7 +47,7 @@ from iiwa_dnn.qp.dense import all_finite
 from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, copied
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
-from iiwa_dnn.references.base import Ahead, enter_path
+from iiwa_dnn.references.base import FeedForward, enter_path
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import MEET
@@ -64,13 +64,13 @@ from iiwa_dnn.schemes.limits import (
 from iiwa_dnn.schemes.program import (
     LimitNames,
     ProgramArrays,
-    StepProgram,
+    ProgramLayout,
     assemble,
     program_views,
 )
 
 FEASIBLE_BUDGET = 60.0
-"""Linear systems after which a program with acceleration or jerk limits counts as infeasible."""
+"""Linear solves after which a program with acceleration or jerk limits counts as infeasible."""
 
 INVALID = -1
 """Action at targets that are not finite, or joint positions that are none: nothing is changed."""
@@ -80,7 +80,7 @@ class PathColumn(IntEnum):
     """Columns of the table of paths: address, whether it is seen ahead, its constants' ends."""
 
     ADDRESS = 0
-    AHEAD = 1
+    FEED_FORWARD = 1
     START = 2
     STOP = 3
 
@@ -99,15 +99,15 @@ class Paths(NamedTuple):
     period: float
 
 
-class StepPlan(NamedTuple):
+class ControlPlan(NamedTuple):
     """Layout of a control step.
 
     Attributes:
         arrays: Arrays with which the program is written.
         network: The network's answer.
         paths: Paths that are sampled.
-        yielding: What relaxed programs need beside them.
-        relaxed: States of the networks of relaxed programs, (`relaxed_size`,), warm starts.
+        yielding: What fallback programs need beside them.
+        fallback: States of the networks of fallback programs, (`fallback_size`,), warm starts.
         policy: Action that the policy asks for at a step without a solution; `BRAKE`: none.
     """
 
@@ -115,16 +115,16 @@ class StepPlan(NamedTuple):
     network: CompiledAnswer
     paths: Paths
     yielding: Yielding
-    relaxed: Vector
+    fallback: Vector
     policy: int
 
 
-class ControlStep:
+class ControlLayout:
     """A control step laid out for a scheme, references and a network.
 
     Attributes:
         program: The scheme laid out for the robot.
-        layout: Layout of the logs that are written.
+        log_layout: Layout of the logs that are written.
         shape: Shape of joint positions, (dof,).
         width: Length of the states from step to step, `MotionState`.
         dt: Period that the next command is for [s].
@@ -137,7 +137,7 @@ class ControlStep:
 
     def __init__(
         self,
-        program: StepProgram,
+        program: ProgramLayout,
         references: Mapping[str, Reference],
         solver: DNNSolver,
         dt: float,
@@ -164,7 +164,7 @@ class ControlStep:
         sizes = arrays.sizes
         self.shape = (sizes.joints,)
         self.width = MotionState.width(sizes.joints, sizes.pairs)
-        self.layout = lay_out_log(sizes, LimitNames(program), dt)
+        self.log_layout = lay_out_log(sizes, LimitNames(program), dt)
         lags = policy == BRAKE
         # A subclass that solves in a way of its own is asked, not bypassed.
         own = (
@@ -174,14 +174,14 @@ class ControlStep:
         network = own or _asked(solver, program.sizes, lags * dt)
         self._rate = network.settings.duration / dt  # 0 where the network solves
         if program.rate_limits is not None:
-            # A program that a few systems do not solve most likely has no solution.
+            # A program that a few linear solves do not solve most likely has no solution.
             network.settings.budget = min(network.settings.budget, FEASIBLE_BUDGET)
         paths = _compiled_paths(references, program.target_frames, dt)
         self.samples = paths is not None and not program.reads_targets
         yielding = make_yielding(program, solver.tol, dt, self.has_network)
-        relaxed = np.zeros(relaxed_size(program.sizes))
+        fallback = np.zeros(fallback_size(program.sizes))
         none = Paths(np.zeros((0, len(PathColumn)), dtype=np.int64), np.zeros(0), dt)
-        self.plan = StepPlan(arrays, network, paths or none, yielding, relaxed, policy)
+        self.plan = ControlPlan(arrays, network, paths or none, yielding, fallback, policy)
         if program.rate_limits is not None:
             check_ranges(yielding.limits, 1.0 / (longest or dt))
         if longest is not None:
@@ -201,7 +201,7 @@ class ControlStep:
         """
         self.dt = dt
         self.steady = math.nan if self._varies else dt
-        self.layout = self.layout._replace(periods=periods, reasons=reasons)
+        self.log_layout = self.log_layout._replace(periods=periods, reasons=reasons)
         arrays = self.plan.arrays._replace(rate=1.0 / dt)
         paths = self.plan.paths._replace(period=dt)
         yielding = self.plan.yielding._replace(dt=dt, periods=periods)
@@ -210,7 +210,7 @@ class ControlStep:
         if periods.vary:
             for constants in self.program.constants_of(MotionLimits):
                 limits = MotionNumbers.of(constants)
-                limits.dt, limits.hold, limits.longest, limits.share, _ = periods
+                limits.dt, limits.hold, limits.longest, limits.fraction, _ = periods
 
 
 def _asked(solver: DNNSolver, sizes: Sizes, duration: float) -> CompiledAnswer:
@@ -228,10 +228,10 @@ def _compiled_paths(
 ) -> Paths | None:
     """Return the paths of all frames, if all of them are compiled; else None."""
     seen = [references[name] for name in frames if name in references]
-    paths = [path.along if isinstance(path, Ahead) else path for path in seen]
+    paths = [path.reference if isinstance(path, FeedForward) else path for path in seen]
     if len(paths) < len(frames) or not all(path.compiled for path in paths):
         return None
-    if any(isinstance(path, Ahead) and path.dt != dt for path in seen):
+    if any(isinstance(path, FeedForward) and path.dt != dt for path in seen):
         return None
     return _laid_out(paths, seen, dt)
 
@@ -255,7 +255,7 @@ def ask(
     settings: AnswerSettings,
     state: Vector,
     point: Vector,
-) -> Settled:
+) -> Progress:
     """Answer a program of some sizes by a solver that is not compiled (`enter_answer`).
 
     It keeps its state itself, and its duration is in seconds.
@@ -273,8 +273,8 @@ def ask(
 
 @compiled
 def take_step(
-    row: Vector,
-    plan: StepPlan,
+    data: Vector,
+    plan: ControlPlan,
     q: Vector,
     numbers: Vector,
     next_numbers: Vector,
@@ -282,13 +282,13 @@ def take_step(
     t: float,
     samples: bool,
 ) -> int:
-    """Take a control step: its own program, or what the policy asks for.
+    """Take a control step: its nominal program, or what the policy asks for.
 
     The network is not asked if the task yielded at the last step, or the arm brakes. If targets
-    or the time are not finite, or joint positions beyond 2^20 rad, nothing but the row is written.
+    or the time are not finite, or joint positions beyond 2^20 rad, nothing but the log is written.
 
     Args:
-        row: The log, (width,), with the targets unless they are sampled.
+        data: The log, (width,), with the targets unless they are sampled.
         plan: What the step is laid out with.
         q: Joint positions [rad], (dof,), that the kinematics are at.
         numbers: The state of the motion, `MotionState`, (k,); its joint positions are overwritten.
@@ -302,7 +302,7 @@ def take_step(
     """
     arrays = plan.arrays
     sizes = arrays.sizes
-    log = log_of(row, sizes)
+    log = log_of(data, sizes)
     motion_state = MotionState.of(numbers, sizes.joints, sizes.pairs)
     next_motion_state = MotionState.of(next_numbers, sizes.joints, sizes.pairs)
     if samples:
@@ -310,7 +310,7 @@ def take_step(
     finite = math.isfinite(t)
     for i in range(q.size):
         finite = finite and abs(q[i]) <= LARGEST
-    if not finite or not all_finite(row, row.size - log.targets.size, row.size):
+    if not finite or not all_finite(data, data.size - log.targets.size, data.size):
         return INVALID
     copied(motion_state.q, q)
     copied(next_numbers, numbers)
@@ -335,7 +335,7 @@ def take_step(
             return NONE
     policy = BRAKE if halted else plan.policy
     return yield_step(
-        log, arrays, motion_state, next_motion_state, plan.yielding, plan.relaxed, policy
+        log, arrays, motion_state, next_motion_state, plan.yielding, plan.fallback, policy
     )
 
 
@@ -353,10 +353,10 @@ def _note_instant(
     copied(log.placement, arrays.placements[arrays.tip])
     copied(log.least, next_motion_state.least)
     log.stats.numbers[:] = 0.0
-    log.blocking[:] = 0.0
+    log.limiting[:] = 0.0
     log.fraction = 0.0
     log.status = SOLVED
-    log.kind = OWN
+    log.kind = NOMINAL
 
 
 @compiled
@@ -364,7 +364,7 @@ def _answer(log: StepLog, arrays: ProgramArrays, network: CompiledAnswer, state:
     """Ask the network for the answer to the program of a log, and note it.
 
     Returns:
-        False if it did not settle or diverged; its state (size,) is then as it was.
+        False if it did not converge or diverged; its state (size,) is then as it was.
     """
     qp = program_views(log.program, arrays.sizes)
     before = state.copy()
@@ -374,7 +374,7 @@ def _answer(log: StepLog, arrays: ProgramArrays, network: CompiledAnswer, state:
     )
     log.fraction = 1.0
     log.status = status_of(stats, network.settings, state)
-    if log.status >= NOT_SETTLED:
+    if log.status >= NOT_CONVERGED:
         copied(state, before)
         return False
     return True
@@ -394,8 +394,8 @@ def status_of(stats: SolveStats, settings: AnswerSettings, state: Vector) -> int
         return NOT_FINITE
     if settings.duration > 0.0:
         return ADVANCED
-    settled = within(stats.primal, stats.dual, stats.gap, settings.tolerance)
-    return SOLVED if settled else NOT_SETTLED
+    converged = within(stats.primal, stats.dual, stats.gap, settings.tolerance)
+    return SOLVED if converged else NOT_CONVERGED
 
 
 @compiled
@@ -410,7 +410,7 @@ def sample_targets(paths: Paths, t: float, targets: Matrix) -> None:
         move = own[TargetData.width() :]
         copied(target.numbers, base)
         enter_path(address, t, move, target)
-        if entry[PathColumn.AHEAD] != 0:
+        if entry[PathColumn.FEED_FORWARD] != 0:
             then = TargetData.of(base.copy())
             enter_path(address, t + paths.period, move, then)
             set_mean_twist(target, then, paths.period)

@@ -1,9 +1,10 @@
-r"""Relaxed programs, which have a solution where a step's own program has none.
+r"""Fallback programs, which have a solution where a step's nominal program has none.
 
-Each is the step's own program (P, q, G, h, A, b, lb, ub) with a stated change, and is handed out,
+Each is the nominal program (P, q, G, h, A, b, lb, ub) with a stated change, and is handed out,
 recorded and checked as it was answered (docs/robustness.md builds both from `Scheme.build_qp`).
 
-The **scaled program** asks for a share of the task velocity, the limits and the cost as they are:
+The **scaled program** asks for a fraction of the task velocity, the limits and the cost as they
+are:
 
 .. math::
 
@@ -14,7 +15,7 @@ The largest feasible s is the scaling factor. It is found with one more variable
 :math:`\sigma` along :math:`b / \beta`, :math:`\beta = \|b\|_\infty`: with the cost
 :math:`-\sigma` plus w times the step's own, and :math:`0 \le \sigma \le \beta`.
 
-The **softened program** moves the task into the cost, with the weights W of its rows,
+The **relaxed program** moves the task into the cost, with the weights W of its rows,
 
 .. math::
 
@@ -50,8 +51,8 @@ from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.schemes.limits import MotionNumbers, Periods
 from iiwa_dnn.schemes.program import add_soft
 
-MOST_SYSTEMS = 60
-"""Linear systems after which a program counts as one without a solution."""
+MAX_LINEAR_SOLVES = 60
+"""Linear solves after which a program counts as one without a solution."""
 
 PENALTY = 1e-5
 """w, for a cost whose largest entry is one."""
@@ -64,43 +65,44 @@ ALMOST = 0.999
 may grow without bound."""
 
 RETREAT = 1e-7
-"""Tolerance at least of the search of tau: with a link's end that can hardly retreat, its row is
-nearly zero, and the last digits would take more linear systems than there are."""
+"""Lower bound on the tolerance of the search for tau: if a link's end can hardly retreat, its row
+is nearly
+zero, and full accuracy would exceed the budget of linear solves."""
 
 DAMPING = 0.05
-"""Lambda of the softened program [m/rad]."""
+"""Lambda of the relaxed program [m/rad]."""
 
 BLEND = 1e-4
-"""Epsilon: weight of the scheme's own cost in the softened program."""
+"""Epsilon: weight of the scheme's own cost in the relaxed program."""
 
 DRIFT = 0.02
-"""Speed of a joint at most [rad/s] in the drift towards the posture that the cost wishes for.
+"""Speed of a joint at most [rad/s] in the drift towards the posture that the cost prefers.
 Damped to rest, an arm pulled beyond its reach ends up exactly stretched: it finds back too late."""
 
 FASTEST = 10.0
-"""Task velocity [m/s] to which a larger one is cut in the softened program: no arm is so quick."""
+"""Task velocity [m/s] to which a larger one is cut in the relaxed program: no arm is so quick."""
 
 REACHED = 1e-9
 """Difference of two velocities that is rounding [rad/s], or of a row's right-hand side from 0."""
 
-BLOCKING = 1e-4
-"""Multiplier, relative to the largest, above which a bound or row stands in the way."""
+LIMITING = 1e-4
+"""Multiplier, relative to the largest, above which a bound or row counts as limiting."""
 
 
 class Yielding(NamedTuple):
-    """Constants with which the relaxed programs of a scheme are written and answered.
+    """Constants with which the fallback programs of a scheme are written and answered.
 
     Attributes:
         weights: Weight of each task row, (p,); 0 for a row that is a limit.
         limits: Acceleration and jerk limits; of no joints where there are none.
         tolerance: Tolerance of the answers.
-        budget: Linear systems after which a program counts as one without a solution.
+        budget: Linear solves after which a program counts as one without a solution.
         scenes: Blocks of the scenes that braking keeps away from, (scenes,).
         dt: Period that the command is for [s].
         periods: Periods as limits count them.
         cubic: Whether the jerk of a joint is limited.
         coupled: Whether joints follow others.
-        alike: Whether the network of the steps is that of the relaxed programs.
+        alike: Whether the network of the steps is that of the fallback programs.
     """
 
     weights: Vector
@@ -115,8 +117,8 @@ class Yielding(NamedTuple):
     alike: bool
 
 
-def relaxed_size(sizes: Sizes) -> int:
-    """Count the numbers of the states with which relaxed programs of a step's sizes are solved.
+def fallback_size(sizes: Sizes) -> int:
+    """Count the numbers of the states with which fallback programs of a step's sizes are solved.
 
     They are of the search of the scaling factor, which has one variable more, and of the program
     that is answered.
@@ -135,26 +137,26 @@ def largest_entry(values: Vector) -> float:
 
 
 @compiled
-def settled(
+def solve_warm(
     qp: QPViews, tol: float, budget: int, state: Vector, point: Vector, stats: SolveStats
 ) -> bool:
-    """Settle the network from its last state or, if need be, from a cold start.
+    """Solve the program by the network from its last state or, if need be, from a cold start.
 
     Args:
         qp: The program.
         tol: Tolerance.
-        budget: Largest number of linear systems.
-        state: Its state, (size,), advanced; where it does not settle, cold again.
+        budget: Largest number of linear solves.
+        state: Its state, (size,), advanced; where it does not converge, cold again.
         point: The point that the state stands for, (2 n + m + p,), overwritten.
-        stats: Statistics of the step's answer: the linear systems are added, the time is
+        stats: Statistics of the step's answer: the linear solves are added, the time is
             overwritten.
 
     Returns:
         Whether the point is the program's solution.
     """
     for _ in range(2):
-        systems, time, primal, dual, gap = solve_within(qp, tol, budget, state, point)
-        stats.iterations += systems
+        linear_solves, time, primal, dual, gap = solve_within(qp, tol, budget, state, point)
+        stats.iterations += linear_solves
         stats.time = time
         if within(primal, dual, gap, tol):
             return True
@@ -170,18 +172,18 @@ def largest_factor(
 
     Args:
         qp: The step's program, of n variables, m inequality and p equality rows.
-        yielding: Which rows are the task's, and how the network settles.
+        yielding: Which rows are the task's, and how the network converges.
         state: State of the network that solves it, (3 n + 3 + m + p,), advanced.
         point: Point of the program with the factor as the last variable, (2 n + 2 + m + p,),
             overwritten.
-        stats: Statistics of the step's answer, as of `settled`.
+        stats: Statistics of the step's answer, as of `solve_warm`.
         retreats: Whether the factor is that of what limits ask for, negative right-hand sides h and
             those of joints that follow others, without the task; else it is the scaling factor of
             the task.
 
     Returns:
         1, or `ALMOST` the factor in [0, 1]; -1 if not even 0 is feasible, or the network does not
-        settle.
+        converge.
     """
     n = qp.q.size
     data = np.zeros(data_size(n + 1, qp.h.size, qp.b.size))
@@ -203,7 +205,7 @@ def largest_factor(
         elif not retreats:
             wider.b[j] = qp.b[j]
     tol = max(yielding.tolerance, RETREAT) if retreats else yielding.tolerance
-    if not settled(wider, tol, yielding.budget, state, point, stats):
+    if not solve_warm(wider, tol, yielding.budget, state, point, stats):
         return -1.0
     factor: float = max(point[n] / longest, 0.0)
     return 1.0 if factor >= FEASIBLE else ALMOST * factor
@@ -254,8 +256,8 @@ def scale_task(qp: QPViews, weights: Vector, factor: float) -> None:
 
 
 @compiled
-def soften_task(qp: QPViews, weights: Vector, retreat: float) -> None:
-    """Turn a step's program, with weights (p,) of its rows, into the softened one.
+def relax_task(qp: QPViews, weights: Vector, retreat: float) -> None:
+    """Turn a step's program, with weights (p,) of its rows, into the relaxed one.
 
     Its tau is `retreat`, for rows h < 0 and those of joints that follow others.
     """
@@ -281,23 +283,23 @@ def soften_task(qp: QPViews, weights: Vector, retreat: float) -> None:
 
 
 @compiled
-def note_blocking(point: Vector, n: int, m: int, extra: int, blocking: Vector) -> None:
-    """Note which bounds and rows stand in the way of a program.
+def note_limiting(point: Vector, n: int, m: int, extra: int, limiting: Vector) -> None:
+    """Note which bounds and rows limit a program.
 
     Args:
         point: Its solution, ``[x | y | z | z_box]`` with `extra` more variables than n.
         n: Number of the step's variables.
         m: Number of inequality rows.
         extra: Number of further variables.
-        blocking: For each variable the sign of its bound's multiplier, and for each row 1 where its
+        limiting: For each variable the sign of its bound's multiplier, and for each row 1 where its
             multiplier counts, (n + m,), overwritten.
     """
     start = point.size - n - extra - m
     multipliers = point[start : start + m + n]
-    least = BLOCKING * largest_entry(multipliers)
+    least = LIMITING * largest_entry(multipliers)
     for i in range(n + m):
         value = multipliers[m + i if i < n else i - n]
-        blocking[i] = math.copysign(1.0, value) if abs(value) > least else 0.0
+        limiting[i] = math.copysign(1.0, value) if abs(value) > least else 0.0
 
 
 @compiled
@@ -305,7 +307,7 @@ def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, stats: SolveStats
     """Move x (n,) into the bounds of a program, and on to the nearest point within its rows too.
 
     The rows of joints that follow others hold as well, if the bounds allow it. The statistics are
-    those of `settled`.
+    those of `solve_warm`.
 
     Returns:
         False if the inequality rows contradict the bounds: x is then within the bounds.
@@ -339,7 +341,7 @@ def _move_within(
     _copy_limits(qp, nearest)
     point = np.empty(2 * n + m + equalities)
     state = np.zeros(3 * n + m + equalities)
-    found = settled(nearest, yielding.tolerance, yielding.budget, state, point, stats)
+    found = solve_warm(nearest, yielding.tolerance, yielding.budget, state, point, stats)
     # Bounds that are off by rounding may contradict the equalities: as near as they allow, then.
     if found or (equalities > 0 and all_finite(point, 0, n)):
         copied(x, point[:n])
@@ -363,7 +365,7 @@ def _rate_within(qp: QPViews, j: int, x: Vector) -> float:
 
 @compiled
 def attained(b: Vector, A: Matrix, weights: Vector, x: Vector) -> float:
-    """Compute the share of a task velocity b (p,) that joint velocities x (n,) give, at most 1."""
+    """Compute the fraction of a task velocity b (p,) that joint velocities x (n,) give."""
     asked = 0.0
     given = 0.0
     for j in range(b.size):
