@@ -34,7 +34,7 @@ SOLVED, ADVANCED, NOT_CONVERGED, NOT_FINITE, *_ = range(len(STATUSES))
 
 
 class StepLog(Record):
-    """Log of one step, for a program of n variables, m and p rows, and n joints.
+    """Log of one step, for a program of n variables, m and p rows, and dof joints.
 
     Attributes:
         fraction: Fraction of the period by which the reference's clock advances.
@@ -118,7 +118,7 @@ class LogLayout(NamedTuple):
         dq: Columns of the command.
         names: Names of the limits; None where nobody asks for them.
         periods: Control periods of the steps; commands keep those of theirs.
-        reasons: Reasons beside limits for a command that need not be what is asked.
+        reasons: Reasons beside limits for which the command differs from the answer.
     """
 
     sizes: ProgramSizes
@@ -279,7 +279,7 @@ class Command:
 
     @property
     def qp(self) -> QP:
-        """The program that was answered; `kind` says how it differs from the step's own."""
+        """The program that was answered; `kind` says how it differs from the nominal one."""
         return QP.from_data(self.log.program, self._layout.qp_sizes)
 
     @property

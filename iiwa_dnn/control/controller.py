@@ -54,7 +54,7 @@ _ACTIONS = {int(action): action for action in Action}
 
 
 class Controller:
-    """A robot, a scheme and a reference, closed by a network.
+    """Velocity controller: the programs of a scheme, solved by a network at every step.
 
     In a robot's loop, `step` takes the encoders' reading and returns the command. Attributes may
     be set in motion: the last commands and the reference's clock stay. Copies and pickles carry
@@ -89,7 +89,7 @@ class Controller:
         tol: float = 1e-9,
         solver: DNNSolver | None = None,
     ) -> None:
-        """Bring the parts together.
+        """Check the settings and take them.
 
         Args:
             robot: The robot.
@@ -129,7 +129,7 @@ class Controller:
             self._set(name, value)
 
     def _set(self, name: str, value: Any) -> None:
-        """Take a setting; what is derived from the settings is made anew."""
+        """Set a setting, and discard what is derived from the settings."""
         before = vars(self).get(name)
         if name == "scheme":
             value.program(self.robot)  # parts that do not fit the robot are refused
@@ -414,14 +414,14 @@ class Controller:
             warnings.warn(message, stacklevel=stacklevel)
 
     def reset(self) -> None:
-        """Forget the network's state, the last commands and the delay; the home stays."""
+        """Forget the network's state, the last commands and the path lag; the home stays."""
         with self._turn():
             self.solver.reset()
             self._state.rest()
             self._derived = None
 
     def warm_up(self, q: ArrayLike) -> None:
-        """Lay the program out ahead, so that the first step is as quick as the others.
+        """Lay the program out before the first step, which is then as quick as the others.
 
         Args:
             q: Joint positions of the first step [rad], (n,), which become the scheme's home if it
@@ -437,7 +437,7 @@ class Controller:
         target: Target | Mapping[str, Target] | None = None,
         dt: float | None = None,
     ) -> Matrix:
-        """Return the targets of a time of the reference's clock, (k, 18), or those given.
+        """Return the targets at a time of the reference's clock, (k, 18), or those given.
 
         Args:
             t: Time [s].

@@ -73,11 +73,11 @@ FEASIBLE_BUDGET = 60.0
 """Linear solves after which a program with acceleration or jerk limits counts as infeasible."""
 
 INVALID = -1
-"""Action at targets that are not finite, or joint positions that are none: nothing is changed."""
+"""Action if targets are not finite or joint positions out of range: nothing is changed."""
 
 
 class PathColumn(IntEnum):
-    """Columns of the table of paths: address, whether it is seen ahead, its constants' ends."""
+    """Columns of the table of paths: address, feed-forward or not, bounds of the constants."""
 
     ADDRESS = 0
     FEED_FORWARD = 1
@@ -192,7 +192,7 @@ class ControlLayout:
         self.set_periods(dt, constant_periods(dt))
 
     def set_periods(self, dt: float, periods: Periods, reasons: tuple[str, ...] = ()) -> None:
-        """Take other control periods, without laying anything out anew.
+        """Change the control periods without laying the programs out anew.
 
         Args:
             dt: Period that the next command is for [s].
@@ -214,7 +214,7 @@ class ControlLayout:
 
 
 def _asked(solver: DNNSolver, sizes: Sizes, duration: float) -> CompiledAnswer:
-    """Return the answer of a solver that is not compiled."""
+    """Wrap a solver that is not compiled as a compiled answer."""
     address = enter_answer.address(partial(ask, solver, sizes))
     settings = AnswerSettings.zeros(0)
     settings.tolerance = solver.tol
@@ -237,7 +237,7 @@ def _compiled_paths(
 
 
 def _laid_out(paths: Sequence[Reference], seen: Sequence[Reference], dt: float) -> Paths:
-    """Lay compiled paths out, which are seen as they are or ahead."""
+    """Lay out compiled paths, with or without feed-forward."""
     constants = [np.concatenate([path.base, path.constants]) for path in paths]
     stops = np.cumsum([own.size for own in constants])
     rows = [
@@ -343,7 +343,7 @@ def take_step(
 def _note_instant(
     log: StepLog, arrays: ProgramArrays, motion_state: MotionState, next_motion_state: MotionState
 ) -> None:
-    """Note what a program was built at, and that it is not answered yet."""
+    """Log the state at which a program was built, and that it has no answer yet."""
     qp = program_views(log.program, arrays.sizes)
     copied(log.q, motion_state.q)
     copied(log.last, motion_state.last)

@@ -29,7 +29,7 @@ from iiwa_dnn.qp.program import Vector
 
 @dataclass(frozen=True)
 class NoiseModel:
-    """Noise that the filter reckons with.
+    """Noise that the filter assumes.
 
     Attributes:
         velocity: Standard deviation sigma of white noise on each velocity command [rad/s].
@@ -55,7 +55,7 @@ class NoiseModel:
 
 
 class JointEstimator:
-    """The filter of n joints, one control step after the other.
+    """Kalman filter of n joints.
 
     Attributes:
         model: Standard deviations of the noise.
@@ -104,7 +104,7 @@ class JointEstimator:
         return self._q + self.dt * (sum(self._late) + model.delay_periods * self.bias)
 
     def predict(self, command: Vector) -> None:
-        """Let the joints move for one control period; the drives get a command (n,) [rad/s]."""
+        """Predict one control period with a command (n,) [rad/s] to the drives."""
         assert self._q is not None, "predict comes after update"
         command, *late = (*self._late, command)
         self._late = tuple(late)

@@ -58,11 +58,11 @@ PENALTY = 1e-5
 """w, for a cost whose largest entry is one."""
 
 FEASIBLE = 1.0 - 1e-9
-"""Factor above which all that is asked for is feasible."""
+"""Factor from which on the whole task counts as feasible."""
 
 ALMOST = 0.999
-"""Part of a largest factor that is asked for: at the very edge of what is feasible the multipliers
-may grow without bound."""
+"""Fraction of the largest factor that is used: at the boundary of the feasible set the multipliers
+may be unbounded."""
 
 RETREAT = 1e-7
 """Lower bound on the tolerance of the search for tau: if a link's end can hardly retreat, its row
@@ -76,8 +76,8 @@ BLEND = 1e-4
 """Epsilon: weight of the scheme's own cost in the relaxed program."""
 
 DRIFT = 0.02
-"""Speed of a joint at most [rad/s] in the drift towards the posture that the cost prefers.
-Damped to rest, an arm pulled beyond its reach ends up exactly stretched: it finds back too late."""
+"""Largest joint speed [rad/s] of the drift towards the posture that the cost prefers. Without it an
+arm pulled beyond its reach rests exactly stretched, and leaves that posture too late."""
 
 FASTEST = 10.0
 """Task velocity [m/s] to which a larger one is cut in the relaxed program: no arm is so quick."""
@@ -90,7 +90,7 @@ LIMITING = 1e-4
 
 
 class Yielding(NamedTuple):
-    """Constants with which the fallback programs of a scheme are written and answered.
+    """Constants of the fallback programs of a scheme.
 
     Attributes:
         weights: Weight of each task row, (p,); 0 for a row that is a limit.
@@ -118,7 +118,7 @@ class Yielding(NamedTuple):
 
 
 def fallback_size(sizes: Sizes) -> int:
-    """Count the numbers of the states with which fallback programs of a step's sizes are solved.
+    """Return the size of the network states of a step's fallback programs.
 
     They are of the search of the scaling factor, which has one variable more, and of the program
     that is answered.
@@ -168,7 +168,7 @@ def solve_warm(
 def largest_factor(
     qp: QPViews, yielding: Yielding, state: Vector, point: Vector, stats: SolveStats, retreats: bool
 ) -> float:
-    """Compute the largest factor of what a program asks for that its limits allow.
+    """Compute the largest factor of the task, or of the retreat, that the limits allow.
 
     Args:
         qp: The step's program, of n variables, m inequality and p equality rows.
@@ -304,7 +304,7 @@ def note_limiting(point: Vector, n: int, m: int, extra: int, limiting: Vector) -
 
 @compiled
 def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, stats: SolveStats) -> bool:
-    """Move x (n,) into the bounds of a program, and on to the nearest point within its rows too.
+    """Project x (n,) on the bounds of a program and, if that violates rows, on its rows too.
 
     The rows of joints that follow others hold as well, if the bounds allow it. The statistics are
     those of `solve_warm`.
@@ -326,7 +326,7 @@ def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, stats: SolveStats
 def _move_within(
     qp: QPViews, x: Vector, yielding: Yielding, stats: SolveStats, equalities: int
 ) -> bool:
-    """Move x (n,) to the nearest point within bounds and rows, and the first equalities' limits."""
+    """Project x (n,) on bounds and rows, and on the limits among the first equalities."""
     n = x.size
     m = qp.h.size
     data = np.zeros(data_size(n, m, equalities))

@@ -1,4 +1,4 @@
-"""The references of a control loop, one for each frame that tasks track."""
+"""References of a control loop by frame, and start-up diagnostics."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -25,17 +25,17 @@ References = Reference | Mapping[str, Reference]
 
 FAR = 0.05
 TURNED = 0.2
-"""Distance [m] and angle [rad] of a first target from which on a warning is given."""
+"""Distance [m] and angle [rad] of a first target above which a warning is given."""
 SAMPLES = 200
-"""Places of a path at which it is looked at."""
+"""Number of samples of a path."""
 SLOWEST = 0.1
 """Control period above which a warning is given [s]."""
 DOUBLINGS = 16
-"""Times ahead at which a path's start is looked at: a control period, two, four, ..."""
+"""Number of samples of a path's start: a control period ahead, two, four, ..."""
 NEAR = 0.02
 """Distance [m] and change of the entries of a rotation in which a path is nearly straight."""
 MISSING = 0.2
-"""Part of a task velocity that is more than that curvature."""
+"""Relative residual of a task velocity that such a curvature does not explain."""
 ZERO = 1e-3
 """Ratio of singular values below which they count as zero."""
 
@@ -68,7 +68,7 @@ def paths_of(reference: References | None, tip: str, frames: Sequence[str]) -> d
 def setup_warnings(
     program: ProgramLayout, start: Configuration, dt: float, mode: str
 ) -> Iterator[str]:
-    """State for what reasons a loop is most likely not the wanted one.
+    """Report settings of a loop that are most likely wrong.
 
     Args:
         program: The program of its steps.
@@ -98,7 +98,7 @@ def setup_warnings(
 
 
 def _gain_warnings(program: ProgramLayout, dt: float) -> Iterator[str]:
-    """State that a gain is too high for the limits on acceleration and jerk at dt [s], if so."""
+    """Report a gain that is too high for the limits on acceleration and jerk at dt [s]."""
     if program.rate_limits is None:
         return
     gains = [min(task.gain, 1.0 / dt) for task in program.tasks if isinstance(task, GainTask)]
@@ -117,7 +117,7 @@ def rank_warnings(
     dt: float,
     sample: Callable[[float], Matrix],
 ) -> Iterator[str]:
-    """State that no joint velocity at the start gives what the hard tasks ask for, if so.
+    """Report hard tasks that no joint velocity at the start fulfils.
 
     The path is looked at as long as it is near to where it begins.
 
@@ -145,7 +145,7 @@ def rank_warnings(
 
 
 def pair_warnings(program: ProgramLayout, start: Configuration, t: float) -> Iterator[str]:
-    """State which pairs are nearer than their distance where a loop begins, at time t [s]."""
+    """Report pairs that are nearer than their distance where a loop begins, at time t [s]."""
     parts = [part for part in program.scheme.limits if isinstance(part, CollisionAvoidance)]
     for part in parts:
         scene = part.scene(program.robot)
@@ -174,7 +174,7 @@ def target_warnings(
     start: Configuration,
     targets: Matrix,
 ) -> Iterator[str]:
-    """State which first targets are far from their frames in a configuration.
+    """Report first targets that are far from their frames in a configuration.
 
     Args:
         scheme: The scheme, of which only an orientation task looks at angles.

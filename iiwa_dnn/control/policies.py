@@ -58,13 +58,13 @@ class ProgramKind(IntEnum):
     """Program of a step that is handed out, recorded and checked; its code in a record."""
 
     NOMINAL = 0
-    """The step's own, as the scheme builds it."""
+    """The program of the step, as the scheme builds it."""
     SCALED = 1
     """The scaled program, A x = s b (`iiwa_dnn.control.fallback`)."""
     RELAXED = 2
     """The relaxed program, with the task in its cost."""
     RATE_LIMITED = 3
-    """One of these, whose answer the command goes towards: acceleration, jerk or braking hold it
-    back, and it is within the step's own bounds and rows."""
+    """One of these: acceleration, jerk or the stopping motion limit the command on its way to the
+    answer, within the bounds and rows of the step."""
     STOPPED = 4
     """The nominal program, which has no answer: the command brakes."""

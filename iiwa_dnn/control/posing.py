@@ -96,7 +96,7 @@ class PoseSolution:
 
 
 class _Point(NamedTuple):
-    """A posture on the way.
+    """An iterate: a posture and its program.
 
     Attributes:
         q: Joint positions [rad], (n,).
@@ -203,7 +203,7 @@ def _descend(
     start: Vector,
     weight: float,
 ) -> _Point:
-    """Go from a start (n,) [rad] to where the error from the goal (1, 18) gets no smaller."""
+    """Iterate from a start (n,) [rad] until the error from the goal (1, 18) does not decrease."""
     damping = _DAMPING
     point = _at(program, start, goal, weight)
     for _ in range(_MOST):
@@ -225,7 +225,7 @@ def _descend(
 
 
 def _at(program: ProgramLayout, q: Vector, goal: Matrix, weight: float) -> _Point:
-    """Write the program at joint positions q (n,) [rad] for a goal (1, 18), and weigh its turn."""
+    """Build the program at q (n,) [rad] for a goal (1, 18), with its orientation rows weighted."""
     qp = program.qp_at(q, 0.0 * q, 0.0 * q, goal, np.inf)
     qp.A[3:6] *= weight
     qp.b[3:6] *= weight
@@ -251,7 +251,7 @@ def _solve(program: ProgramLayout, solver: DNNSolver, point: _Point, damping: fl
 def _active_limits(
     program: ProgramLayout, solver: DNNSolver, point: _Point, weight: float
 ) -> tuple[str, ...]:
-    """Name the limits whose multipliers keep a posture from the goal, its turn weighed so."""
+    """Name the limits that keep a posture from the goal, by their multipliers."""
     step = _solve(program, solver, point, _DAMPING)
     least = _ACTS * math.hypot(*point.qp.b[:3], *weight * point.qp.b[3:6])
     codes = np.sign(step.z_box) * (np.abs(step.z_box) > least)

@@ -35,7 +35,7 @@ class MotionState(Record):
 
 
 class ControllerState:
-    """Last commands, the reference's clock, and whether the task yields.
+    """State of a controller between steps.
 
     Attributes:
         sizes: Numbers of joints and of watched pairs.
@@ -86,7 +86,7 @@ class ControllerState:
         return MotionState.of(self.next_numbers, *self.sizes)
 
     def watch(self, pairs: Any) -> None:
-        """Allocate the distances of all pairs; other pairs begin at the next step.
+        """Allocate the distances of the watched pairs; new pairs begin at the next step.
 
         The same pairs keep theirs: an obstacle that is elsewhere in a new scheme has moved.
         """
@@ -108,7 +108,7 @@ class ControllerState:
         self.halted = False
 
     def set_period(self, dt: float) -> None:
-        """Go on in periods of another length [s]: accelerations and the time to rest stay."""
+        """Change the control period [s]; accelerations and the time to rest stay."""
         if self.dt > 0.0 and dt != self.dt:
             ratio = dt / self.dt
             motion = self.motion.duplicate()
@@ -118,6 +118,6 @@ class ControllerState:
         self.dt = dt
 
     def book(self, elapsed: float) -> None:
-        """Count the last command as one that was held for so long [s]."""
+        """Correct the path lag for a last command that was held for `elapsed` [s]."""
         self.motion.path_lag += self.slowed * (elapsed - self.booked)
         self.booked = elapsed

@@ -1,4 +1,4 @@
-r"""Motions to a wanted velocity on a straight line, and the stopping path that a command leaves.
+r"""Straight-line motions to a wanted velocity, and the stopping motion after a command.
 
 From the velocities :math:`v_0` of now and :math:`v_{-1}` of the period before, all joints reach the
 wanted velocity w together, in M periods. With :math:`x = v - w` and :math:`u = i / M`,
@@ -53,7 +53,7 @@ from iiwa_dnn.schemes.scene import (
 from iiwa_dnn.schemes.step import rate_along
 
 LONGEST = 1e6
-"""Periods after which a motion counts as endless."""
+"""Number of periods above which a motion counts as endless."""
 
 GROWTH = 1.1
 """Factor between the numbers of periods that are tried."""
@@ -62,12 +62,13 @@ SLACK = 1e-12
 """Relative excess of a limit that is rounding."""
 
 UNEVEN = 0.125
-"""Ways to rest differ by at most this part of b dt with the periods in which they are gone: 0.1,
+"""Stopping displacements depend on the periods in which they are executed by at most this part of b
+dt: 0.1,
 over all signs of velocity and acceleration (docs/theory_limits.md)."""
 
 
 class Motion(NamedTuple):
-    """A motion to rest, or to a wanted velocity that is taken off.
+    """A motion to rest, or to a wanted velocity, relative to it.
 
     Attributes:
         first: Velocities at its start [rad/s], (n,).
@@ -98,7 +99,7 @@ def cubic_coefficient(x: float, before: float, periods: float, vary: bool) -> fl
 
 @compiled
 def velocity_at(x: float, b: float, u: float, cubic: bool) -> float:
-    """Compute the velocity [rad/s] at a part u of the periods of a motion that begins with x."""
+    """Compute the velocity [rad/s] at the fraction u of a motion that begins with x."""
     left = 1.0 - u
     if not cubic:
         return x * left

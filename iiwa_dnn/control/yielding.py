@@ -67,8 +67,7 @@ CREEP = 0.1
 advances: an arm that rests in a singular or unreachable pose does not hold its target there."""
 
 SINGULAR = 0.05
-"""Below it a pose counts as singular: what the tip moves for each unit of joint velocity [m/rad].
-There the joints would race for next to nothing."""
+"""Tip motion for a unit of joint velocity [m/rad] below which a pose counts as singular."""
 
 POSITION_GAIN = 20.0
 """Rate at which the wanted velocity falls towards a position limit [1/s]."""
@@ -81,7 +80,7 @@ of the one before: where a pair began nearer, there is but a micrometre for the 
 
 
 def make_yielding(program: ProgramLayout, tol: float, dt: float, alike: bool) -> Yielding:
-    """Prepare for a scheme that is laid out for a robot.
+    """Return the constants of the fallback programs of a scheme.
 
     Args:
         program: The scheme.
@@ -280,7 +279,7 @@ def _is_path(targets: Matrix) -> bool:
 
 @compiled
 def _races(qp: QPViews, x: Vector) -> bool:
-    """Test whether joints of the velocity x (n,) race while the tip hardly moves."""
+    """Test whether joints are fast in x (n,) while the tip hardly moves."""
     tip = 0.0
     for j in range(qp.b.size):
         tip = max(tip, abs(row_dot(qp.A, j, x)))
@@ -333,7 +332,7 @@ def _approach_answer(
 def _approach_each(
     limits: QPViews, motion_state: MotionState, yielding: Yielding, x: Vector
 ) -> None:
-    """Replace the wanted velocity x (n,) by the next command of joints that hurry to it.
+    """Replace the wanted velocity x (n,) by the next command, joint by joint.
 
     Each joint goes as quickly as its limits allow, without passing a velocity that goes on changing
     as it has done since the last step.

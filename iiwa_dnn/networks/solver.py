@@ -35,7 +35,7 @@ SHARPENING = (4, 20)
 _COSTS: tuple[float | None, ...] = (None, LARGE, 1.0, None)
 """Largest entries of the cost in the attempts of a `solve`; None: the program as it is."""
 _OPEN = (Status.NOT_CONVERGED, Status.NOT_FINITE)
-"""Ends after which another attempt is made."""
+"""Statuses after which another attempt is made."""
 DIVERGENCE = 1e8
 """Ratio of a state or a residual to the largest number of a program beyond which it diverges."""
 

@@ -53,7 +53,7 @@ from iiwa_dnn.schemes.scene import (
 from iiwa_dnn.schemes.step import Step, StepViews, rate_along
 
 ENDS = 2
-"""Rows of a pair: its second body is a segment, both ends of which count where they are near."""
+"""Rows of a pair, one for each end of the segment of its second body."""
 
 CLEARANCE = 1e-6
 """Distance beyond the least at which a pair comes to rest [m]. Paths along an obstacle are curved:
@@ -61,7 +61,7 @@ an arm
 that rests at the least distance itself could not stop from any of them, and would stay there."""
 
 MEET = np.inf
-"""Least distance of a pair that meets without a normal: whatever moves it is stopped."""
+"""Distance that marks a pair that meets without a normal: the arm is stopped."""
 
 
 @compiled
@@ -280,7 +280,7 @@ class CollisionAvoidance(Limit):
         return any(obstacle.speed for obstacle in self.obstacles)
 
     def refresh(self, step: Step, constants: Vector) -> None:
-        """Put the moving obstacles in the constants, (k,), where they are at a step's time."""
+        """Update the moving obstacles among the constants, (k,), to the time of a step."""
         self.scene(step.robot).move(constants, step.t)
 
     def settings(self) -> dict[str, Any]:

@@ -83,16 +83,16 @@ REST = 0.25
 `MARGIN`."""
 
 JERK_PERIODS = 8.0
-"""Steps of jerk at least that braking takes to its full deceleration."""
+"""Least number of periods of jerk in which braking reaches its full deceleration."""
 
 HALVINGS = 20
-"""Halvings of the range of a command that is to end at a position limit."""
+"""Bisection steps for a command that ends at a position limit."""
 
 LEVELS = 15
 """Decelerations that are tried below a position-dependent velocity limit."""
 
 LOWER = 0.7
-"""Each of them in units of the one before."""
+"""Ratio of each of them to the one before."""
 
 
 class Rates(NamedTuple):
@@ -370,7 +370,7 @@ class JerkLimits(RateLimits):
 
 
 def own_rate_limits(robot: Robot) -> tuple[RateLimits, ...]:
-    """Return the acceleration and jerk limits that a robot has, to hold where nobody gives others.
+    """Return the robot's acceleration and jerk limits, the default where none are given.
 
     They are those of `Shield` and of ``iiwa-dnn track``.
     """
@@ -398,7 +398,7 @@ def joint_rates(limits: MotionNumbers, i: int) -> Rates:
 def motion_limits(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
-    """Put the bounds of the joints inside those of `MotionLimits`, whose constants these are.
+    """Clip the bounds of the joints to those of `MotionLimits`, whose constants these are.
 
     Bounds of other limits give way where they contradict: the position and velocity limits are
     kept by these bounds too. Without a control period there are none.
@@ -467,7 +467,7 @@ class MotionLimits(Limit):
 
 
 def check_ranges(limits: MotionNumbers, rate: float) -> None:
-    """Raise InvalidInputError if a joint's range is too short to turn round in.
+    """Raise InvalidInputError if a joint's range is too short to reverse in.
 
     Args:
         limits: The limits of the joints.
@@ -506,7 +506,7 @@ def largest_gain(limits: MotionNumbers, rate: float) -> float:
 
 
 def merged(limits: Sequence[Limit], tasks: Sequence[Task]) -> list[Limit]:
-    """Return the limits with those on acceleration and jerk, beside tasks, as one block, the last.
+    """Merge the limits on acceleration and jerk into one block, the last.
 
     Of the tasks those count that hold joints together.
     """
@@ -655,7 +655,7 @@ def _easing(distance: float, hold: float) -> float:
 def arriving(
     last: float, before: float, left: float, wanted: float, rates: Rates, periods: Periods
 ) -> float:
-    """Compute the velocity with which a joint comes to rest at a position itself.
+    """Compute the velocity with which a joint comes to rest exactly at a position.
 
     A joint that is all but at rest halves what is left in each period, if its jerk limit allows
     this period's change and the next one's; else the velocity is the wanted one.

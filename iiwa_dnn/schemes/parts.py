@@ -62,8 +62,9 @@ def enter_limit(
 
 
 _IDLE = {"h": np.inf, "lb": -np.inf, "ub": np.inf}
-"""Values that an answer may hold though they are infinite, and that variables which it leaves out
-have, by its name; others are zero."""
+"""Infinite values that an array of an answer may hold, by its name; omitted variables have them
+too,
+else zero."""
 
 COMPILED = "has no such method in numpy; Scheme.build_qp shows the rows of a compiled part"
 
@@ -97,7 +98,7 @@ class Part:
             cls.kernel = staticmethod(cls._copy)
 
     def __post_init__(self) -> None:
-        """Check the parameters that are given, and put them into the form that is needed."""
+        """Check and convert the given parameters."""
         for kind in type(self).__mro__:
             for name, check in vars(kind).get("_checks", {}).items():
                 if getattr(self, name) is not None:

@@ -60,7 +60,7 @@ _LISTS = ("costs", "tasks", "limits")
 
 
 class Scheme:
-    """A way to choose joint velocities among those that fulfil the tasks inside the limits.
+    """Costs, tasks and limits that choose the joint velocities.
 
     The program's variables are the n joint velocities [rad/s], then `slack` further variables that
     costs and limits of one's own may use; the command is the first n of the solution.

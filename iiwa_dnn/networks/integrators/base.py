@@ -60,7 +60,7 @@ class AnswerSettings(Record):
 def enter_answer(
     address: int, qp: QPViews, rates: int, settings: AnswerSettings, state: Vector, point: Vector
 ) -> Answered:
-    """Enter a compiled answer at an address.
+    """Call a compiled answer by its address.
 
     It advances the state (size,), by a time or until it has converged, writes the point
     (2n + m + p,) that it stands for, and returns what `Answered` holds. `rates` is the address of
@@ -84,7 +84,7 @@ class CompiledAnswer(NamedTuple):
 
 
 class Integrator(Protocol):
-    """One way to integrate a network; one that derives from this is a dataclass."""
+    """Base of the integrators of a network; a subclass is a dataclass."""
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` (size,) in place by `duration` [rho]; returns the iterations taken."""

@@ -83,7 +83,7 @@ class ImplicitEuler(Integrator):
         check_size("state", state, network.state_size(qp))
         length = duration / count
         if is_projection(network) and not network.primal_projection:
-            return sum(program_layout(qp.data, *qp.sizes, state, length) for _ in range(count))
+            return sum(step_program(qp.data, *qp.sizes, state, length) for _ in range(count))
         flow = network.flow(qp)
         for _ in range(count):
             state += pseudo_transient.linear_change(flow, state, length, flow.rates(state))
@@ -105,7 +105,7 @@ class ImplicitEuler(Integrator):
 
 
 @compiled
-def program_layout(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -> int:
+def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -> int:
     """Advance a state `s` (size,) in place by one backward Euler step of a program, `QP.data`.
 
     Returns:

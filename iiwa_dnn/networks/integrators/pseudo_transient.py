@@ -18,7 +18,7 @@ from iiwa_dnn.qp.residuals import within
 LONGEST = 1e8
 """Longest implicit step of a network that converges [rho]."""
 SHORTEST = 1e-6
-"""Step [rho] below which the field is not followed any more."""
+"""Step [rho] below which the iteration ends."""
 
 
 def solve(
