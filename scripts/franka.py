@@ -1,12 +1,16 @@
-"""Draw a circle with a Franka arm (FR3): joint velocities at 1 kHz through libfranka.
+"""Drive a Franka arm (FR3) at 1 kHz through libfranka: a circle, or what a slow policy asks for.
 
 The arm begins where it stands, keeps the maker's limits and comes to rest at the end, and at
-Ctrl-C. It was tried on franka-sim, a server of the robot's protocol, never on an arm: see
-docs/real_arm.md before the first day.
+Ctrl-C. Requests come as JSON, one a UDP packet or a line of stdin: {"dq": [...]}, {"twist": [...]}
+or {"position": [...]}, in rad/s, m/s and rad/s, or rad. It was tried on franka-sim, a server of the
+robot's protocol, never on an arm: see docs/real_arm.md before the first day.
 """
 
 import gc
+import json
+import os
 import signal
+import socket
 import sys
 
 import numpy as np
@@ -51,48 +55,106 @@ def make_controller(robot, q, radius, period):
     return controller
 
 
+def make_shield(robot, q):
+    """Return a shield for whatever is requested, from q (7,) [rad]."""
+    # Positions are always the robot's own: it goes on where a command is lost.
+    shield = iiwa_dnn.Shield(robot, dt=DT, obstacles=[], tracking_error=0.0)
+    shield.limits.append(iiwa_dnn.TipSpeedLimit(2.5))  # [m/s]
+    shield.warm_up(q, [robot.tip])
+    return shield
+
+
+class Requests:
+    """The newest request that came by UDP, at "127.0.0.1:5005" say, or by "stdin"."""
+
+    def __init__(self, source):
+        """Listen at an address."""
+        self.refused = 0
+        self._socket = None
+        self._rest = b""
+        if source == "stdin":
+            os.set_blocking(sys.stdin.fileno(), False)
+            return
+        place, _, port = source.rpartition(":")
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.bind((place, int(port)))
+        self._socket.setblocking(False)
+
+    def newest(self):
+        """Return the request as an argument of `Shield.step`; nothing: there is no new one."""
+        found = None
+        try:
+            while self._socket:
+                found = self._socket.recv(4096)
+            *lines, self._rest = (self._rest + os.read(0, 65536)).split(b"\n")
+            found = lines[-1] if lines else None
+        except BlockingIOError:
+            pass
+        if found is None:
+            return {}
+        try:
+            ((kind, numbers),) = json.loads(found).items()
+            size = {"dq": 7, "twist": 6, "position": 7}[kind]
+            return {kind: np.array(numbers, dtype=float).reshape(size)}
+        except (AttributeError, KeyError, TypeError, ValueError):
+            self.refused += 1
+            return {"dq": np.full(7, np.nan)}  # the arm brakes
+
+
 def main(
     host: tyro.conf.Positional[str],
     duration: float = 10.0,
     radius: float = 0.02,
     period: float = 5.0,
+    requests: str = "",
 ):
-    """Draw a circle and come to rest.
+    """Draw a circle, or follow requests, and come to rest.
 
     Args:
         host: address of the robot's controller
         duration: length of the motion [s]
         radius: radius of the circle [m]
         period: time of one round [s]
+        requests: address and port of requests by UDP, or "stdin", in place of a circle
     """
     import pylibfranka as franka
 
     arm = franka.Robot(host, franka.RealtimeConfig.kIgnore)
     q = np.array(arm.read_once().q)
-    controller = make_controller(with_reserve(iiwa_dnn.load_robot("fr3")), q, radius, period)
-    signal.signal(signal.SIGINT, lambda *_: controller.halt())
+    robot = with_reserve(iiwa_dnn.load_robot("fr3"))
+    source = Requests(requests) if requests else None
+    driver = make_shield(robot, q) if source else make_controller(robot, q, radius, period)
+    ended = []
+
+    def end(*_):
+        ended.append(True)
+        driver.halt()
+
+    signal.signal(signal.SIGINT, end)
     gc.disable()  # a collection takes many periods
     motion = arm.start_joint_velocity_control(franka.ControllerMode.JointImpedance)
     state, _ = motion.readOnce()
     t = 0.0
     late = 0
     while True:
-        command = controller.step(np.array(state.q_d), t)
+        q = np.array(state.q_d)
+        command = driver.step(q, **source.newest()) if source else driver.step(q, t)
         velocities = franka.JointVelocities(command.dq.tolist())
-        velocities.motion_finished = t > 0.0 and not command.dq.any()  # at rest
+        velocities.motion_finished = bool(ended) and not command.dq.any()  # at rest
         motion.writeOnce(velocities)
         if velocities.motion_finished:
             break
         state, elapsed = motion.readOnce()
         t += elapsed.to_sec()
-        if t >= duration:
-            controller.halt()
+        if t >= duration and not ended:
+            end()
         last = np.array(state.dq_d)
         if np.abs(last - command.dq).max() > ROUNDING:  # the arm went on without the command
-            controller.send(last - DT * np.array(state.ddq_d))
-            controller.send(last)
+            driver.send(last - DT * np.array(state.ddq_d))
+            driver.send(last)
             late += 1
-    print(f"{t:.3f} s, {late} commands came too late")
+    refused = f", {source.refused} requests refused" if source else ""
+    print(f"{t:.3f} s, {late} commands came too late{refused}")
 
 
 if __name__ == "__main__":

@@ -34,11 +34,13 @@ def distance(record: Record) -> np.ndarray:
     return np.linalg.norm(record.position - record.position_desired, axis=1)
 
 
-def run_python(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
+def run_python(
+    code: str, timeout: float = 300.0, **environment: str
+) -> subprocess.CompletedProcess[str]:
     """Run a few lines in a Python of their own, the package found where it is."""
     return subprocess.run(
         [sys.executable, "-c", code],
-        env=os.environ | environment, cwd=ROOT, capture_output=True, text=True, timeout=300,
+        env=os.environ | environment, cwd=ROOT, capture_output=True, text=True, timeout=timeout,
     )  # fmt: skip
 
 

@@ -633,6 +633,22 @@ class Shield:
         with self._lock:
             self._state.flags.reason = Reason.HALTED
 
+    def send(self, dq: ArrayLike) -> None:
+        """Count a velocity dq (n,) [rad/s] as sent for a control period, in place of a step's.
+
+        Raises:
+            InvalidInputError: `dq` has another size, or is not finite.
+        """
+        with self._lock:
+            self.controller().send(np.asarray(dq))
+            positions, _, flags = self._state
+            kind, frame, t, period, sent = self._memory
+            positions += self.dt * np.asarray(dq)
+            flags.age += period
+            if self.delay > 0.0:
+                sent = np.vstack([np.append(self.dt, dq), sent])
+            self._memory = Memory(kind, frame, t + self.dt, self.dt, sent)
+
     def warm_up(self, q: ArrayLike, frames: Sequence[str] = ()) -> None:
         """Lay the programs out ahead, so that the first step is as quick as the others.
 

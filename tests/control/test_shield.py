@@ -434,3 +434,30 @@ def test_a_twist_that_is_fulfilled_is_not_clipped() -> None:
     assert commands[-1].active_limits == ()
     J = d.Configuration(ROBOT, path[-2]).jacobian
     np.testing.assert_allclose(J @ commands[-1].dq, [0, 0, 0.02, 0, 0, 0], atol=4e-4)
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.02])
+def test_a_command_that_was_sent_counts_as_that_of_a_step(delay: float) -> None:
+    """Somebody else sends the commands of a twin's steps; from then on both answer the same."""
+    made = d.Shield(SMOOTH, DT, [BALL], delay=delay)
+    twin = d.Shield(SMOOTH, DT, [BALL], delay=delay)
+    q = made.step(START, np.full(7, 5.0)).next_q
+    np.testing.assert_array_equal(twin.step(START, np.full(7, 5.0)).next_q, q)
+    for k in range(60):
+        command = twin.step(q, np.full(7, (-1.0) ** (k // 20)))
+        if k < 30:
+            made.send(command.dq)
+        else:
+            other = made.step(q, np.full(7, (-1.0) ** (k // 20)))
+            np.testing.assert_array_equal(other.dq, command.dq)
+        q = q + DT * command.dq
+
+
+def test_a_sent_command_that_is_none_is_refused_and_changes_nothing() -> None:
+    shield = d.Shield(SMOOTH, DT)
+    q = shield.step(START, np.full(7, 0.1)).next_q
+    twin = copy.deepcopy(shield)
+    for wrong in (np.zeros(6), np.full(7, np.nan)):
+        with pytest.raises(d.InvalidInputError, match="dq"):
+            shield.send(wrong)
+    np.testing.assert_array_equal(shield.step(q).dq, twin.step(q).dq)

@@ -7,6 +7,7 @@ that breaks a limit or loses 20 commands in a row, as the robot does. Its clock 
 
 import ctypes
 import fcntl
+import json
 import os
 import signal
 import socket
@@ -15,11 +16,15 @@ import sys
 import time
 from collections.abc import Iterator
 from functools import partial
+from pathlib import Path
+from threading import Event, Thread
 
+import numpy as np
 import pytest
 
 import iiwa_dnn
 from helpers_physics import ROOT, run_python
+from judge_distances import Judge
 
 FOLDER = ROOT / "build" / "franka-sim"
 PYTHON = FOLDER / "bin" / "python"
@@ -111,3 +116,66 @@ def test_the_motion_is_accepted_with_reserve_for_lost_commands(
         seconds, _, late, *_ = done.stdout.split()
         assert int(late) > 0
         assert duration <= float(seconds) or 0.2 < float(seconds) < 20.0
+
+
+RECORDING = """
+import numpy as np
+from iiwa_dnn import Shield
+step, log = Shield.step, []
+def recorded(shield, q, **request):
+    begin = time.perf_counter()
+    command = step(shield, q, **request)
+    log.append((*q, time.perf_counter() - begin, bool(request)))
+    return command
+Shield.step = recorded
+"""
+PERIOD = 1.0 / 30.0  # of a policy [s]
+
+
+def ask(place: tuple[str, int], ended: Event) -> None:
+    """Send hostile requests by UDP at the rate of a slow policy, in runs of a kind."""
+    random = np.random.default_rng(0)
+    bad = (b"", b"{}", b'{"dq": [1]}', b'{"twist": "up"}', b'{"dq": [1e999, 0, 0, 0, 0, 0, 0]}')
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+        while not ended.is_set():
+            kind = random.choice(["dq", "twist", "position", "bad", "silence"])
+            size = random.choice([1.0, 3.0, 30.0])
+            for _ in range(random.integers(1, 30)):
+                numbers = size * random.normal(size=6 if kind == "twist" else 7)
+                packet = json.dumps({str(kind): numbers.tolist()}).encode()
+                if kind == "bad":
+                    packet = bad[random.integers(len(bad))]
+                if kind != "silence":
+                    link.sendto(packet, place)
+                ended.wait(PERIOD)
+
+
+def test_hostile_requests_of_a_slow_policy_abort_no_motion(server, tmp_path: Path) -> None:
+    seconds = float(os.environ.get("SECONDS_OF_HOSTILE_REQUESTS", "5"))
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+        link.bind(("127.0.0.1", 0))
+        place = link.getsockname()
+    ended = Event()
+    sender = Thread(target=ask, args=(place, ended))
+    sender.start()
+    code = (
+        f"import time\n{RECORDING}\nfrom scripts import franka\n"
+        f"franka.main('127.0.0.1', {seconds}, requests='{place[0]}:{place[1]}')\n"
+        f"np.save({str(tmp_path / 'log.npy')!r}, log)"
+    )
+    done = run_python(code, timeout=300.0 + 5.0 * seconds)
+    ended.set()
+    sender.join()
+    assert done.returncode == 0, done.stderr
+    assert server.poll() is None
+    log = np.load(tmp_path / "log.npy")
+    times = 1e6 * np.percentile(log[:, 7], [50, 99])
+    print(done.stdout, f"a step p50 {times[0]:.0f} us, p99 {times[1]:.0f} us")
+    assert int(done.stdout.split()[2]) > 0  # commands that were lost
+    assert log[:, 8].any()
+    q = log[:, :7]
+    robot = iiwa_dnn.load_robot("fr3")
+    assert (q >= robot.q_lower).all()
+    assert (q <= robot.q_upper).all()
+    judge = Judge(robot, iiwa_dnn.CollisionAvoidance([], distance=0.02))
+    assert min(judge.distance(each, 0.0) for each in q[::20]) >= 0.02 - 1e-4
