@@ -20,11 +20,13 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from itertools import repeat
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import iiwa_dnn
+from helpers_export import packaged
 from iiwa_dnn import Configuration, Target
 from iiwa_dnn.export import ExportedController, c99, load
 from iiwa_dnn.qp import Matrix, Vector
@@ -276,7 +278,7 @@ def scheme_of(case: Case) -> iiwa_dnn.Scheme:
 
 
 def in_c(made: Any) -> ExportedController:
-    """Compile the exported C of a controller or a shield."""
+    """Compile the exported C of a controller."""
     with tempfile.TemporaryDirectory() as folder:
         return load(c99(made, folder))
 
@@ -300,21 +302,15 @@ def controller(case: Case, seed: int, exported: bool = False) -> Driver:
 
 
 def shield(case: Case, seed: int, exported: bool = False) -> Driver:
-    """Return a shield among hostile requests; its C takes joint velocities alone."""
+    """Return a shield among hostile requests, or its package."""
     start = case.start.q
     made = iiwa_dnn.Shield(case.robot, case.dt, case.avoidance.obstacles, DISTANCE)
-    compiled = in_c(made) if exported else None
+    if exported:
+        with tempfile.TemporaryDirectory() as folder:
+            made = packaged(made, Path(folder), "hostile_shield").Shield()
 
     def step(q: Vector, t: float, request: dict[str, Any]) -> tuple[Vector, bool]:
-        if not compiled:
-            return made.step(q, **request).dq, False
-        dq = request.get("dq")
-        if "position" in request:
-            dq = (request["position"] - q) / case.dt
-        elif "twist" in request:
-            J = Configuration(case.robot, q).jacobian
-            dq = J.T @ np.linalg.solve(J @ J.T + 4e-4 * np.eye(6), request["twist"])
-        return compiled.shield_step(q, dq).dq, False
+        return made.step(q, **request).dq, False
 
     def left(q: Vector) -> float:
         return float(np.abs(q - start).max())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import os
 import threading
 from collections.abc import Iterator, Sequence
@@ -41,12 +42,12 @@ from iiwa_dnn.control.shield import (
 )
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.naming import active_limits, describe
+from iiwa_dnn.naming import KINDS, active_limits, describe
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics_kernel import model_tables
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.limits import MotionLimits
+from iiwa_dnn.schemes.limits import MotionLimits, stated_periods
 from iiwa_dnn.schemes.scene import Body, scene_views
 
 BLOCK = 64
@@ -117,6 +118,27 @@ def _places(shield: Shield) -> Vector:
     return np.array([Body.of(body).center for body in bodies[first:]]).ravel()
 
 
+def limit_words(shield: Shield) -> list[str]:
+    """Name what may keep a shield's command from a request, by codes.
+
+    They are the reasons, then for each joint the lower and the upper bound of each of
+    `naming.KINDS`, then the rows.
+    """
+    settings: dict[str, Any] = shield.controller(JOINTS).program.settings()
+    rows = settings["rows"]
+    codes = [sign * kind for kind in range(1, 1 + len(KINDS)) for sign in (-1, 1)]
+    n = shield.robot.dof
+    bounds = [
+        limit
+        for joint in range(n)
+        for code in codes
+        for limit in active_limits(
+            settings, code * np.eye(n, dtype=int)[joint], np.zeros(len(rows))
+        )
+    ]
+    return [*WORDS, *map(describe, [*bounds, *rows])]
+
+
 class ShieldsCommand(NamedTuple):
     """Decisions of one step of N shields.
 
@@ -175,10 +197,20 @@ class Shields:
             InvalidInputError: An argument is out of range; the message names it.
             NotFoundError: There is no frame, link or obstacle of a name.
         """
-        self._shield = Shield(robot, **settings)
-        if self._shield.delay > 0.0:
-            raise InvalidInputError("delay", "is for one shield", self._shield.delay)
-        self.robot = robot
+        self._set(Shield(robot, **settings), count, frame, threads)
+
+    @classmethod
+    def of(cls, shield: Shield, count: int, frame: str | None = None) -> Shields:
+        """Return shields with the settings of one, at rest."""
+        own = cls.__new__(cls)
+        own._set(shield, count, frame, None)
+        return own
+
+    def _set(self, shield: Shield, count: int, frame: str | None, threads: int | None) -> None:
+        if shield.delay > 0.0:
+            raise InvalidInputError("delay", "is for one shield", shield.delay)
+        self._shield = copy.deepcopy(shield)
+        self.robot = robot = shield.robot
         self.count = checks.integer("count", count, 1)
         self.dt = self._shield.dt
         self.frame = frame or robot.tip
@@ -247,18 +279,15 @@ class Shields:
             raise InvalidInputError("dq, twist, position", "pass exactly one of them")
         kind, request = found[0] if found else (Request.NONE, self._none)
         width = {Request.NONE: 1, Request.TWIST: TWIST}.get(kind, shape[1])
+        stated_periods(self.dt, self._shield.longest_period, dt, elapsed)
         inputs = ArmInputs(
             _numbers("q", q, shape),
             int(kind),
             _numbers("request", request, (self.count, width)),
             self._flags("given", given),
-            0.0 if dt is None else checks.positive("dt", dt),
-            0.0 if elapsed is None else checks.positive("elapsed", elapsed),
+            dt or 0.0,
+            elapsed or 0.0,
         )
-        if inputs.dt and inputs.elapsed:
-            raise InvalidInputError("dt and elapsed", "are two periods: pass one of them")
-        if inputs.elapsed and self._shield.longest_period is None:
-            raise InvalidInputError("elapsed", "needs a longest_period", elapsed)
         if out is None:
             empty = np.zeros(self.count, dtype=bool)
             reasons = np.zeros(self.count, dtype=np.int64)
@@ -375,8 +404,8 @@ class Shields:
 def _reasons(own: ArmState) -> list[str]:
     """Return all reasons of an arm's last command, in words."""
     codes = [
-        Reason.Q_NOT_FINITE * own.is_blind,
         own.asked.reason,
+        Reason.Q_NOT_FINITE * own.is_blind,
         Reason.RESYNCHRONISED * own.asked.resynchronised,
         Reason.CUT * own.asked.is_cut,
         Reason.PERIOD_EXCEEDED * own.is_late,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import inspect
+import json
 import re
 from importlib.metadata import version
 from pathlib import Path
@@ -16,19 +18,34 @@ from iiwa_dnn.compiling.library import Entry, source_of
 from iiwa_dnn.compiling.records import Record
 from iiwa_dnn.compiling.sources import Module, TranslationError, c_name
 from iiwa_dnn.compiling.translator import Function, Translator
-from iiwa_dnn.control import shield as shields
+from iiwa_dnn.control.arms import (
+    ArmState,
+    Request,
+    arm_state,
+    halt_arm,
+    margin_of,
+    motion_of,
+    rest_arm,
+    send_arm,
+    step_arm,
+    stopping_time_of,
+)
 from iiwa_dnn.control.command import log_of
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.cycle import ControlPlan, PathColumn, sample_targets, take_step
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.state import MotionState
+from iiwa_dnn.control.shield import Reason, Shield
+from iiwa_dnn.control.shields import arm_plan, limit_words
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
-from iiwa_dnn.schemes.limits import constant_periods
+from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.program import Column
-from iiwa_dnn.schemes.step import TARGET_SIZE
 
 _PACKAGE = Path(__file__).parents[1]
+
+TEMPLATES = _PACKAGE / "export" / "templates"
+"""Templates of the files, in a folder for each kind of export."""
 
 WIDTH = 120
 """Letters of a line of C at most."""
@@ -45,12 +62,10 @@ _SECTIONS = {
 }
 """Titles of the sections of the code, by the packages that they are translated from."""
 
-_ARENA = "    bool full = false;\n    struct arena arena = controller_arena(c, &full);\n"
-
 
 def filled(template: str, values: dict[str, Any]) -> str:
     """Return a template with values in the places of their names."""
-    text = (_PACKAGE / "export" / "templates" / template).read_text(encoding="utf-8")
+    text = (TEMPLATES / template).read_text(encoding="utf-8")
     text = re.sub(r"@(\w+)@", lambda found: str(values[found[1]]), text)
     if not template.endswith((".c", ".h")):
         return text
@@ -67,8 +82,9 @@ def wrapped(line: str) -> list[str]:
         breaks = []
         for at, letter in enumerate(line[:WIDTH]):
             depth += (letter in "({[") - (letter in ")}]")
+            ends = line[at - 1 : at + 1] in (", ", "= ") or line[at - 1] == "("
             is_operator = re.match(r" (&&|\|\||[-+*/?:]) ", line[at : at + 4])
-            if at > WIDTH // 3 and (line[at - 1 : at + 1] in (", ", "= ") or is_operator):
+            if at > WIDTH // 3 and (ends or is_operator):
                 breaks.append((depth, -at))
         if not breaks:
             break
@@ -78,8 +94,8 @@ def wrapped(line: str) -> list[str]:
     return [*lines, line]
 
 
-def code_of(controller: Controller, shield: shields.Shield | None = None) -> dict[str, Any]:
-    """Translate a controller whose scheme is anchored, and the shield whose controller it is.
+def code_of(controller: Controller) -> dict[str, Any]:
+    """Translate a controller whose scheme is anchored.
 
     Returns:
         Texts by the names of their places in the templates.
@@ -99,8 +115,9 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
             "controller", f"{name} answers in Python, as obstacles that move do", refused[0]
         )
     model = model_tables(robot, program.kinematics.frame_ids, program.needs_inertia)
-    code = _Code(program.needs_inertia)
-    lengths = _lengths(controller, shield is not None)
+    inertia = "c->inertia" if program.needs_inertia else "NULL"
+    code = _Code("c->jacobian", "c->placements", inertia, "c->fallback")
+    lengths = _lengths(controller)
     texts: dict[str, Any] = {
         "plan": code.initializer("plan", code.numbered(step.plan)),
         "model": code.initializer("model", model),
@@ -108,8 +125,6 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
         "log_of": code.kernel(log_of),
         "kinematics": code.kernel(write_kinematics),
         "target_function": "",
-        "shield_function": "",
-        "shield_declaration": "",
     }
     if step.samples:
         sample = {
@@ -117,26 +132,17 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
             "pairs": len(program.pairs),
             "motion": step.width,
         }
-        texts["target_function"] = filled("target.c", sample)
-    if shield is not None:
-        texts["shield_function"] = filled("shield.c", _shield_texts(code, shield))
-        texts["shield_declaration"] = filled("shield.h", {"timeout": shield.settings.timeout})
+        texts["target_function"] = filled("controller/target.c", sample)
     return {
         **texts,
         **dict(zip("nmp", program.sizes, strict=True)),
+        **_about(robot, controller.dt, code),
         "pairs": len(program.pairs),
-        "robot": robot.name,
-        "version": version("iiwa-dnn"),
-        "dof": robot.dof,
         "width": lengths["log"],
         "motion": lengths["motion_state"],
         "state": lengths["state"],
         "frames": len(program.target_frames),
         "frame_names": ", ".join(program.target_frames),
-        "joint_names": ", ".join(robot.joint_names),
-        "dt": repr(controller.dt),
-        "code": code.text(),
-        "map": "\n".join(f" * - {title}" for title in _SECTIONS.values()),
         "fields": "\n".join(f"    double {name}[{k}];" for name, k in lengths.items() if k),
         "size": 8 * sum(lengths.values()),
         "actions": "\n".join(f"#define CONTROLLER_{each.name} {each.value}" for each in Action),
@@ -144,26 +150,67 @@ def code_of(controller: Controller, shield: shields.Shield | None = None) -> dic
     }
 
 
-def _shield_texts(code: _Code, shield: shields.Shield) -> dict[str, Any]:
-    """Return the texts of a shield's own step."""
-    kernels = {
-        "take_request": code.kernel(shields.take_request),
-        "come_nearer": code.kernel(shields.come_nearer),
-    }
-    pairs = len(shield.controller().program.pairs)
+def _about(robot: Robot, dt: float, code: _Code) -> dict[str, Any]:
+    """Return the texts about the robot, and the code."""
     return {
-        **kernels,
-        "arena": _ARENA * any("&arena" in call for call in kernels.values()),
-        "settings": code.initializer("shield_settings", shield.settings),
-        "limits": code.initializer("shield_motion", shield.motion),
-        "periods": code.initializer("shield_periods", constant_periods(shield.dt)),
-        "pairs": pairs,
-        "motion": MotionState.width(shield.robot.dof, pairs),
-        "flags": shields.Flags.width(),
+        "robot": robot.name,
+        "version": version("iiwa-dnn"),
+        "dof": robot.dof,
+        "joint_names": ", ".join(robot.joint_names),
+        "dt": repr(dt),
+        "code": code.text(),
+        "map": "\n".join(f" * - {title}" for title in _SECTIONS.values()),
     }
 
 
-def _lengths(controller: Controller, shielded: bool) -> dict[str, int]:
+def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
+    """Translate a shield, whose twists are those of one frame; returns what `code_of` does."""
+    plan, memory = arm_plan(shield, frame)
+    code = _Code("NULL", "NULL", "NULL", "NULL")
+    joint = plan.joint._replace(step=code.numbered(plan.joint.step))
+    twist = plan.twist._replace(step=code.numbered(plan.twist.step))
+    text = code.initializer("plan", plan._replace(joint=joint, twist=twist))
+    kernels = (
+        *(arm_state, rest_arm, halt_arm, send_arm, step_arm),
+        *(motion_of, margin_of, stopping_time_of),
+    )
+    calls = {source_of(each).__name__: code.kernel(each) for each in kernels}
+    breaks = ArmState.of(memory, *plan.sizes.tolist()).obstacles.tolist()
+    arrays = plan.joint.step.arrays
+    n, m, _ = arrays.sizes[:3]
+    taken = 8 * n * (n + m + 10) + 2 * plan.twist.width
+    taken += 2 * arrays.constants.size + 12 * (len(arrays.placements) + 4 * n) + memory.size
+    avoidance = avoidance_of(shield)
+    obstacles = avoidance.obstacles if avoidance else ()
+    names = [json.dumps(name) for name in limit_words(shield)]
+    texts = {
+        **calls,
+        **_about(shield.robot, shield.dt, code),
+        "plan": text,
+        "n": n,
+        "m": m,
+        "frame": frame,
+        "longest": repr(shield.longest_period or 0.0),
+        "timeout": repr(shield.settings.timeout),
+        "obstacles": len(obstacles),
+        "obstacle_names": ", ".join(
+            f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)
+        )
+        or "none",
+        "places": ", ".join(map(repr, breaks or [0.0])),
+        "memory": -(-memory.size // 8) * 8,
+        "scratch": taken,
+        "sides": int(plan.sizes[-1]),
+        "limit_count": len(names),
+        "names": ",\n".join(f"        {name}" for name in names),
+        "requests": "\n".join(f"    SHIELD_REQUEST_{own.name} = {own}," for own in Request),
+        "reasons": "\n".join(f"    SHIELD_{own.name} = {own}," for own in Reason),
+    }
+    own = repr(sorted((name, str(value)) for name, value in texts.items()))
+    return texts | {"digest": hashlib.sha256(own.encode()).hexdigest()[:16]}
+
+
+def _lengths(controller: Controller) -> dict[str, int]:
     """Count the numbers of each field of the struct."""
     step = controller.control_layout
     dof = controller.robot.dof
@@ -179,23 +226,19 @@ def _lengths(controller: Controller, shielded: bool) -> dict[str, int]:
         "inertia": dof * dof * step.program.needs_inertia,
         "steps": 1,
         "scratch": 8 * n * (n + m + p + 10),  # twice what the package's kernels take
-        "positions": dof * shielded,
-        "request": dof * shielded,
-        "flags": shields.Flags.width() * shielded,
-        "aim": TARGET_SIZE * len(step.program.target_frames) * shielded,
     }
 
 
 class _Code:
     """Translation of the kernels that a controller reaches, and its tables."""
 
-    def __init__(self, needs_inertia: bool) -> None:
-        """Begin with nothing."""
+    def __init__(self, jacobian: str, placements: str, inertia: str, relaxed: str) -> None:
+        """Take the places in C of what the kernels write."""
         self._fields = {
-            "jacobian": "c->jacobian",
-            "placements": "c->placements",
-            "inertia": "c->inertia" if needs_inertia else "NULL",
-            "fallback": "c->fallback",
+            "jacobian": jacobian,
+            "placements": placements,
+            "inertia": inertia,
+            "fallback": relaxed,
         }
         self._translator = Translator(_PACKAGE)
         self._parts: list[Function] = []

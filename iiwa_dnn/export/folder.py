@@ -2,18 +2,23 @@
 
 import copy
 import json
+import keyword
 import os
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from iiwa_dnn import checks
+from iiwa_dnn.control.arms import Request
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import by_frame
-from iiwa_dnn.control.shield import Shield
+from iiwa_dnn.control.shield import TWIST, Reason, Shield
+from iiwa_dnn.control.shields import Shields
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.export.code import code_of, filled
+from iiwa_dnn.export.code import TEMPLATES, code_of, filled, shield_code
 from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Lissajous
@@ -26,43 +31,17 @@ STEPS = 500
 _POSE = np.repeat([1.0, 0.0], [12, 6])
 """1 for the numbers of a target's pose, 0 for those of its velocities."""
 
-_FILES = (
-    "controller.h",
-    "controller.c",
-    "test_controller.c",
-    "Makefile",
-    "example.c",
-    "example_fri.cpp",
-    "README.md",
-)
-
-_TARGETS = {
-    "call": "controller_step",
-    "input": "target",
-    "numbers": "18 * CONTROLLER_FRAMES",
-    "input_words": "`target` has 18 numbers for each tracked frame:\nposition [m], rotation row "
-    "by row, linear velocity [m/s], angular velocity [rad/s], along the axes\nof the robot's base.",
-}
-_REQUESTS = {
-    "call": "shield_step",
-    "input": "request",
-    "numbers": "CONTROLLER_DOF",
-    "target": "0.0",
-    "sample": "        request[0] = 0.1; /* where requests come from */\n",
-    "input_words": "`request` is the joint velocity to come near\n[rad/s], NULL for no new one.",
-}
-"""What a step takes beside joint positions: the texts about a controller, and about a shield."""
-
 
 def c99(
     controller: Controller | Shield,
     folder: str | os.PathLike[str],
     q0: ArrayLike | None = None,
 ) -> Path:
-    """Write a controller, or a shield for joint velocities, as a folder of C99.
+    """Write a controller or a shield as a folder of C99.
 
     Args:
-        controller: The controller or shield; it stays as it is.
+        controller: The controller or shield; it stays as it is. The twists of a shield are those of
+            its robot's tip.
         folder: The folder; files of an earlier export are overwritten.
         q0: Joint positions where the arm begins [rad], (n,): the home of a scheme without one, and
             the beginning of the vectors; None: where the controller is, or the start posture.
@@ -75,25 +54,137 @@ def c99(
             named.
         FileError: The folder cannot be written.
     """
-    shield = controller if isinstance(controller, Shield) else None
-    if controller.longest_period is not None or (shield and shield.delay > 0.0):
-        raise InvalidInputError("controller", "with longest_period or delay has no C", controller)
-    own = controller.controller() if isinstance(controller, Shield) else controller
-    twin = copy.copy(own)
-    start = Configuration(twin.robot, own.positions if q0 is None else q0)
+    if isinstance(controller, Shield):
+        return _write("shield", shield_texts(controller, None, q0), folder)
+    if controller.longest_period is not None:
+        raise InvalidInputError("controller", "with longest_period has no C", controller)
+    twin = copy.copy(controller)
+    start = Configuration(twin.robot, twin.positions if q0 is None else q0)
     twin.reset()
     twin.anchor(start)
-    texts = code_of(twin, shield)
+    texts = code_of(twin)
     rows = run(twin, start.q, STEPS)
-    folder = prepare_folder(folder)
     texts |= _texts(twin, start, rows[0], texts["has_reference"])
-    texts |= _TARGETS if shield is None else _REQUESTS
     counts = {"q": texts["dof"], "target": 18 * texts["frames"], "dq": texts["dof"]}
     names = [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
-    write_csv(folder / "vectors.csv", ["t", *names, "action"], rows)
-    for name in _FILES:
-        write_text(folder / name, filled(name, texts))
+    return _write("controller", texts | {"vectors": (["t", *names, "action"], rows)}, folder)
+
+
+def _write(kind: str, texts: dict[str, Any], folder: str | os.PathLike[str]) -> Path:
+    """Fill the templates of a kind, and write them beside the vectors of a run."""
+    folder = prepare_folder(folder)
+    write_csv(folder / "vectors.csv", *texts["vectors"])
+    for path in sorted((TEMPLATES / kind).iterdir()):
+        if path.stem != "target":
+            write_text(folder / path.name, filled(f"{kind}/{path.name}", texts))
     return folder
+
+
+def python(
+    shield: Shield,
+    folder: str | os.PathLike[str],
+    name: str,
+    frame: str | None = None,
+    q0: ArrayLike | None = None,
+) -> Path:
+    """Write a shield as a package of Python that needs numpy alone, for ``pip install folder``.
+
+    Args:
+        shield: The shield; it stays as it is.
+        folder: The folder of the project; files of an earlier export are overwritten.
+        name: Name by which the package is imported.
+        frame: Frame of twists; None stands for the tip.
+        q0: Joint positions where the vectors of its own test begin [rad], (n,).
+
+    Returns:
+        The folder.
+
+    Raises:
+        InvalidInputError: The name is none of a package, or a part has no C; it is named.
+        NotFoundError: There is no such frame.
+        FileError: The folder cannot be written.
+    """
+    checks.instance("shield", shield, Shield)
+    if not re.fullmatch("[a-z][a-z0-9_]*", name) or keyword.iskeyword(name):
+        raise InvalidInputError("name", f"must be small letters, digits and _, not {name!r}", name)
+    robot = shield.robot
+    texts = shield_texts(shield, frame, q0)
+    words = ("lower", "upper", "velocity", "acceleration", "jerk")
+    own = (*robot.limits[:2], robot.dq_max, robot.ddq_max, robot.dddq_max)
+    limits = {word: values.tolist() for word, values in zip(words, own, strict=True)}
+    texts |= {
+        "name": name,
+        "package_version": "0.1.0",
+        "joints": repr(tuple(robot.joint_names)),
+        "longest_or_none": repr(shield.longest_period),
+        "limits": re.sub(r"\binf\b", "np.inf", repr(limits)),
+        "reason_members": "\n".join(f"    {each.name} = {each.value}" for each in Reason),
+    }
+    package = prepare_folder(Path(folder) / name)
+    write_csv(package / "vectors.csv", *texts["vectors"])
+    for file in ("shield.c", "shield.h"):
+        write_text(package / file, filled(f"shield/{file}", texts))
+    for path in sorted((TEMPLATES / "python").iterdir()):
+        inner = path.name.startswith("__") or path.name == "py.typed"
+        place = package if inner else package.parent
+        write_text(place / path.name.removesuffix(".in"), filled(f"python/{path.name}", texts))
+    return package.parent
+
+
+def shield_texts(shield: Shield, frame: str | None, q0: ArrayLike | None) -> dict[str, Any]:
+    """Return the texts of a shield, and vectors of a run with requests of all kinds.
+
+    Raises:
+        InvalidInputError: It has a `delay`.
+        NotFoundError: There is no such frame.
+    """
+    if shield.delay > 0.0:
+        raise InvalidInputError("shield", "with delay has no C", shield)
+    robot = shield.robot
+    tip = frame or robot.tip
+    texts = shield_code(shield, tip)
+    start = Configuration(robot, robot.start_posture() if q0 is None else q0).q
+    width = max(robot.dof, TWIST)
+    counts = {"q": robot.dof, "kind": 1, "dt": 1, "request": width, "dq": robot.dof, "reason": 1}
+    names = [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
+    rows = _shield_run(shield, tip, start, width)
+    own = {"steps": STEPS, "request": width, "q0": _numbers(start), "vectors": (names, rows)}
+    return texts | own
+
+
+def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
+    """Run a shield on requests of all kinds that jump, are held, too old, or not finite.
+
+    Returns:
+        Rows of the joint positions, kind of the request, stated period [s], the request, the
+        command and its reason.
+    """
+    random = np.random.default_rng(0)
+    arms = Shields.of(shield, 1, frame)
+    kinds = [Request.VELOCITY, Request.TWIST, Request.POSITION, Request.NONE]
+    rows = []
+    request: Vector = np.zeros(width)
+    kind = Request.NONE
+    for k in range(STEPS):
+        if k % 25 == 0:
+            kind = kinds[k // 25 % 4]
+            request = random.standard_normal(width)
+            if kind == Request.POSITION:
+                request[: q.size] = q + 0.2 * request[: q.size]
+            request[0] = np.inf if k == 200 else request[0]
+        period = 2.0 * shield.dt if k % 10 == 7 and shield.longest_period is None else 0.0
+        asked = request[np.newaxis]
+        command = arms.step(
+            q[np.newaxis],
+            asked[:, : q.size] if kind == Request.VELOCITY else None,
+            twist=asked[:, :TWIST] if kind == Request.TWIST else None,
+            position=asked[:, : q.size] if kind == Request.POSITION else None,
+            dt=period or None,
+        )
+        own = [q, [float(kind), period], request, command.dq[0], [float(command.reason[0])]]
+        rows.append(np.concatenate(own))
+        q = command.next_q[0] + (0.05 if k == 300 else 0.0)
+    return np.array(rows)
 
 
 def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
@@ -149,7 +240,7 @@ def _texts(
         "sample": "        controller_target(&c, k * CONTROLLER_DT, target);\n" * has_reference,
         "fri_sample": "        controller_target(&controller_, t_, target);\n" * has_reference,
         "usage": "controller_target(&c, t, target);  /* the reference */\n" * has_reference,
-        "target_declaration": filled("target.h", {}) * has_reference,
+        "target_declaration": filled("controller/target.h", {}) * has_reference,
         "settings": json.dumps(plain(settings), indent=2),
     }
 

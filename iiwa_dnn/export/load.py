@@ -72,19 +72,6 @@ class ExportedController:
         wanted = checks.finite_array("target", np.ravel(target), (18 * self.frames,))
         return self._command(self._library.controller_step, q, wanted)
 
-    def shield_step(self, q: ArrayLike, request: ArrayLike | None = None) -> ExportedCommand:
-        """Compute the command of a shield for a requested joint velocity [rad/s], (n,), or none.
-
-        Raises:
-            InvalidInputError: `q` or the request has a wrong shape, or `q` is not finite.
-        """
-        asked = None if request is None else checks.array("request", request, (self.dof,))
-        return self._command(self._library.shield_step, q, asked)
-
-    def shield_halt(self) -> None:
-        """Brake from now on, whatever is requested."""
-        self._library.shield_halt(self._memory)
-
     def target(self, t: float) -> Vector:
         """Compute the targets of the controller's reference at a time [s], (18 frames,)."""
         target = np.empty(18 * self.frames)

@@ -295,7 +295,7 @@ class _Settings(NamedTuple):
 
 def test_a_record_in_a_plan_is_a_view_of_a_table() -> None:
     settings = _Settings(_Limits.of(np.array([0.5, 1.0, 2.0])), 0.1)
-    text = _Code(False).initializer("plan", settings)
+    text = _Code("NULL", "NULL", "NULL", "NULL").initializer("plan", settings)
     assert "_Limits_of((Vector){(double *)plan_limits, 3}, 2)," in text
     assert ".dt = plan_dt," in text
 

@@ -1,5 +1,5 @@
-/* What kernels need for themselves stands in the controller. If it ever were too little, no memory
- * but this would be written, and the step would be refused. */
+/* What kernels need for themselves comes from one array. If it ever were too little, no memory but
+ * this would be written, and the step would be refused. */
 struct arena { char *top, *start, *end; bool *full; };
 
 static inline void *arena_empty(struct arena *arena, int64_t count)
@@ -12,13 +12,6 @@ static inline void *arena_empty(struct arena *arena, int64_t count)
     }
     arena->top = taken + bytes;
     return taken;
-}
-
-static inline struct arena controller_arena(struct controller *c, bool *full)
-{
-    char *start = (char *)c->scratch;
-    const struct arena arena = {start, start, start + sizeof c->scratch, full};
-    return arena;
 }
 
 static inline void arena_leave(struct arena *arena, const struct arena *mark)

@@ -12,6 +12,13 @@
 
 /* ---- Interface ---- */
 
+static inline struct arena controller_arena(struct controller *c, bool *full)
+{
+    char *start = (char *)c->scratch;
+    const struct arena arena = {start, start, start + sizeof c->scratch, full};
+    return arena;
+}
+
 /* What a step is laid out with; tables, and the kinematics in the controller. */
 static inline control_cycle_ControlPlan controller_plan(struct controller *c)
 {
@@ -64,4 +71,4 @@ int controller_step(struct controller *c, const double *q, const double *target,
     c->steps[0] += 1.0;
     return (int)action;
 }
-@target_function@@shield_function@
+@target_function@

@@ -7,11 +7,11 @@ int main(void)
 {
     struct controller c;
     double q[CONTROLLER_DOF] = {@q0@}; /* where the encoders are read */
-    double @input@[@numbers@] = {@target@};
+    double target[18 * CONTROLLER_FRAMES] = {@target@};
     double dq[CONTROLLER_DOF];
     controller_init(&c);
     for (int k = 0; k < 1000; k++) {
-@sample@        const int action = @call@(&c, q, @input@, dq);
+@sample@        const int action = controller_step(&c, q, target, dq);
         if (action != 0) {
             printf("step %d: action %d\n", k, action);
         }

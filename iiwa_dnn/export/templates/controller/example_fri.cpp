@@ -33,7 +33,7 @@ public:
             return;
         }
         double dq[CONTROLLER_DOF];
-@fri_sample@        last_action = @call@(&controller_, q_, @input@, dq);
+@fri_sample@        last_action = controller_step(&controller_, q_, target, dq);
         for (int i = 0; i < CONTROLLER_DOF; i++) {
             q_[i] += CONTROLLER_DT * dq[i];  // what was commanded, free of the encoders' noise
         }
@@ -41,7 +41,7 @@ public:
         t_ += CONTROLLER_DT;
     }
 
-    double @input@[@numbers@] = {@target@};  // see README.md
+    double target[18 * CONTROLLER_FRAMES] = {@target@};  // see README.md
     int last_action = 0;
 
 private:

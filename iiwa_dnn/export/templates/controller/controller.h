@@ -33,7 +33,7 @@ void controller_init(struct controller *c);
  * command does all that the tasks ask, else an action.
  */
 int controller_step(struct controller *c, const double *q, const double *target, double *dq);
-@target_declaration@@shield_declaration@
+@target_declaration@
 #ifdef __cplusplus
 }
 #endif
