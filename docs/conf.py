@@ -29,7 +29,7 @@ myst_heading_anchors = 3
 myst_links_external_new_tab = False
 default_role = "py:obj"
 autodoc_member_order = "bysource"
-autodoc_typehints = "signature"
+autodoc_typehints = "none"  # ArrayLike would be a line of its own for each kind of array
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 # The classes say it in their docstrings; the field's own comment would say it twice.

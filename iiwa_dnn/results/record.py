@@ -377,7 +377,7 @@ OPTIONAL = frozenset(
 )
 """Columns that may have the length zero."""
 
-FORMER = {"limiting": "limiting", "limiting_rows": "limiting_rows"}
+FORMER = {"blocking": "limiting", "blocking_rows": "limiting_rows"}
 """Names of columns that files of an earlier version have, and those of now."""
 
 LATER = frozenset({"feasibility_gap"})
