@@ -468,7 +468,7 @@ def braking() -> Figure:
     guard = iiwa_dnn.Shield(robot, dt, [ball], 0.02)
     scene = iiwa_dnn.CollisionAvoidance([ball], distance=0.02).scene(robot)
     q = robot.start_posture()
-    path, speeds, position_dependent_velocity = [q], [], []
+    path, speeds, slowings = [q], [], []
     for k in range(170):
         command = guard.step(path[-1], twist=[-0.2, 0.4, 0.0, 0.0, 0.0, 0.0])
         dq = np.array(command.dq)
@@ -476,18 +476,16 @@ def braking() -> Figure:
         if k % 16 == 8:
             count = max(1, round(command.stopping_time / dt))
             falling = np.linspace(1.0, 0.0, count + 1)[:-1]
-            path_of_joints = path[-1] + dt * np.cumsum(falling[:, np.newaxis] * dq, axis=0)
-            position_dependent_velocity.append(
-                (k, speeds[-1] * falling, np.vstack([path[-1], path_of_joints]))
-            )
+            stretch = path[-1] + dt * np.cumsum(falling[:, np.newaxis] * dq, axis=0)
+            slowings.append((k, speeds[-1] * falling, np.vstack([path[-1], stretch])))
         path.append(path[-1] + dt * dq)
     made, axes = panels(2, 1.7, sharex=True)
     nearest = lambda rows: 1e3 * scene.nearest(np.array(rows), np.zeros(len(rows)))[0]  # noqa: E731
-    for number, (k, ramp, path_of_joints) in enumerate(position_dependent_velocity):
+    for number, (k, ramp, stretch) in enumerate(slowings):
         label = "motion to rest from one of them" if number == 0 else None
-        t = dt * (k + np.arange(len(path_of_joints)))
+        t = dt * (k + np.arange(len(stretch)))
         axes[0].plot(t, np.append(ramp, 0.0), color=GREEN, lw=1.1, label=label)
-        axes[1].plot(t, nearest(path_of_joints), color=GREEN, lw=1.1)
+        axes[1].plot(t, nearest(stretch), color=GREEN, lw=1.1)
     axes[0].plot(dt * np.arange(170), speeds, "o", color=BLUE, ms=3, label="commands")
     axes[1].plot(dt * np.arange(171), nearest(path), "o", color=BLUE, ms=3)
     axes[1].axhline(20.0, color=RED, ls="--", lw=1.4)
@@ -799,7 +797,7 @@ def joystick() -> Frames:
         push = np.array(pushes[min(int(k * dt / 1.1), 4)])
         if k % round(1.0 / FRAME_RATE / dt) == 0:
             tip = iiwa_dnn.Configuration(robot, q).position
-            reason = command.limits[0] if command and command.clipped else "nothing"
+            reason = command.active_limits[0] if command and command.clipped else "nothing"
             reason = reason.partition("(")[2].rstrip(")") or reason  # the bodies of a pair
             arrow = ([tip, tip + 0.35 * push], 0.008, (1.0, 0.75, 0.2, 1.0))
             picture = stage.draw(q, k * dt, lines=[arrow])

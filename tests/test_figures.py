@@ -50,7 +50,7 @@ def test_a_figure_is_drawn_in_the_readers_colors(
         pytest.importorskip(module)
     monkeypatch.setattr(figures, "PAPER_DT", 2e-3)
     monkeypatch.setattr(figures, "WORKS", (1e4,))
-    monkeypatch.setattr(figures, "SHARES", (0.4,))
+    monkeypatch.setattr(figures, "FRACTIONS", (0.4,))
     monkeypatch.setattr(figures, "SIZES", (7, 14))
     monkeypatch.setattr(figures, "GAINS", (10.0, 100.0))
     text = figures.save(name, tmp_path).read_text(encoding="utf-8")
