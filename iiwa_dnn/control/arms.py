@@ -507,7 +507,7 @@ def stopping_time_of(plan: ArmPlan, memory: Vector) -> float:
     for i in range(motion.last.size):
         support = 1.0 if motion.last[i] != 0.0 else support
     cubic = plan.joint.step.yielding.cubic
-    periods = least_periods(motion.last, motion.before, plan.motion, own.spacing, cubic, False, 0.0)
+    periods = least_periods(motion.last, motion.before, plan.motion, own.spacing, cubic, False)
     return own.spacing * max(periods, support)
 
 

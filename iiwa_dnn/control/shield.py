@@ -500,7 +500,7 @@ class ShieldCommand(NamedTuple):
         shield = self.shield
         cubic = bool(np.isfinite(shield.robot.dddq_max).any())
         last = self.command.motion_state[1]
-        periods = least_periods(self.dq, last, shield.motion, self.period, cubic, False, 0.0)
+        periods = least_periods(self.dq, last, shield.motion, self.period, cubic, False)
         return self.period * max(periods, float(self.dq.any()))
 
     @property

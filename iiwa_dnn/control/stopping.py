@@ -58,13 +58,15 @@ LONGEST = 1e6
 GROWTH = 1.1
 """Factor between the numbers of periods that are tried."""
 
+STRETCH = 1.01
+"""Factor by which a motion in hand becomes longer where periods vary, until its jerk is small."""
+
 SLACK = 1e-12
 """Relative excess of a limit that is rounding."""
 
-UNEVEN = 0.125
-"""Stopping displacements depend on the periods in which they are executed by at most this part of b
-dt: 0.1,
-over all signs of velocity and acceleration (docs/theory_limits.md)."""
+UNEVEN = 0.175
+"""Displacements until rest are below the one that is tested by at most this part of b dt, in
+whatever periods: 0.169, over all signs of velocity and acceleration (docs/theory_limits.md)."""
 
 
 class Motion(NamedTuple):
@@ -76,6 +78,7 @@ class Motion(NamedTuple):
         periods: M.
         cubic: Whether the velocities are cubic in time.
         uneven: `UNEVEN` where periods vary, else 0.
+        skips: Whether a velocity may be held for no time at all.
     """
 
     first: Vector
@@ -83,6 +86,7 @@ class Motion(NamedTuple):
     periods: float
     cubic: bool
     uneven: float
+    skips: bool
 
 
 @compiled
@@ -117,13 +121,7 @@ def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float
 
 @compiled
 def least_periods(
-    x: Vector,
-    before: Vector,
-    limits: MotionNumbers,
-    dt: float,
-    cubic: bool,
-    vary: bool,
-    fewest: float,
+    x: Vector, before: Vector, limits: MotionNumbers, dt: float, cubic: bool, vary: bool
 ) -> float:
     """Compute the number of periods in which velocities go to zero together.
 
@@ -136,18 +134,16 @@ def least_periods(
         dt: Control period [s].
         cubic: Whether a jerk is limited.
         vary: Whether the periods may be shorter.
-        fewest: The number that is tried first.
 
     Returns:
         M, 0 at rest; inf if no number is enough.
     """
     accelerations = limits.acceleration
     jerks = limits.jerk
-    periods = fewest
+    periods = 0.0
     for i in range(x.size):
-        needed = abs(x[i]) / (accelerations[i] * dt) * (1.0 - SLACK)
-        if needed > periods:
-            periods = math.ceil(needed)
+        fewest = math.ceil(abs(x[i]) / (accelerations[i] * dt) * (1.0 - SLACK))
+        periods = max(periods, fewest)
     i = 0
     while cubic and i < x.size:
         if periods > LONGEST:
@@ -162,6 +158,25 @@ def least_periods(
 
 
 @compiled
+def stretched(x: Vector, before: Vector, limits: MotionNumbers, dt: float, periods: float) -> float:
+    """Stretch a motion to rest of so many periods until its next velocities keep all limits.
+
+    They are those of acceleration and jerk. Arguments as of `least_periods`.
+    """
+    i = 0
+    while i < x.size and periods < LONGEST:
+        change = next_velocity(x[i], before[i], periods, True) - x[i]
+        jerk = abs(change - x[i] + before[i]) / dt
+        share = max(abs(change) / limits.acceleration[i], jerk / limits.jerk[i])
+        if share <= dt * (1.0 + SLACK):
+            i += 1
+        else:
+            periods *= STRETCH
+            i = 0
+    return periods
+
+
+@compiled
 def within_rates(
     x: float, before: float, periods: float, accel: float, jerk: float, vary: bool
 ) -> bool:
@@ -170,8 +185,9 @@ def within_rates(
         return x == 0.0 and before == 0.0
     b = cubic_coefficient(x, before, periods, vary)
     u = 1.0 / periods
+    end = 0.0 if vary else u
     # The first jerk, that of the last period, and that with which the joint is at rest for good.
-    largest = max(abs(6.0 * x + 4.0 * b), abs(x * (6.0 - 12.0 * u) + b * (2.0 - 6.0 * u)))
+    largest = max(abs(6.0 * x + 4.0 * b), abs(x * (6.0 - 12.0 * end) + b * (2.0 - 6.0 * end)))
     largest = max(largest, abs(x * (3.0 - 2.0 * u) + b * (1.0 - u)))
     if largest * u * u > jerk * (1.0 + SLACK):
         return False
@@ -179,7 +195,7 @@ def within_rates(
     turn = 12.0 * x + 6.0 * b
     at = (6.0 * x + 4.0 * b) / turn if turn != 0.0 else 0.0
     steepest = abs(-6.0 * x * at * (1.0 - at) + b * (1.0 - at) * (1.0 - 3.0 * at)) * u
-    if u <= at < 1.0 and steepest > most:
+    if end <= at < 1.0 and steepest > most:
         return False
     return abs(next_velocity(x, before, periods, True) - x) <= most
 
@@ -205,6 +221,22 @@ def least_displacement(motion: Motion, x: float, b: float, dt: float) -> float:
     if motion.cubic and x * turn < 0.0:
         least = min(least, displacement_after(motion, x, b, min(math.ceil(-x / turn * M), M), dt))
     return least
+
+
+@compiled
+def end_displacement(motion: Motion, x: float, b: float, dt: float) -> float:
+    """Compute the displacement of an end along the normal, with its x and b, that may be least.
+
+    Where the end sets off away from the other body it is the one at rest, as the joints' own
+    displacements count with their squares; else the least. Where periods vary, no sequence of
+    them makes it less.
+    """
+    displacement = displacement_after(motion, x, b, motion.periods, dt)
+    if x < max(b / (3.0 * motion.periods), 0.0):
+        displacement = least_displacement(motion, x, b, dt)
+    if motion.skips and x > 0.0 and 2.0 * x + b < 0.0:
+        displacement += least_displacement(motion, -x, -b, dt)  # none of what leads away
+    return displacement - motion.uneven * dt * abs(b)
 
 
 @compiled
@@ -289,10 +321,7 @@ def keeps_distances(
             if pair.still == at + 1:
                 continue
             x, coefficient = _along(motion, arrays.jacobian, scene.support, k, end, contact.normal)
-            displacement = displacement_after(motion, x, coefficient, M, dt)
-            if x < max(coefficient / (3.0 * M), 0.0):
-                displacement = least_displacement(motion, x, coefficient, dt)
-            displacement -= motion.uneven * dt * abs(coefficient)
+            displacement = end_displacement(motion, x, coefficient, dt)
             change = min(change, height_of(end, contact) + min(displacement - remainder, 0.0))
         if left + change < min(kept, left):
             return False
@@ -352,14 +381,16 @@ def stopping_time(
             before[i] = dq[i] - ratio * (dq[i] - before[i])
     support = limits.lower.size > 0
     vary = yielding.periods.vary
-    periods = least_periods(dq, before, limits, dt, yielding.cubic, vary, 0.0) if support else 1.0
+    periods = least_periods(dq, before, limits, dt, yielding.cubic, vary) if support else 1.0
     if periods == np.inf:
         return -1.0
     if yielding.cubic and periods > 0.0:
         _write_coefficients(dq, before, periods, vary, coefficient)
     # Where periods vary, the first may be the longest and the others as short as can be.
-    motion = Motion(dq, coefficient, periods + vary, yielding.cubic, UNEVEN if vary else 0.0)
-    dt = dt / yielding.periods.fraction
+    uneven = UNEVEN if vary else 0.0
+    share = yielding.periods.fraction
+    motion = Motion(dq, coefficient, periods + vary, yielding.cubic, uneven, share < 1.0)
+    dt = dt / share
     if support and not keeps_joint_limits(motion, q, limits, dt):
         return -1.0
     for k in range(len(yielding.scenes)):

@@ -35,10 +35,10 @@ from iiwa_dnn.control.fallback import (
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.stopping import (
-    LONGEST,
     least_periods,
     next_velocity,
     stopping_time,
+    stretched,
 )
 from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import Matrix, Vector
@@ -356,7 +356,7 @@ def _approach_together(motion_state: MotionState, yielding: Yielding, x: Vector)
         now[i] = motion_state.last[i] - x[i]
         before[i] = motion_state.before[i] - x[i]
     dt = yielding.periods.dt
-    periods = least_periods(now, before, yielding.limits, dt, yielding.cubic, False, 0.0)
+    periods = least_periods(now, before, yielding.limits, dt, yielding.cubic, False)
     for i in range(dof):
         if periods < np.inf:
             x[i] += next_velocity(now[i], before[i], periods, yielding.cubic)
@@ -445,20 +445,12 @@ def _brake(
     dof = motion_state.q.size
     dt = yielding.periods.dt
     periods = rest
-    # Where periods vary, the stored stopping motion takes longer if the next ones ask for more
-    # jerk.
-    if rest == 0.0 or (yielding.cubic and yielding.periods.vary):
-        periods = least_periods(
-            motion_state.last,
-            motion_state.before,
-            yielding.limits,
-            dt,
-            yielding.cubic,
-            False,
-            rest,
-        )
-    if rest > 0.0:
-        periods = min(periods, LONGEST)
+    last = motion_state.last
+    before = motion_state.before
+    if rest == 0.0:
+        periods = least_periods(last, before, yielding.limits, dt, yielding.cubic, False)
+    elif yielding.cubic and yielding.periods.vary:
+        periods = stretched(last, before, yielding.limits, dt, rest)
     if periods < np.inf:
         _slow_down(motion_state, yielding, periods, dq)
     if rest > 0.0 and not yielding.periods.vary:

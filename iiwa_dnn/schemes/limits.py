@@ -636,7 +636,7 @@ def _jerk_bounds(
     if lower < upper and max(abs(last), abs(last - before)) < unit:
         # Held at that bound, a joint at its margin would swing by it, 2 + sqrt(3) times as far in
         # each period (the zeros of a sampled triple integrator): all but at rest, it comes to rest.
-        rest = REST * unit * dt
+        rest = 0.0 if periods.vary else REST * unit * dt
         eased = max(min(upper, max(_easing(above - rest, periods.hold), lb)), lower)
         lower = min(max(lower, min(-_easing(below - rest, periods.hold), ub)), eased)
         upper = eased

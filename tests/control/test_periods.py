@@ -71,16 +71,21 @@ SLIDES = """<robot name="slides"><link name="base"/>
 </robot>"""
 
 
+def slides(folder: Path, acceleration: float) -> d.Shield:
+    """A ball on two slides, beside a wall from which it is 0.53 - x away."""
+    (folder / "slides.urdf").write_text(SLIDES)
+    robot = d.load_robot(folder / "slides.urdf", tip="ball")
+    robot = robot.with_limits(acceleration=acceleration, jerk=60.0)
+    wall = d.HalfSpace(normal=(-1.0, 0.0, 0.0), offset=-0.6)
+    return d.Shield(robot, 6e-3, [wall], 0.02, timeout=np.inf, longest_period=0.037)
+
+
 @pytest.mark.parametrize(("said", "seed"), [("dt", 22), ("elapsed", 4), ("elapsed", 10)])
 def test_no_wall_comes_too_near_beside_a_jerk_limit_whatever_period_comes(
     tmp_path: Path, said: str, seed: int
 ) -> None:
-    """A ball on two slides came 137 to 243 micrometres too near: the distance is 0.53 - x."""
-    (tmp_path / "slides.urdf").write_text(SLIDES)
-    robot = d.load_robot(tmp_path / "slides.urdf", tip="ball")
-    robot = robot.with_limits(acceleration=5.0, jerk=60.0)
-    wall = d.HalfSpace(normal=(-1.0, 0.0, 0.0), offset=-0.6)
-    made = d.Shield(robot, 6e-3, [wall], 0.02, timeout=np.inf, longest_period=0.037)
+    """The ball came 17 to 243 micrometres too near."""
+    made = slides(tmp_path, 5.0)
     random = np.random.default_rng(seed)
     q = np.zeros(2)
     wanted = np.zeros(2)
@@ -93,6 +98,25 @@ def test_no_wall_comes_too_near_beside_a_jerk_limit_whatever_period_comes(
             wanted = random.uniform(-1.0, 1.0, 2) * 2.0 * random.choice([1.0, 0.1])
         q = q + period * made.step(q, wanted, **{said: period if said == "dt" else last}).dq
         last = period
+        nearest = min(nearest, 0.53 - q @ [1.0, 0.8])
+    assert nearest >= 0.0
+
+
+@pytest.mark.parametrize("seed", [1, 3, 9])
+def test_no_wall_comes_too_near_if_steps_towards_it_alone_are_long(
+    tmp_path: Path, seed: int
+) -> None:
+    """Periods that nobody states: the ball came 54 to 104 mm too near."""
+    made = slides(tmp_path, 20.0)
+    random = np.random.default_rng(seed)
+    q = np.array([0.5, 0.0])
+    wanted = np.zeros(2)
+    nearest = np.inf
+    for _ in range(600):
+        if random.random() < 0.1:
+            wanted = random.uniform(-1.0, 1.0, 2) * 2.0 * random.choice([1.0, 0.1])
+        dq = made.step(q, wanted).dq
+        q = q + (0.037 if dq @ [1.0, 0.8] > 0.0 else 0.00037) * dq
         nearest = min(nearest, 0.53 - q @ [1.0, 0.8])
     assert nearest >= 0.0
 

@@ -26,7 +26,7 @@ def limits_of(jerk: float) -> MotionNumbers:
 
 def way_to_rest(x: np.ndarray, before: np.ndarray, jerk: float, dt: float) -> np.ndarray:
     """Velocities from before x to rest, each from the two before it, as a controller has them."""
-    periods = stopping.least_periods(x, before, limits_of(jerk), dt, jerk < np.inf, False, 0.0)
+    periods = stopping.least_periods(x, before, limits_of(jerk), dt, jerk < np.inf, False)
     assert np.isfinite(periods)
     cubic = jerk < np.inf
     path = [before, x]
@@ -63,7 +63,7 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
         x = 10.0 ** random.uniform(-2.0, 0.0) * random.uniform(-2.0, 2.0, 3)
         before = x - random.uniform(-1.0, 1.0, 3) * min(10.0, 30.0 * jerk * dt) * dt
         limits = limits_of(jerk)
-        periods = stopping.least_periods(x, before, limits, dt, jerk < np.inf, False, 0.0)
+        periods = stopping.least_periods(x, before, limits, dt, jerk < np.inf, False)
         least = float(np.ceil(np.abs(x).max() / (10.0 * dt)))
         if jerk < np.inf:
             pairs = list(zip(x, before, strict=True))
@@ -80,7 +80,7 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
 
 @pytest.mark.parametrize("periods", [2.0, 3.0, 7.0, 40.0, 300.0])
 def test_what_sets_off_away_has_gone_the_square_of_the_joints_part(periods: float) -> None:
-    motion = stopping.Motion(np.ones(1), np.ones(1), periods, True, 0.0)
+    motion = stopping.Motion(np.ones(1), np.ones(1), periods, True, 0.0, False)
     part, away = (
         np.array(
             [stopping.displacement_after(motion, x, b, k, 1.0) for k in range(int(periods) + 1)]
@@ -97,7 +97,7 @@ def test_the_displacement_along_a_motion_is_the_sum_of_its_velocities(cubic: boo
         M = float(random.integers(1, 40))
         x, before = random.standard_normal(2)
         b = stopping.cubic_coefficient(x, before, M, False) if cubic else 0.0
-        motion = stopping.Motion(np.array([x]), np.array([b]), M, cubic, 0.0)
+        motion = stopping.Motion(np.array([x]), np.array([b]), M, cubic, 0.0, False)
         velocities = [stopping.velocity_at(x, b, u, cubic) for u in np.arange(M) / M]
         displacements = np.append(0.0, np.cumsum(velocities)) * 1e-3
         assert stopping.least_displacement(motion, x, b, 1e-3) == pytest.approx(
@@ -146,8 +146,10 @@ def test_the_way_to_rest_in_any_periods_is_no_less_than_the_checked_one(
     longest = []
     for own, rate in zip(x, a, strict=True):
         b = stopping.cubic_coefficient(own, own - rate, M, True)
-        motion = stopping.Motion(np.array([own]), np.array([b]), M + 1.0, True, stopping.UNEVEN)
-        bounds.append(stopping.least_displacement(motion, own, b, 1.0) - motion.uneven * abs(b))
+        motion = stopping.Motion(
+            np.array([own]), np.array([b]), M + 1.0, True, stopping.UNEVEN, False
+        )
+        bounds.append(min(stopping.end_displacement(motion, own, b, 1.0), 0.0))
         b = stopping.cubic_coefficient(own, own - rate, M, False)
         longest.append(stopping.least_displacement(motion, own, b, 1.0))
     least = np.full(x.size, np.inf)
@@ -160,6 +162,20 @@ def test_the_way_to_rest_in_any_periods_is_no_less_than_the_checked_one(
         least = np.minimum(least, gone(periods, x, a, M, says).min(axis=0))
     assert (bounds <= least + 1e-12).all()
     assert (longest > least + (0.1 if says else 0.8)).any()
+
+
+@pytest.mark.parametrize("M", [1.0, 2.0, 7.0, 40.0])
+def test_the_way_that_may_lead_nearer_is_that_of_the_velocities_which_do(M: float) -> None:
+    """Where nobody states the periods, each velocity may be held for the longest, or for none."""
+    for angle in np.linspace(0.0, 2.0 * np.pi, 145):
+        x, a = np.cos(angle), 6.0 / M * np.sin(angle)
+        b = stopping.cubic_coefficient(x, x - a, M, True)
+        motion = stopping.Motion(np.zeros(1), np.zeros(1), M + 1.0, True, stopping.UNEVEN, True)
+        steps = np.arange(M)
+        own = stopping.cubic_coefficient(x, x - a, M, False)
+        velocities = [stopping.velocity_at(x, own, i / M, True) for i in steps]
+        bound = min(stopping.end_displacement(motion, x, b, 1.0), 0.0)
+        assert bound <= np.minimum(velocities, 0.0).sum() + 1e-12
 
 
 START = d.Configuration(ROBOT, ROBOT.start_posture())
