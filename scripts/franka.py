@@ -6,6 +6,7 @@ or {"position": [...]}, in rad/s, m/s and rad/s, or rad. It was tried on franka-
 robot's protocol, never on an arm: see docs/real_arm.md before the first day.
 """
 
+import dataclasses
 import gc
 import json
 import os
@@ -31,10 +32,16 @@ ROUNDING = 1e-5
 def with_reserve(robot):
     """Return the robot with limits that also hold if the arm goes on without a command.
 
-    It then keeps its acceleration, and the next command is a jump of the acceleration for it.
+    It then keeps its acceleration, and the next command is a jump of the acceleration for it. A
+    velocity limit that shrinks towards a position limit shrinks meanwhile.
     """
+    lost = LOST * DT  # [s]
     acceleration = 0.75 * robot.ddq_max
-    velocity = robot.dq_max - LOST * DT * acceleration
+    offset, deceleration = robot.position_dependent_velocity
+    shrinking = np.where(np.isfinite(deceleration), deceleration, 0.0)
+    offset = offset + lost * (acceleration + shrinking)
+    robot = dataclasses.replace(robot, position_dependent_velocity=np.array([offset, deceleration]))
+    velocity = robot.dq_max - lost * acceleration
     return robot.with_limits(
         velocity=velocity, acceleration=acceleration, jerk=0.24 * robot.dddq_max
     )

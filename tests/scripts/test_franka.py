@@ -158,17 +158,18 @@ def test_hostile_requests_of_a_slow_policy_abort_no_motion(server, tmp_path: Pat
     ended = Event()
     sender = Thread(target=ask, args=(place, ended))
     sender.start()
+    file = tmp_path / "log.npy"
     code = (
-        f"import time\n{RECORDING}\nfrom scripts import franka\n"
-        f"franka.main('127.0.0.1', {seconds}, requests='{place[0]}:{place[1]}')\n"
-        f"np.save({str(tmp_path / 'log.npy')!r}, log)"
+        f"import atexit, time\n{RECORDING}\natexit.register(lambda: np.save({str(file)!r}, log))\n"
+        "from scripts import franka\n"
+        f"franka.main('127.0.0.1', {seconds}, requests='{place[0]}:{place[1]}')"
     )
     done = run_python(code, timeout=300.0 + 5.0 * seconds)
     ended.set()
     sender.join()
     assert done.returncode == 0, done.stderr
     assert server.poll() is None
-    log = np.load(tmp_path / "log.npy")
+    log = np.load(file)
     times = 1e6 * np.percentile(log[:, 7], [50, 99])
     print(done.stdout, f"a step p50 {times[0]:.0f} us, p99 {times[1]:.0f} us")
     assert int(done.stdout.split()[2]) > 0  # commands that were lost
