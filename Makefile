@@ -11,7 +11,7 @@ FULL := $(VENV)/.full
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help force heart test setup lint docs figures notebooks clean
+.PHONY: help force heart test setup lint docs figures notebooks ros clean
 
 help:  ## list what can be made
 	@echo 'usage: make TARGET [PYTHON=python3.12] [EXTRAS=view] [ARGS="..."]'
@@ -41,9 +41,12 @@ figures: $(FULL)  ## draw the figures of the pages anew, minutes, and the live p
 notebooks: $(FULL)  ## run the notebooks; what they print is not kept
 	$(VENV_PYTHON) -m pytest --nbmake --nbmake-timeout=60 notebooks $(ARGS)
 
+ros: $(FULL)  ## try the ROS 2 node in an environment of its own, build/ros2, 255 MB
+	$(VENV_PYTHON) -m pytest integrations/ros2_shield $(ARGS)
+
 clean:  ## remove .venv, caches and what was built; runs/ stays
-	rm -rf $(VENV) iiwa_dnn/_kernels.* build dist site jupyter_execute htmlcov .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
-	find iiwa_dnn tests scripts benchmarks -name __pycache__ -prune -exec rm -rf {} +
+	rm -rf $(VENV) iiwa_dnn/_kernels.* build integrations/*/build dist site jupyter_execute htmlcov .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	find iiwa_dnn tests scripts benchmarks integrations -name __pycache__ -prune -exec rm -rf {} +
 
 # A stamp comes last, so that a set-up cut short is done again; named extras are not all of them.
 $(PLAIN): pyproject.toml constraints.txt
