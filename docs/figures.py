@@ -461,7 +461,7 @@ def stopping() -> Figure:
 
 @figure
 def braking() -> Figure:
-    """Draw the motions to rest that are kept ready on the way to an obstacle."""
+    """Draw the stopping motions that are kept ready on the way to an obstacle."""
     dt = 1e-2
     robot = iiwa_dnn.load_robot("iiwa7").with_limits(acceleration=4.0)
     ball = iiwa_dnn.Sphere([0.1, 0.95, 0.3], 0.12)
@@ -482,7 +482,7 @@ def braking() -> Figure:
     made, axes = panels(2, 1.7, sharex=True)
     nearest = lambda rows: 1e3 * scene.nearest(np.array(rows), np.zeros(len(rows)))[0]  # noqa: E731
     for number, (k, ramp, stretch) in enumerate(slowings):
-        label = "motion to rest from one of them" if number == 0 else None
+        label = "stopping motion from one of them" if number == 0 else None
         t = dt * (k + np.arange(len(stretch)))
         axes[0].plot(t, np.append(ramp, 0.0), color=GREEN, lw=1.1, label=label)
         axes[1].plot(t, nearest(stretch), color=GREEN, lw=1.1)

@@ -286,8 +286,7 @@ class JointLimits(Limit):
     position limit.
 
     Source: equation (6) of the paper; the position-dependent limits are
-        `getUpperJointVelocityLimits` in
-    src/joint_velocity_limits.cpp of libfranka.
+    `getUpperJointVelocityLimits` in src/joint_velocity_limits.cpp of libfranka.
 
     Attributes:
         gain: The paper's kappa [1/s], above 0.
