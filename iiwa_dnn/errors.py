@@ -1,4 +1,4 @@
-"""The package's errors: one tree, and every error carries the evidence it speaks of."""
+"""Errors of the package: one tree, each error with its evidence."""
 
 import copyreg
 import os
@@ -79,7 +79,7 @@ class FileError(IiwaDnnError, OSError):
 
 
 class NoSolutionError(IiwaDnnError):
-    """A network's equations have no solution at a state; its message says which."""
+    """A network's equations have no solution at a state, which the message names."""
 
 
 class MissingDependencyError(IiwaDnnError, ImportError):
@@ -97,7 +97,7 @@ class MissingDependencyError(IiwaDnnError, ImportError):
 
 
 def import_extra(module: str, remedy: str) -> Any:
-    """Import a Python package that a plain install lacks.
+    """Import a Python package that is not part of a plain install.
 
     Raises:
         MissingDependencyError: It is not installed; the remedy says how to install it.

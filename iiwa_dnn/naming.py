@@ -4,10 +4,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 KINDS = ("position", "velocity", "acceleration", "jerk")
-"""Kinds of a joint's bound; the code of one in commands and records is its place here, from 1."""
+"""Kinds of a joint's bound; the code of one in commands and records is its position here, from
+1."""
 
 POSITION_DEPENDENT = "position-dependent velocity"
-"""The limit that is zero before a position limit, and counts in its place."""
+"""Velocity limit that is zero before a position limit, and counts in its place."""
 
 ACTIONS = {2: "slow", 3: "relax", 4: "stop", 5: "euler"}
 """Actions at a step in place of the network's answer by their codes in commands and records."""
@@ -18,11 +19,11 @@ DONE = {
     "stop": "stopped",
     "euler": "taken by Euler's method",
 }
-"""What an action does with a step."""
+"""Participles of the actions: a step is slowed."""
 
 
 def bound_words(settings: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return what a bound of each of `KINDS` is called in a run of these settings.
+    """Return the words for a bound of each of `KINDS` in a run of these settings.
 
     A bound of kind 1 may come from any limit in their ``bounding``.
     """
@@ -95,5 +96,5 @@ def short_names(settings: Mapping[str, Any]) -> list[str]:
 
 
 def unwatched(links: Iterable[str]) -> str:
-    """State which links nothing keeps clear, and why."""
+    """Report links that no collision row keeps clear, and the reason."""
     return f"nothing keeps these links clear, they have no <collision> geometry: {', '.join(links)}"

@@ -5,11 +5,11 @@ import threading
 import time
 
 _PERIOD = 0.5
-"""Time between two looks at the parent [s]."""
+"""Polling period of the parent [s]."""
 
 
 def end_with(parent: int) -> None:
-    """End this worker soon after its parent, even if the parent is killed by SIGKILL.
+    """End this worker soon after its parent, also if the parent is killed by SIGKILL.
 
     A worker that waits for work does not notice that nobody is left to send any: other workers, and
     it itself, hold the ends of its pipes open.

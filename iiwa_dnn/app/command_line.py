@@ -20,7 +20,7 @@ SETTINGS_FILE = "settings.toml"
 
 
 def shown(metavar: str, about: str = "") -> Any:
-    """Describe a word whose default, None or (), the help need not show."""
+    """Describe an option whose default, None or (), the help does not show."""
     return arg(metavar=metavar, help_behavior_hint="", help=about or None)
 
 
@@ -66,12 +66,12 @@ def guard(prog: str, run: Callable[[], int | None]) -> int:
 
 
 def _interrupt(number: int, _: object) -> None:
-    """Let a signal end the command as Ctrl-C does."""
+    """Raise KeyboardInterrupt for a signal, as Ctrl-C does."""
     raise KeyboardInterrupt(number)
 
 
 def run_script(main: Callable[..., int | None]) -> int:
-    """Call a script's function with the words of the command line, as `guard` does.
+    """Call a script's function with the options of the command line, as `guard` does.
 
     Args:
         main: The function; tyro makes an option of each annotated parameter.

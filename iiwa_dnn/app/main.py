@@ -27,7 +27,7 @@ COMMANDS: dict[str, Any] = {
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Run a command by its words; None: the words of the process.
+    """Run a command with its arguments; None: those of the process.
 
     Returns:
         The command's exit code.

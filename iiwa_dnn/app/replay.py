@@ -80,7 +80,7 @@ def robot_of(record: Record, settings: Path, name: str | None = None) -> Robot:
 
 
 def serve(title: str, host: str, port: int) -> Any:
-    """Serve an empty page that asks for nothing from elsewhere.
+    """Serve an empty page without external resources.
 
     Raises:
         MissingDependencyError: viser is not installed.

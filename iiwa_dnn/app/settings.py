@@ -1,4 +1,4 @@
-"""Settings of a run: tables of TOML and words, merged, and the arguments that they stand for.
+"""Settings of a run: tables of TOML and options, merged, and the arguments that they define.
 
 The keys of the tables are the arguments of the package's functions and classes.
 """
@@ -82,11 +82,11 @@ PARTS: Choices = {
     "plant.disturbances": Disturbances,
     "plant.disturbances.push": Push,
 }
-"""Settings that stand for objects, by table and key: what makes the object."""
+"""Factories of settings that define objects, by table and key."""
 
 
 def read_tables(options: Any) -> Tables:
-    """Merge the settings file, the words, and ``--set``: of two values the later counts.
+    """Merge the settings file, the options, and ``--set``: of two values the later counts.
 
     Raises:
         FileError: The file cannot be read.
@@ -129,7 +129,7 @@ def _read_setting(text: str) -> Tables:
 
 
 def _nested(place: str, value: Any) -> Tables:
-    """Return tables in which a value stands at ``TABLE.KEY``."""
+    """Return nested tables with a value at ``TABLE.KEY``."""
     table, _, key = place.partition(".")
     return {table: _nested(key, value)} if key else {table: value}
 
@@ -197,7 +197,7 @@ def choose(choices: Choices, table: str, values: Tables) -> Any:
 
 
 def objects(known: Collection[str], table: str, values: Tables) -> Tables:
-    """Return the values of a table, those that stand for objects made into them.
+    """Return the values of a table, with the objects that they define.
 
     Raises:
         NotFoundError: A key is none of those known.
@@ -210,7 +210,7 @@ def objects(known: Collection[str], table: str, values: Tables) -> Tables:
 
 
 def _made(place: str, value: Any) -> Any:
-    """Return what a setting stands for; errors as of `objects`."""
+    """Make the object of a setting; errors as of `objects`."""
     if place not in PARTS:
         return value
     if not isinstance(value, dict):  # of the first argument

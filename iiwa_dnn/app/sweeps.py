@@ -33,7 +33,7 @@ Names = Annotated[tuple[str, ...], shown("NAME ...")]
 
 @dataclass(frozen=True)
 class SweepWords:
-    """Words of a command that carries out many runs, and goes on where it was interrupted."""
+    """Options of a command that carries out many runs and resumes them."""
 
     out: Folder = None  # folder of the results (runs/ and the command's name)
     overwrite: Flag = False  # write over a folder that holds something else
@@ -181,5 +181,5 @@ def atlas(
 
 
 def _chosen(words: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the words that were given, those that are not None."""
+    """Return the options that were given, those that are not None."""
     return {name: value for name, value in words.items() if value is not None}

@@ -1,4 +1,4 @@
-"""``track``, ``physics`` and ``export``: a run, or its controller, from words and tables."""
+"""``track``, ``physics`` and ``export``: a run, or its controller, from options and tables."""
 
 import sys
 import warnings

@@ -1,4 +1,4 @@
-"""The words of ``track``, ``physics`` and ``export``: a table of settings, and what else they take.
+"""Options of ``track``, ``physics`` and ``export``: a table of settings, and further ones.
 
 What has no word is set by its table and key.
 """
@@ -153,17 +153,17 @@ WORDS: dict[str, tuple[str, Any, str, str]] = {
         "force on the tip at 5 s, in MuJoCo [N]",
     ),
 }
-"""Words of the commands with an arm: table and key, type, name of the value, and help."""
+"""Options of the commands with an arm: table and key, type, name of the value, and help."""
 
 OF_RUNS = frozenset(
     ("duration", "motion", "noise", "filter_window", "seed", "check", "tolerance", "plant", "push")
 )
-"""Words of a run that are no part of its controller."""
+"""Options of a run that do not concern its controller."""
 
 
 @dataclass(frozen=True)
 class Common:
-    """Words that stand for no setting."""
+    """Options that are no settings."""
 
     config: Annotated[Path | None, shown("FILE")] = None
     """settings in TOML: tables robot, reference, scheme, limits, run, plant"""
@@ -179,7 +179,7 @@ class Common:
 
 @dataclass(frozen=True)
 class OfRuns(Common):
-    """Words of a run that stand for no setting."""
+    """Options of a run that are no settings."""
 
     disturb: Flag = False
     """apply errors of mass, friction, encoders and a delay, in MuJoCo"""
@@ -188,7 +188,7 @@ class OfRuns(Common):
 
 
 def _options(name: str, base: type[Common], without: frozenset[str] = frozenset()) -> Any:
-    """Make the class of a command's options: the settings `WORDS` but some, and those of a base."""
+    """Make the class of a command's options: the settings `WORDS` without some, and a base's."""
     fields = [
         (word, Annotated[kind, shown(metavar, about)], None)
         for word, (_, kind, metavar, about) in WORDS.items()

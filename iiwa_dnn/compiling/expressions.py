@@ -153,7 +153,7 @@ def array(element: Kind | None, data: Value, sizes: Sequence[Value]) -> Value:
 
 
 def _inserted(places: Iterable[str], given: dict[str, frozenset[str]]) -> set[str]:
-    """Return places in terms of the arguments that are given for parameters."""
+    """Replace parameters by the arguments that are given for them."""
     parts = [place.partition(".") for place in places]
     return {f"{own}{dot}{rest}" for name, dot, rest in parts for own in given[name]}
 
@@ -193,7 +193,7 @@ class Expressions:
         self._kept = 0
 
     def require(self, holds: bool, node: ast.AST, problem: str) -> None:
-        """Refuse a node unless something holds."""
+        """Refuse a node unless a condition holds."""
         if not holds:
             fail(self.module, node, problem)
 
@@ -297,7 +297,7 @@ class Expressions:
         return Value(kind, text, places=frozenset([place]))
 
     def _wider(self, values: list[Value]) -> Kind:
-        """Return the type that takes all of some values; the compiler refuses what it does not."""
+        """Return the widest type of some values; the compiler refuses other combinations."""
         return next((own.kind for own in values if own.kind is FLOAT), values[0].kind)
 
     def _constant(self, node: ast.expr) -> Value:

@@ -151,7 +151,7 @@ class Kinds:
 
 
 def _part(kind: Kind, shape: list[Any], place: str, end: dict[str, int]) -> str:
-    """Return the value of a record's part at a place in C; the end of the parts moves on."""
+    """Return the value of a record's part at an offset in C, and advance the offset."""
     if kind.sizes:
         shape = [kind.sizes[""]]
     size = next((own for own in shape if isinstance(own, str)), "" if shape else "n")

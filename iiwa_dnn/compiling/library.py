@@ -1,4 +1,4 @@
-"""Kernels of the library, and the entry of kernels and of a user's functions by address."""
+"""Load kernels; call kernels and callbacks by function pointer."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def raise_failure() -> None:
 
 
 class Entry(Generic[P, R]):
-    """A call of one of several functions of the same types by its address.
+    """Calls of functions of the same types by function pointer.
 
     The function is a kernel of the package; a function of C with the flat arguments that
     CONTRIBUTING.md describes (its address, what `numba.cfunc` returns, or a function of ctypes); or
@@ -93,14 +93,14 @@ class Entry(Generic[P, R]):
         self._addresses: dict[int, tuple[int, Any]] = {}
 
     def __call__(self, *arguments: P.args, **keywords: P.kwargs) -> R:
-        """Enter the function at an address."""
+        """Call the function at an address."""
         address, *own = arguments
         if INTERPRETED and address > 0:  # type: ignore[operator]
             return cast(R, self.functions[address](*own))  # type: ignore[index]
         return cast(R, getattr(_LIBRARY, self._name)(*arguments))
 
     def address(self, function: Any) -> int:
-        """Return the address with which a function is entered.
+        """Return the function pointer of a function.
 
         Raises:
             TypeError: It is a kernel of other types, or no function.

@@ -12,7 +12,7 @@ Own = TypeVar("Own", bound="Record")
 
 
 def part(*shape: Any) -> Any:
-    """State that a member of a record is an array of one axis or two, or another record.
+    """Declare a member of a record: an array of one axis or two, or another record.
 
     Args:
         shape: Its sizes: numbers, or names of those that are stated where an array is viewed; none
@@ -72,7 +72,7 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
     @classmethod
     @cache
     def columns(cls, *sizes: int) -> dict[str, slice]:
-        """Return where each member lies."""
+        """Return the columns of each member."""
         known = dict(zip(cls.names, sizes, strict=True))
         found = {}
         start = 0

@@ -1,4 +1,4 @@
-"""Sizes that a kernel's arrays need, read from its loops, for its calls from Python.
+"""Infer the array sizes that a kernel needs from its loops, for its calls from Python.
 
 An index that is the sum of a loop variable, sizes and arguments has a largest value that is known
 before the kernel runs: an array that ends below it is refused. Indices that depend on data, or that
@@ -32,11 +32,11 @@ class Extent(NamedTuple):
 
 
 Known = Extent | list[str] | dict[str, "Known"] | None
-"""What is known of a value before a kernel runs: of an array its sizes, of a tuple its members."""
+"""Known value before a kernel runs: of an array its sizes, of a tuple its members."""
 
 
 def known_of(kind: Kind, place: str) -> Known:
-    """Return what is known of an argument at a place in C."""
+    """Return the known sizes of an argument by its name in C."""
     if kind.axes:
         return [f"{place}.size{axis}" for axis in range(kind.axes)]
     if kind.is_named:
@@ -86,7 +86,7 @@ class Reading:
                     self._parts(node)
 
     def _know(self, target: ast.expr, found: Known) -> None:
-        """Remember what is known of a variable that is written once, or of several."""
+        """Store the known value of a variable that is written once, or of several."""
         if isinstance(target, ast.Tuple) and isinstance(found, dict):
             for each, member in zip(target.elts, found.values(), strict=True):
                 self._know(each, member)
@@ -109,7 +109,7 @@ class Reading:
             self._value(child)
 
     def _value(self, node: ast.AST) -> Known:
-        """Return what is known of an expression; note what is needed to compute it."""
+        """Return the known value of an expression; note the sizes that it needs."""
         match node:
             case ast.Constant(value=int() as number):
                 return Extent(str(number), str(number))
@@ -132,7 +132,7 @@ class Reading:
         return None
 
     def _element(self, owner: Known, index: ast.expr) -> Known:
-        """Return what is known of an element or a part; note what an index into an array needs."""
+        """Return the known value of an element or a part; note the size that an index needs."""
         if isinstance(owner, dict):
             return owner.get(ast.unparse(index))
         if not isinstance(owner, list):
@@ -164,7 +164,7 @@ class Reading:
                 self.needs[need] = None
 
     def _called(self, function: ast.expr, arguments: list[Known]) -> Known:
-        """Return what is known of the result of a call; note what a kernel that is called needs."""
+        """Return the known value of a call; note the sizes that the called kernel needs."""
         if isinstance(function, ast.Attribute):
             self._value(function.value)
             sizes = [each.high for each in arguments if isinstance(each, Extent)]
@@ -183,7 +183,7 @@ class Reading:
 
 
 def _member(owner: Known, name: str) -> Known:
-    """Return what is known of a member of a tuple, or of an array's size and shape."""
+    """Return the known value of a member of a tuple, or of an array's size and shape."""
     if isinstance(owner, dict):
         return owner.get(name)
     if isinstance(owner, list) and name == "size":
@@ -194,7 +194,7 @@ def _member(owner: Known, name: str) -> Known:
 
 
 def _combined(left: Known, op: type[ast.operator], right: Known) -> Known:
-    """Return what is known of a sum, a difference or a product, of which one factor is constant.
+    """Return the range of a sum, a difference or a product with a constant factor.
 
     Two that vary may not reach their largest values at once.
     """

@@ -84,7 +84,7 @@ class Translator:
         return "\n".join(parts)
 
     def constant(self, name: str, own: Any, shape: Sequence[int] = ()) -> Value:
-        """Write a constant, a number or a sequence of numbers; return its place.
+        """Write a constant, a number or a sequence of numbers; return its value in C.
 
         Raises:
             TranslationError: Another constant has the name.
@@ -178,7 +178,7 @@ class Function(Expressions):
         return f"{''.join(kind.code for kind in self.parameters.values())}:{self.result.code}"
 
     def room(self, rooms: Iterable[str]) -> str:
-        """Return which of the package's folders the function comes from, or nothing."""
+        """Return the subpackage that the function comes from, or nothing."""
         words = self.module.name.split(".")
         is_own = words[0] == self.translator.package.folder.name and words[1] in rooms
         return words[1] if is_own else ""
@@ -288,7 +288,7 @@ class Function(Expressions):
         self.lines[before:before] = declared
 
     def _join(self, closed: int, orelse: list[ast.stmt]) -> None:
-        """Write what is done otherwise in the line of the brace before it, and so a condition."""
+        """Write an `else`, or an `else if`, on the line of the closing brace before it."""
         first, *inner = self.lines[closed:]
         is_alone = isinstance(orelse[0], ast.If) and len(orelse) == 1
         if is_alone and inner[0].startswith("    if ("):
@@ -297,7 +297,7 @@ class Function(Expressions):
         self.lines[closed - 1 :] = [f"}} {first}", *inner]
 
     def _return(self, node: ast.expr | None) -> None:
-        """Return a value, and give back what the function has taken."""
+        """Return a value, and release the memory that the function has taken."""
         own = self.value(node).converted(self.result) if node else Value(VOID, "")
         self.aliases.setdefault("return", set()).update(own.places)
         if self._takes and not re.fullmatch(r"[\w.-]*", own.text):
@@ -385,7 +385,7 @@ def _arrays(kind: Kind, place: str = "") -> Iterator[str]:
 
 
 def _numbered(own: Function, parts: list[Function]) -> str:
-    """Write the function that enters one of an exported text's parts by its number."""
+    """Write the function that calls one of an exported text's parts by its number."""
     address, *names = map(c_word, own.parameters)
     back = "return " * (own.result is not VOID)
     lines = []
@@ -399,7 +399,7 @@ def _numbered(own: Function, parts: list[Function]) -> str:
 
 
 def _entry(own: Function) -> str:
-    """Write the function that enters one of several functions of its types by its address.
+    """Write the function that calls a function of its types by its address.
 
     A function of a user's has a negative one: it takes numbers as they are, an array as its pointer
     and its sizes, and a named tuple as its members; a tuple's numbers go to a last pointer.

@@ -11,7 +11,7 @@ LARGEST = 2.0**20
 """Angle [rad] beyond which the reduction is coarser, and joint positions are refused."""
 
 FARTHEST = 2.0**50
-"""Angle [rad] from which on the last place is worth turns: it counts as 0."""
+"""Angle [rad] above which rounding exceeds a turn: it counts as 0."""
 
 QUARTERS = 2.0 / 3.141592653589793
 TURN = 2.0 * 3.141592653589793

@@ -1,4 +1,4 @@
-"""An exported controller, compiled and loaded: C's step in Python."""
+"""Compile and load an exported controller, to call its step in C from Python."""
 
 from __future__ import annotations
 

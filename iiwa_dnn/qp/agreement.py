@@ -34,10 +34,11 @@ from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector
 from iiwa_dnn.qp.program import QP, field_slices
 
 USUAL = 1e3
-"""Largest coefficient of a cost or a row, or one over it, up to which it is taken as it is."""
+"""Largest coefficient of a cost or a row, or its inverse, up to which it is not scaled."""
 
 _ACTIVE = 1e-6
-"""Multiplier above which a row or bound is held, relative to the largest one if that is above 1."""
+"""Multiplier above which a row or bound is active, relative to the largest one if that is above
+1."""
 
 _FLAT = 1e-8
 """Eigenvalue of S, relative to the largest, up to which x is free along its eigenvector."""

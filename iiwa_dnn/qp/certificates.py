@@ -39,7 +39,7 @@ RADIUS = 1e8
 
 _EPS = 2.0**-52
 _TINY = 2.0**-900
-"""Much more than underflow takes from a term."""
+"""Bound on the underflow of a term."""
 _SLIGHT = 1e-5
 """Fraction of the largest entry below which a row takes no part in a polish."""
 _MULTIPLES = np.arange(1.0, 61.0)
@@ -51,7 +51,7 @@ _SPLIT = 2.0**27 + 1.0
 
 
 def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
-    """Look for a proof that there is no solution near, where a network has diverged.
+    """Search for a certificate that there is no solution near, where a network has diverged.
 
     Its multipliers grow along Farkas multipliers, or x along a direction of recession. Least
     squares on the rows that take part removes what is left of the residuals, and where the entries

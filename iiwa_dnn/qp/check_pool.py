@@ -15,14 +15,14 @@ from iiwa_dnn.qp.crosscheck import PROOF, CrossCheck
 from iiwa_dnn.qp.layout import Matrix, Sizes
 
 _WORTH_A_PROCESS = 10_000
-"""Programs from which on a worker's start, about a second, is repaid."""
+"""Number of programs from which on a worker process saves time; its start takes about a second."""
 
 _QUEUED = 2
-"""Blocks that a worker has before it: one in work, one waiting. More would only take memory."""
+"""Blocks queued per worker: one in work, one waiting. More would only take memory."""
 
 
 class CheckPool:
-    """Judges blocks of programs while others are still being made.
+    """Worker processes that check blocks of programs while a run makes others.
 
     A block goes to a worker process that is free; if none is, the caller's own process
     judges it at once.

@@ -1,4 +1,4 @@
-"""Cross-check of an answer: the same program, put to an established solver, or a proof.
+"""Cross-check of an answer by an established solver for the same program, or by a proof.
 
 A reference gets the program, in units near 1, and nothing of the network's state, and is believed
 only where its own KKT residual is small. If the one that was asked has no such answer, a second one

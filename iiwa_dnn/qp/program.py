@@ -52,7 +52,7 @@ FIELDS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
 
 @lru_cache
 def field_slices(sizes: Sizes) -> list[tuple[slice, tuple[int, ...]]]:
-    """Return place and shape of each field in `QP.data`."""
+    """Return slice and shape of each field in `QP.data`."""
     n, m, p = sizes
     shapes: list[tuple[int, ...]] = [(n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,)]
     ends = np.cumsum([0, *map(math.prod, shapes)]).tolist()
@@ -225,7 +225,7 @@ class QP:
         return is_accepted(self.data, n, m, p, point, total, eps_abs, eps_rel)
 
     def check_values(self) -> None:
-        """Check for values that no convex solver could make sense of.
+        """Check the numbers, and that the program is convex.
 
         Raises:
             InvalidInputError: As `check_numbers`; or P is not symmetric, each pair of entries to

@@ -50,11 +50,11 @@ if TYPE_CHECKING:
 Mask = NDArray[np.bool_]
 
 ROUNDS = 5
-"""Active sets that are tried, each out of the signs of the one before."""
+"""Number of active sets that are tried, each from the signs of the one before."""
 
 _ROUNDING = 2.0**-53
 _TINY = 1e-290
-"""Bound on what underflow takes from a sum."""
+"""Bound on the underflow of a sum."""
 _FRACTION = 0.9
 """Fraction of the smallest eigenvalue that is shown as the curvature."""
 

@@ -24,7 +24,7 @@ SOLVE: list[Callable[..., qpsolvers.Solution]] = []
 
 
 class Status(str, Enum):
-    """The end of a solve."""
+    """Outcome of a solve."""
 
     SOLVED = "solved"
     """Every entry of the residuals is at most its tolerance."""

@@ -24,7 +24,7 @@ Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
 
 @entry
 def enter_path(address: int, t: float, constants: Array, target: TargetData) -> None:
-    """Enter a path's function at an address; it moves the target to time t [s]."""
+    """Call a path's function by its address; it moves the target to time t [s]."""
 
 
 SHORTEST = 1.0
@@ -39,7 +39,7 @@ Pose = FrameState | Target
 
 
 class Reference(ABC):
-    """A path for a frame: positions, and the turns of its orientation if it has any.
+    """Path of a frame: positions, and orientations if it turns.
 
     A subclass is a frozen dataclass of the path's parameters with a compiled function, `path`, or
     with a method `move` in Python. Either takes a target in place from the path's origin, at rest,
@@ -158,7 +158,7 @@ def soft_clock(t: float, begin: float) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class SoftStart(Reference):
-    r"""A path that would begin at speed, and begins at rest by a change of its clock.
+    r"""A path that begins at rest by a change of its clock.
 
     Until t = begin the path's own time s rises with u = t / begin as
 

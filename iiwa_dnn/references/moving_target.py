@@ -80,7 +80,7 @@ class MovingTarget(Reference):
 def approach(
     target: TargetData, goal: TargetData, elapsed: float, speed: float, rate: float
 ) -> None:
-    """Move a target towards a goal as far as it comes in a time, and set its twist.
+    """Move a target towards a goal at limited speed for a time, and set its twist.
 
     Args:
         target: The target, overwritten.
@@ -101,7 +101,7 @@ def approach(
 
 @compiled
 def _paced(path: Array, fastest: float, elapsed: float) -> float:
-    """Turn a path (3,) into the velocity along it; return the ratio covered after a time [s]."""
+    """Replace a displacement (3,) by a velocity; return the fraction covered in a time [s]."""
     length = np.sqrt(dot(triple(path), triple(path)))
     arrived = length <= max(fastest * elapsed, ARRIVED)
     velocity = 0.0 if arrived else fastest / length

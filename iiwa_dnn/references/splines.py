@@ -124,7 +124,7 @@ def _limited(
     closed: bool,
     limited: bool,
 ) -> Spline:
-    """Exchange slopes at the ends of pieces that offend, until none does.
+    """Replace slopes at the ends of pieces that overshoot, until none does.
 
     Args:
         cubic: Pieces of the cubic spline along k axes, (3 or 4, p, k, 3 / k).
@@ -177,7 +177,7 @@ def _segments(times: Array, exchanged: Mask, closed: bool) -> Iterator[tuple[Arr
 
 @np.errstate(all="ignore")
 def _excursions(pieces: Array, lengths: Array) -> Array:
-    """Compute how far cubics (3 or 4, p, k, 3 / k) leave the span of their ends, (p, k)."""
+    """Compute the overshoot of cubics (3 or 4, p, k, 3 / k) beyond their ends, (p, k)."""
     powers = np.array([3, 2, 1]).reshape(3, 1, 1, 1)
     a, b, slope = pieces[:3] * lengths[:, np.newaxis, np.newaxis] ** powers
     # The zeros of the derivative, without cancellation; a monotone cubic has none.

@@ -45,7 +45,7 @@ Interpolation = Literal["limited", "cubic"]
 _COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
 
 SLOW = 1e-3
-"""Largest speed [m/s, rad/s] of a path whose times look as if they were not in seconds."""
+"""Speed [m/s, rad/s] of a path below which its times are likely not in seconds."""
 
 _CLOSED_WITHIN = 1e-9  # [rad]
 
@@ -242,7 +242,7 @@ class Waypoints(Reference):
         return turns
 
     def _remarks(self, splines: dict[str, Spline]) -> Iterator[str]:
-        """State what smoothing has moved, and where the acceleration jumps, by unit."""
+        """Report the displacement by smoothing, and rows where the acceleration jumps, by unit."""
         for done, moved, unit in (("moved", self.moved, "mm"), ("turned", self.turned, "mrad")):
             if moved.any():
                 yield (
@@ -307,7 +307,7 @@ class Waypoints(Reference):
         return made
 
     def _load_warnings(self, unread: list[str]) -> Iterator[str]:
-        """State what of a file is not read, slow, or an end of dense rows at speed."""
+        """Report columns that are not read, times that are not in seconds, and ends at speed."""
         if unread:
             yield f"columns that are not read: {', '.join(unread)}"
         steps = np.diff(self.times)
@@ -367,7 +367,7 @@ def _read(path: str | os.PathLike[str]) -> tuple[Array, list[str]]:
 
 
 def _header(lines: Iterator[tuple[int, str]]) -> tuple[list[str], str]:
-    """Go to the header; return the names of the columns and what is between them."""
+    """Read the header; return the names of the columns and their separator."""
     for _, line in lines:
         header = line.lstrip("# ").partition("#")[0]
         delimiter = ";" if ";" in header else ","

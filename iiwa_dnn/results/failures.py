@@ -1,4 +1,4 @@
-"""The reasons why a run is not a success, in plain words, from its metrics."""
+"""Reasons why a run is not a success, from its metrics."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -45,7 +45,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
 
 
 def unlimited(metrics: Mapping[str, Any], named: bool) -> Iterator[str]:
-    """Name what went beyond the robot's own limits, not limited or to a larger number.
+    """Report what exceeded the robot's own limits, where the run had none or larger ones.
 
     Args:
         metrics: The metrics.
@@ -184,7 +184,7 @@ def _unsolved(metrics: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _crosscheck(check: Mapping[str, Any], steps: int) -> Iterator[str]:
-    """Report disagreements, and what the references could not judge."""
+    """Report disagreements, and steps that the references could not judge."""
     first = check["first_disagreement"]
     if first is not None:
         said = GAPS[first.get("quantity", "solution_gap")].format(

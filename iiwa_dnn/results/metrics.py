@@ -1,4 +1,4 @@
-"""The numbers that sum up a run: pure functions of its record."""
+"""Metrics of a run: pure functions of its record."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping
@@ -21,7 +21,7 @@ EXCESS_TOLERANCE = 1e-9
 """Excess of a command over the bounds and rows of its own step that is rounding."""
 
 BOUNDS = "bounds"
-"""Name of what judges a command beside its step's own bounds and rows."""
+"""Name of the check of a command by its step's own bounds and rows."""
 
 SETTLED_AFTER = 0.5
 """Time until an arm in physics has settled [s]; it starts at rest, its weight unknown."""
@@ -126,7 +126,7 @@ def _excesses(record: Record) -> dict[str, Array]:
 
 @np.errstate(invalid="ignore")
 def beyond_robot(record: Record) -> dict[str, dict[str, Any]]:
-    """State how far the joints went beyond the robot's own limits, by `OWN_LIMITS`.
+    """Compute the excess of the joints over the robot's own limits, by `OWN_LIMITS`.
 
     What the run kept within them, and what the robot does not limit, is left out. ``limited`` is
     the run's limit, None for none; ``named`` tells whether somebody gave one, or none.
@@ -398,4 +398,4 @@ FURTHER: dict[str, tuple[str, Callable[[Record], dict[str, Any]]]] = {
     "frames": ("frame_position", _frames),
     "collisions": ("distance", _collisions),
 }
-"""Metrics that not every run has: the column that they are of, and what sums it up."""
+"""Optional metrics: their column, and the function that computes them."""

@@ -104,7 +104,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def envelope(t: Array, curve: Array, buckets: int = BUCKETS) -> tuple[Array, Array, Array, Array]:
-    """Sum up a curve (M,) over times [s] (M,) in stretches of equal length; no spike is lost.
+    """Reduce a curve (M,) over times [s] (M,) to the extremes of stretches of equal length.
 
     Returns:
         Mean time, and mean, least and greatest value of each stretch, (min(M, buckets),) each.

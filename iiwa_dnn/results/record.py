@@ -77,7 +77,7 @@ class Column(NamedTuple):
 
 
 ABSENT: Any = ()
-"""Value of a column of which a run has nothing."""
+"""Value of an absent column."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

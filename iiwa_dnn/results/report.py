@@ -1,4 +1,4 @@
-"""The texts about a run, of one list of rows: the summary on the terminal, and report.md."""
+"""Texts about a run, from one list of rows: the summary on the terminal, and report.md."""
 
 import os
 import platform
@@ -50,7 +50,7 @@ _RESULTS = (
     ("steps with a clipped command", "incidents.clipped_steps", ""),
     *((f"steps {word}", f"incidents.{own}_steps", "") for own, word in DONE.items()),
 )
-"""Rows of results: quantity, place in the metrics, and unit."""
+"""Rows of results: quantity, key path in the metrics, and unit."""
 
 _MOST = 6
 """Limits of each kind that have a row of their own, and entries of a long list that are shown."""
@@ -162,7 +162,7 @@ def _limits(incidents: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
 
 
 def _at(metrics: Mapping[str, Any], key_path: str) -> Any:
-    """Return the metric at a place, ``crosscheck.tolerance``; None if there is none."""
+    """Return the metric at a key path, ``crosscheck.tolerance``; None if there is none."""
     found: Any = metrics
     for key in key_path.split("."):
         found = (found or {}).get(key)
@@ -170,7 +170,7 @@ def _at(metrics: Mapping[str, Any], key_path: str) -> Any:
 
 
 def verdict(metrics: Mapping[str, Any]) -> list[str]:
-    """State the reasons of a failure, or the success no stronger than the check; and warn.
+    """State the reasons of a failure, or a success no stronger than the check, and warnings.
 
     Limits that were not to hold, and by how much the run went beyond them, come first.
     """

@@ -14,7 +14,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import one_line
 
 BEYOND = 100.0
-"""Half an edge of the cube that stands for a half-space [m]."""
+"""Half an edge of the cube that represents a half-space [m]."""
 
 
 class PlacedBox(NamedTuple):
@@ -43,7 +43,7 @@ def box_around(a: ArrayLike, b: ArrayLike) -> PlacedBox:
 
 @dataclass(frozen=True, kw_only=True)
 class Obstacle(ABC):
-    """A convex shape that stands still or moves without turning.
+    """A convex shape that is fixed, or moves without turning.
 
     Attributes:
         velocity: Constant velocity [m/s], (3,).

@@ -16,7 +16,7 @@ from iiwa_dnn.robot.arms import STARTS
 from iiwa_dnn.robot.start import best_start
 
 _NO_LIMIT = 1e300
-"""Limit from which on Pinocchio means none [rad, rad/s]."""
+"""Value above which a limit of Pinocchio's means none [rad, rad/s]."""
 
 _LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
 """Rows of `Robot.limits`, and the arguments of `Robot.with_limits`."""

@@ -1,4 +1,4 @@
-"""Start postures of arms that are not known by name."""
+"""Start postures of arms without a known one."""
 
 from __future__ import annotations
 

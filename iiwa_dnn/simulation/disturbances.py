@@ -39,7 +39,7 @@ class Push:
 
 @dataclass(frozen=True)
 class Disturbances:
-    """Differences between the arm and the controller's idea of it.
+    """Differences between the arm and the controller's model of it.
 
     Attributes:
         mass_error: Relative error of the moving links' masses and inertias: each is too heavy or

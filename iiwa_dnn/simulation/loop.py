@@ -65,7 +65,7 @@ class Loop:
     def __init__(
         self, controller: Controller, plant: Plant, chain: SignalChain, method: Method, q0: Vector
     ) -> None:
-        """Bring the parts together.
+        """Take controller, plant and signal chain.
 
         Args:
             controller: The controller.

@@ -46,7 +46,7 @@ class Method(NamedTuple):
 
     @property
     def stages(self) -> int:
-        """Number of velocities that it asks for in one step."""
+        """Number of its stages."""
         return len(self.nodes)
 
     def step(self, velocity: VelocityField, q: Vector, t: float, dt: float) -> Vector:

@@ -1,4 +1,4 @@
-"""The recorder of a run: collects the outcomes of a loop and makes the arrays of a record."""
+"""Recorder of a run: collect the outcomes of a loop into the arrays of a record."""
 
 from typing import Any
 
@@ -151,7 +151,7 @@ class Recorder:
         return self.arrays[name]
 
     def _add_incident(self, k: int, outcome: Outcome) -> None:
-        """Note what did not go as planned in step k."""
+        """Record the action, clipping and limits of step k."""
         for name, values in (("torque", outcome.torque), ("sent", outcome.sent)):
             if values is not None:
                 self._array(name)[k] = values
@@ -169,7 +169,7 @@ class Recorder:
             self._array("limiting_rows", m=sides.size)[k] = sides
 
     def _add_kinds(self, k: int, command: Command) -> None:
-        """Note of what kind the active bounds are in step k."""
+        """Record the kinds of the active bounds in step k."""
         tol = self._controller.solver.tol
         multipliers, _ = self.layout.multipliers(command.data, tol)
         if multipliers.any():

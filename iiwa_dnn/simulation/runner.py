@@ -1,4 +1,4 @@
-"""A run: controller, plant, noise and check in one loop, which ends in a Record."""
+"""Simulation of a run: controller, plant, noise and check in one loop."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ BLOCK = 1000
 """Steps between two hand-overs to the record and to the check."""
 
 MAX_STEPS = 20_000_000
-"""More would not fit into the memory of a usual machine: a record takes 0.4 kB a step."""
+"""Largest number of steps of a run, for memory: a record takes 0.4 kB a step."""
 
 _PACKAGES = ("iiwa-dnn", "numpy", "pin", "qpsolvers", "proxsuite", "osqp")
 
@@ -66,7 +66,7 @@ def simulate(
     seed: int = 0,
     progress: Callable[[int], object] = lambda steps: None,
 ) -> Record:
-    """Let a robot follow a reference, each step's program solved by the network and checked.
+    """Simulate a robot that follows a reference, each step's program solved and checked.
 
     The same seed gives the same record, bit for bit, but for the last digits of the gap to ProxQP,
     which does not repeat itself.

@@ -1,1 +1,1 @@
-"""The paper's experiments: what is run for each table, and what becomes of the runs' numbers."""
+"""The paper's experiments, the atlas of networks, and their tables."""

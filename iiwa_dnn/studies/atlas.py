@@ -120,7 +120,7 @@ floor that hides a network's own error."""
 
 
 def _along(course: Callable[[Vector], Vector]) -> Callable[[np.random.Generator, Vector], Matrix]:
-    """Return a noise of a course in time, that a seed gives a direction."""
+    """Return a noise of given time course, along a direction drawn by a seed."""
 
     def draw(rng: np.random.Generator, times: Vector) -> Matrix:
         direction = rng.standard_normal(STATES) / np.sqrt(7.0)
@@ -342,7 +342,7 @@ def _imported(name: str) -> ModuleType:
 
 @dataclass(frozen=True)
 class Cell:
-    """All runs of a combination.
+    """A combination of settings, whose runs differ by their seed.
 
     Attributes:
         network: Name of the network.
@@ -492,7 +492,7 @@ def measure(cell: Cell) -> dict[str, Any]:
 
 
 def evaluations_within(entry: Entry, sizes: Sizes, work: float) -> int:
-    """Count the evaluations that a number of operations a control period allows.
+    """Return the number of evaluations within a number of operations per control period.
 
     Raises:
         InvalidInputError: Not even one is possible.
@@ -505,7 +505,7 @@ def evaluations_within(entry: Entry, sizes: Sizes, work: float) -> int:
 
 
 def _run(cell: Cell, seed: int) -> dict[str, Any]:
-    """Drive the arm once.
+    """Carry out one run.
 
     Raises:
         IiwaDnnError: The network has diverged, or the tool is 1 m away from its target.

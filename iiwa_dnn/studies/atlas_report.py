@@ -34,7 +34,7 @@ A number in brackets counts runs that failed; a network that lost one has no pla
 
 
 class Claim(NamedTuple):
-    """A claim that one network is better than another, as papers make it.
+    """A published claim that one network is better than another.
 
     Attributes:
         text: The claim.
@@ -270,7 +270,7 @@ def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
 def _league(
     rows: Sequence[Row], ranking: Mapping[str, str], show: Callable[[Row], str]
 ) -> list[list[str]]:
-    """Lay out what is shown of every network and disturbance, the best network first."""
+    """Lay out the results of every network and disturbance, the best network first."""
     lines = []
     for name, rank in ranking.items():
         found = of_every_disturbance(rows, name)
@@ -280,7 +280,7 @@ def _league(
 
 
 def _shown(row: Row, measure: str = "residual") -> str:
-    """Show the mean of a row, and how many of its runs were lost."""
+    """Format the mean of a row, and its number of failed runs."""
     mean = row["mean"][measure]
     lost = f" ({row['lost']} of {row['seeds']})" if row["lost"] else ""
     return ("–" if mean is None else f"{mean:.2e}") + lost

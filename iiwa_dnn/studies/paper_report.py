@@ -59,7 +59,7 @@ _LIMITS = """\
 
 
 def report(tables: Mapping[str, Table], head: Mapping[str, str], figures: Iterable[str]) -> str:
-    """Put the tables that are there into Markdown.
+    """Write the available tables in Markdown.
 
     Args:
         tables: Tables by their names in `paper_tables.EXPERIMENTS`.
@@ -166,14 +166,14 @@ _SECTIONS: dict[str, Callable[[Table], list[str]]] = {
 
 
 def _change(change: Mapping[str, Any]) -> str:
-    """Show a relative change in per cent, with its interval, and its verdict."""
+    """Format a relative change in per cent, with its interval, and its verdict."""
     mean, low, high = (100.0 * change[key] for key in ("mean", "low", "high"))
     interval = f" [{low:+.2f}, {high:+.2f}]" if change["samples"] > 1 else ""
     return f"{mean:+.2f} %{interval}: {change['verdict']}"
 
 
 def _interval(estimate: Mapping[str, Any]) -> str:
-    """Show a mean with the ends of its interval; an exact value alone."""
+    """Format a mean with the ends of its interval; an exact value alone."""
     if estimate["samples"] == 1:
         return _short(estimate["mean"])
     return f"{estimate['mean']:.4g} [{estimate['low']:.4g}, {estimate['high']:.4g}]"

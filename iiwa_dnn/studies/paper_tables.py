@@ -1,4 +1,4 @@
-"""The paper's tables beside ours: Table I, laps, Table II, and what the paper leaves open."""
+"""The paper's tables beside ours: Table I, laps, Table II, and ablations."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -40,7 +40,7 @@ DRIFTERS: dict[str, HeartRun] = {
     "double indicator, ξ = 0.2, SO(3)": _LAPS,
     "double indicator, ξ = 0.2, position only": replace(_LAPS, orientation="none"),
 }
-"""Runs that draw one heart after another."""
+"""Runs along several hearts."""
 
 # Eight sub-steps are what is computed to be stable along the whole heart; to compute it at every
 # step takes time.
@@ -154,7 +154,7 @@ def _measure(
 
 
 def _relative(difference: Estimate, base: float) -> Estimate:
-    """Relate a difference to the mean that it is a change of."""
+    """Divide a difference by the mean that it is a change of."""
     return Estimate(difference.mean / base, difference.half_width / base, difference.samples)
 
 

@@ -1,4 +1,4 @@
-"""One run of the paper's heart, and the numbers that are kept of it.
+"""One run of the paper's heart, and its metrics.
 
 `measure` is the task of the sweeps: its result depends on the `HeartRun` alone.
 """
@@ -83,7 +83,7 @@ FULL = Scope()
 """The paper's experiments at full length, over 100 seeds."""
 
 QUICK = Scope(duration=1.0, seeds=5, laps=2, laps_dt=1e-2)
-"""The same with the first second of each run: to see that all works, not to compare with."""
+"""The same with the first second of each run: a smoke test, not for comparison."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Resumable grids of runs: joblib carries them out and keeps what is finished.
+"""Resumable grids of runs, computed by joblib, which stores finished cells.
 
 A finished cell is a file of `joblib.Memory`, found by the hash of its task, its settings and all
 else that its result depends on (`fingerprint`). A sweep that was killed, even by ``kill -9``, finds
@@ -54,7 +54,7 @@ def sweep(
     dask: str | None = None,
     quiet: bool = False,
 ) -> list[Any]:
-    """Compute the cells that are not there yet, and return the results of all, in their order.
+    """Compute the cells without stored results; return the results of all, in their order.
 
     Args:
         task: Function of a module, so that a worker can import it; its result must depend on

@@ -1,4 +1,4 @@
-"""Plants: what moves under the controller's velocity commands."""
+"""Plants: robots that move under the controller's velocity commands."""
 
 from iiwa_dnn.simulation.plants.base import (
     IdealPlant as IdealPlant,

@@ -1,4 +1,4 @@
-r"""From a commanded joint velocity to joint torques, at the rate of the physics.
+r"""Torque control of commanded joint velocities, at the rate of the physics.
 
 The control law is computed torque on the *nominal* model,
 
@@ -37,7 +37,7 @@ _FASTEST = 1e6  # observed joint velocity from which on the loop counts as diver
 
 @dataclass(frozen=True)
 class TorqueGains:
-    """Stiffness of the torque loop.
+    """Gains of the torque loop.
 
     Attributes:
         bandwidth: Bandwidth of the position error [rad/s].
