@@ -167,8 +167,8 @@ def stretched(x: Vector, before: Vector, limits: MotionNumbers, dt: float, perio
     while i < x.size and periods < LONGEST:
         change = next_velocity(x[i], before[i], periods, True) - x[i]
         jerk = abs(change - x[i] + before[i]) / dt
-        share = max(abs(change) / limits.acceleration[i], jerk / limits.jerk[i])
-        if share <= dt * (1.0 + SLACK):
+        fraction = max(abs(change) / limits.acceleration[i], jerk / limits.jerk[i])
+        if fraction <= dt * (1.0 + SLACK):
             i += 1
         else:
             periods *= STRETCH
@@ -388,9 +388,9 @@ def stopping_time(
         _write_coefficients(dq, before, periods, vary, coefficient)
     # Where periods vary, the first may be the longest and the others as short as can be.
     uneven = UNEVEN if vary else 0.0
-    share = yielding.periods.fraction
-    motion = Motion(dq, coefficient, periods + vary, yielding.cubic, uneven, share < 1.0)
-    dt = dt / share
+    fraction = yielding.periods.fraction
+    motion = Motion(dq, coefficient, periods + vary, yielding.cubic, uneven, fraction < 1.0)
+    dt = dt / fraction
     if support and not keeps_joint_limits(motion, q, limits, dt):
         return -1.0
     for k in range(len(yielding.scenes)):

@@ -48,7 +48,7 @@ TEMPLATES = _PACKAGE / "export" / "templates"
 """Templates of the files, in a folder for each kind of export."""
 
 WIDTH = 120
-"""Letters of a line of C at most."""
+"""Largest length of a line of C."""
 
 _SECTIONS = {
     "compiling": "Sine and cosine",
@@ -64,7 +64,7 @@ _SECTIONS = {
 
 
 def filled(template: str, values: dict[str, Any]) -> str:
-    """Return a template with values in the places of their names."""
+    """Fill the values into a template by their names."""
     text = (TEMPLATES / template).read_text(encoding="utf-8")
     text = re.sub(r"@(\w+)@", lambda found: str(values[found[1]]), text)
     if not template.endswith((".c", ".h")):
@@ -74,7 +74,7 @@ def filled(template: str, values: dict[str, Any]) -> str:
 
 
 def wrapped(line: str) -> list[str]:
-    """Break a line of C that is too long, each time where it is nested least."""
+    """Wrap a line of C that is too long, where it is nested least."""
     lines = []
     indent = " " * (len(line) - len(line.lstrip()) + 4)
     while len(line) > WIDTH:
@@ -298,7 +298,7 @@ class _Code:
         return own.initializer if isinstance(own, Value) else own
 
     def _value(self, path: str, own: Any) -> Value | str:
-        """Write what does not live in the struct as a constant; return its place or initializer."""
+        """Write values outside of the struct as constants; return their address or initializer."""
         field = self._fields.get(path.rpartition(".")[2])
         if field:
             return f"{{{', '.join([field, *map(str, own.shape)])}}}"

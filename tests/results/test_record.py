@@ -104,8 +104,8 @@ def test_a_file_of_before_the_fields_words_is_read(tmp_path):
     make_record(limiting=limiting).save(tmp_path / "now.npz")
     with np.load(tmp_path / "now.npz") as stored:
         arrays = dict(stored)
-    arrays["limiting"] = arrays.pop("limiting")
-    arrays["limiting_rows"] = arrays.pop("limiting_rows")
+    arrays["blocking"] = arrays.pop("limiting")
+    arrays["blocking_rows"] = arrays.pop("limiting_rows")
     np.savez(tmp_path / "before.npz", **arrays)
     read = Record.load(tmp_path / "before.npz")
     np.testing.assert_array_equal(read.limiting, limiting)
