@@ -5,9 +5,9 @@ which is the name of the caller's own argument.
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from numbers import Integral, Real
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +20,30 @@ Matrix = NDArray[np.float64]
 Vector3 = tuple[float, float, float]
 T = TypeVar("T")
 _FLOAT = np.dtype(np.float64)
+
+Checks = Mapping[str, Callable[[str, Any], Any]]
+"""Checks of parameters by their names: functions such as those of this module."""
+
+
+class Checked:
+    """Base of frozen dataclasses that check their parameters.
+
+    A wrong one raises an `InvalidInputError` that names it.
+    """
+
+    _checks: ClassVar[Checks] = {}
+
+    def __post_init__(self) -> None:
+        """Check and convert the parameters that are given."""
+        for kind in type(self).__mro__:
+            for name, check in vars(kind).get("_checks", {}).items():
+                if getattr(self, name) is not None:
+                    self._set(**{name: check(name, getattr(self, name))})
+
+    def _set(self, **values: Any) -> None:
+        """Set attributes of a frozen dataclass."""
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
 
 
 def finite(argument: str, value: object) -> float:

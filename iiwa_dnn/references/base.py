@@ -5,14 +5,24 @@ from __future__ import annotations
 import copy
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass, field, fields, is_dataclass
+from functools import cached_property
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.checks import Array, finite, finite_array, not_negative, offers, positive, read_only
+from iiwa_dnn.checks import (
+    Array,
+    Checked,
+    Checks,
+    finite,
+    finite_array,
+    not_negative,
+    offers,
+    positive,
+    read_only,
+)
 from iiwa_dnn.compiling.library import compiled, entry
 from iiwa_dnn.files import plain
 from iiwa_dnn.references.rotations import set_mean_twist
@@ -38,7 +48,7 @@ Pose = FrameState | Target
 """A pose to anchor a reference at: a `Configuration`, a frame of it, or a target."""
 
 
-class Reference(ABC):
+class Reference(Checked, ABC):
     """Path of a frame: positions, and orientations if it turns.
 
     A subclass is a frozen dataclass of the path's parameters with a compiled function, `path`, or
@@ -48,22 +58,16 @@ class Reference(ABC):
 
     Attributes:
         path: Kernel or other function ``path(t, constants, target)``, on a `TargetData`.
-        constants: Constants of `path`, shape (c,).
         base: Target at the origin, at rest, `Target.data` (18,), read-only.
     """
 
     path: ClassVar[Any]
-    constants: Array = read_only(np.zeros(0))
     base: Array = AT_REST
 
-    def _set(self, **values: Any) -> None:
-        """Set checked parameters of a frozen dataclass."""
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
-
-    def _check(self, **checks: Callable[[str, Any], Any]) -> None:
-        """Replace parameters of a frozen dataclass by what their checks return."""
-        self._set(**{name: check(name, getattr(self, name)) for name, check in checks.items()})
+    @cached_property
+    def constants(self) -> Array:
+        """Constants of `path`, (c,); none by default."""
+        return np.zeros(0)
 
     @property
     def name(self) -> str:
@@ -175,7 +179,13 @@ class SoftStart(Reference):
             longer; 0 begins at full speed.
     """
 
+    _checks: ClassVar[Checks] = {"begin": not_negative}
     begin: float | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.begin is None:
+            self._set(begin=max(SHORTEST, 0.1 * self._round))
 
     @property
     def _round(self) -> float:
@@ -187,14 +197,6 @@ class SoftStart(Reference):
         """Time until the path is back at its start, at full speed [s]."""
         lost = 0.5 * (self.begin or 0.0)
         return lost + self._round * max(1, math.ceil(lost / self._round))
-
-    def _set_begin(self, default: float | None = None) -> float:
-        """Set and return the length of the soft start [s]."""
-        if self.begin is None:
-            ordinary = max(SHORTEST, 0.1 * self._round)
-            self._set(begin=ordinary if default is None else default)
-        self._check(begin=not_negative)
-        return self.begin or 0.0
 
 
 class FeedForward(Reference):

@@ -4,11 +4,12 @@ The compiled function above each class is its `Reference.path`.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
-from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
+from iiwa_dnn.checks import Array, Checks, Vector3, direction, positive, vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import sin, sin_cos
@@ -28,19 +29,17 @@ class HeartConstants(Record):
 def heart_path(t: float, constants: Array, target: TargetData) -> None:
     """Move a target along `Heart`."""
     own = HeartConstants.of(constants)
-    scale = own.scale
-    rate = own.rate
-    p = rate * t
+    p = own.rate * t
     s1, c1 = sin_cos(p)
     s2, c2 = sin_cos(2.0 * p)
     s3, c3 = sin_cos(3.0 * p)
     s4, c4 = sin_cos(4.0 * p)
     y = 13.0 * c1 - 5.0 * c2 - 2.0 * c3 - c4 - 5.0
     slope = -13.0 * s1 + 10.0 * s2 + 6.0 * s3 + 4.0 * s4
-    target.position[0] += scale * 16.0 * s1 * s1 * s1
-    target.position[1] += scale * y
-    target.linear_velocity[0] += rate * scale * 48.0 * s1 * s1 * c1
-    target.linear_velocity[1] += rate * scale * slope
+    target.position[0] += own.scale * 16.0 * s1 * s1 * s1
+    target.position[1] += own.scale * y
+    target.linear_velocity[0] += own.rate * own.scale * 48.0 * s1 * s1 * c1
+    target.linear_velocity[1] += own.rate * own.scale * slope
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,13 +66,14 @@ class Heart(Reference):
     """
 
     path: ClassVar[Any] = staticmethod(heart_path)
+    _checks: ClassVar[Checks] = {"scale": positive, "period": positive}
     scale: float = 3.45e-3
     period: float = 10.0
 
-    def __post_init__(self) -> None:
-        self._check(scale=positive, period=positive)
-        rate = 2.0 * np.pi / self.period
-        self._set(constants=HeartConstants.make(scale=self.scale, rate=rate).numbers)
+    @cached_property
+    def constants(self) -> Array:
+        """`HeartConstants`."""
+        return HeartConstants.make(scale=self.scale, rate=2.0 * np.pi / self.period).numbers
 
 
 class CircleConstants(Record):
@@ -98,10 +98,16 @@ def circle_path(t: float, constants: Array, target: TargetData) -> None:
     along_u = -2.0 * sine * sine
     along_v, cosine = sin_cos(p)
     for i in range(3):
-        u = own.u[i]
-        v = own.v[i]
-        target.position[i] += own.radius * (along_u * u + along_v * v)
-        target.linear_velocity[i] += rate * own.radius * (cosine * v - along_v * u)
+        moved = along_u * own.u[i] + along_v * own.v[i]
+        target.position[i] += own.radius * moved
+        velocity = cosine * own.v[i] - along_v * own.u[i]
+        target.linear_velocity[i] += rate * own.radius * velocity
+
+
+def axis(argument: str, value: Any) -> Vector3:
+    """Return a vector (3,) of any length as a tuple of floats; refuse zero and any other value."""
+    direction(argument, value)
+    return vector3(argument, value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,21 +134,22 @@ class Circle(SoftStart):
     """
 
     path: ClassVar[Any] = staticmethod(circle_path)
+    _checks: ClassVar[Checks] = {"radius": positive, "period": positive, "normal": axis}
     radius: float = 0.05
     period: float = 10.0
     normal: Vector3 = (0.0, 0.0, 1.0)
 
-    def __post_init__(self) -> None:
-        self._check(radius=positive, period=positive, normal=vector3)
+    @cached_property
+    def constants(self) -> Array:
+        """`CircleConstants`."""
         normal = np.array(direction("normal", self.normal))
-        axis = np.eye(3)[0 if abs(normal[0]) < 0.9 else 1]
-        u = axis - (axis @ normal) * normal
+        first = np.eye(3)[0 if abs(normal[0]) < 0.9 else 1]
+        u = first - (first @ normal) * normal
         u /= np.linalg.norm(u)
         rate = 2.0 * np.pi / self.period
-        own = CircleConstants.make(
-            begin=self._set_begin(), radius=self.radius, rate=rate, u=u, v=np.cross(normal, u)
-        )
-        self._set(constants=own.numbers)
+        return CircleConstants.make(
+            begin=self.begin, radius=self.radius, rate=rate, u=u, v=np.cross(normal, u)
+        ).numbers
 
 
 class LineConstants(Record):
@@ -183,13 +190,14 @@ class Line(Reference):
     """
 
     path: ClassVar[Any] = staticmethod(line_path)
+    _checks: ClassVar[Checks] = {"offset": vector3, "period": positive}
     offset: Vector3 = (0.1, 0.0, 0.0)
     period: float = 10.0
 
-    def __post_init__(self) -> None:
-        self._check(offset=vector3, period=positive)
-        rate = 2.0 * np.pi / self.period
-        self._set(constants=LineConstants.make(rate=rate, offset=self.offset).numbers)
+    @cached_property
+    def constants(self) -> Array:
+        """`LineConstants`."""
+        return LineConstants.make(rate=2.0 * np.pi / self.period, offset=self.offset).numbers
 
 
 class LissajousConstants(Record):
@@ -207,13 +215,17 @@ def lissajous_path(t: float, constants: Array, target: TargetData) -> None:
     own = LissajousConstants.of(constants)
     inner, pace = soft_clock(t, own.begin)
     for i in range(3):
-        amplitude = own.amplitudes[i]
-        rate = own.rates[i]
-        phase = own.phases[i]
-        angle = rate * inner + phase
-        sine, cosine = sin_cos(angle)
-        target.position[i] += amplitude * (sine - sin(phase))
-        target.linear_velocity[i] += amplitude * (rate * pace) * cosine
+        sine, cosine = sin_cos(own.rates[i] * inner + own.phases[i])
+        target.position[i] += own.amplitudes[i] * (sine - sin(own.phases[i]))
+        target.linear_velocity[i] += own.amplitudes[i] * (own.rates[i] * pace) * cosine
+
+
+def _whole(argument: str, value: Any) -> Vector3:
+    """Return three whole numbers as a tuple of floats; refuse any other value."""
+    turns = vector3(argument, value)
+    if not all(each.is_integer() for each in turns):
+        raise InvalidInputError(argument, "must be whole numbers", value)
+    return turns
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,20 +251,24 @@ class Lissajous(SoftStart):
     """
 
     path: ClassVar[Any] = staticmethod(lissajous_path)
+    _checks: ClassVar[Checks] = {
+        "amplitudes": vector3,
+        "turns": _whole,
+        "phases": vector3,
+        "period": positive,
+    }
     amplitudes: Vector3 = (0.05, 0.05, 0.0)
     turns: Vector3 = (1.0, 2.0, 1.0)
     phases: Vector3 = (0.0, 0.0, 0.0)
     period: float = 10.0
 
-    def __post_init__(self) -> None:
-        self._check(amplitudes=vector3, turns=vector3, phases=vector3, period=positive)
-        if not all(turns.is_integer() for turns in self.turns):
-            raise InvalidInputError("turns", "must be whole numbers", self.turns)
+    @cached_property
+    def constants(self) -> Array:
+        """`LissajousConstants`."""
         rates = (2.0 * np.pi / self.period) * np.array(self.turns)
-        own = LissajousConstants.make(
-            begin=self._set_begin(), amplitudes=self.amplitudes, rates=rates, phases=self.phases
-        )
-        self._set(constants=own.numbers)
+        return LissajousConstants.make(
+            begin=self.begin, amplitudes=self.amplitudes, rates=rates, phases=self.phases
+        ).numbers
 
 
 @compiled
@@ -269,8 +285,5 @@ class FixedPose(Reference):
     """
 
     path: ClassVar[Any] = staticmethod(fixed_path)
+    _checks: ClassVar[Checks] = {"period": positive}
     period: float = 10.0
-
-    def __post_init__(self) -> None:
-        """Check the period; raises InvalidInputError."""
-        self._check(period=positive)

@@ -3,11 +3,12 @@
 import math
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
+from functools import cached_property, partial
 from typing import Any, ClassVar
 
 import numpy as np
 
-from iiwa_dnn.checks import Array, Vector3, direction, integer, positive, vector3
+from iiwa_dnn.checks import Array, Checks, Vector3, direction, integer, positive
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import sin_cos
@@ -20,6 +21,7 @@ from iiwa_dnn.references.shapes import (
     Heart,
     Line,
     Lissajous,
+    axis,
     circle_path,
     heart_path,
     line_path,
@@ -39,21 +41,27 @@ class ConeConstants(Record):
     rate: float
 
 
+def _acute(argument: str, angle: float) -> float:
+    """Return an angle between 0 and pi / 2, or raise InvalidInputError."""
+    if not 0.0 < positive(argument, angle) < 0.5 * math.pi:
+        raise InvalidInputError(argument, f"must be below pi / 2, not {angle}", angle)
+    return float(angle)
+
+
 @compiled
 def cone_path(t: float, constants: Array, target: TargetData) -> None:
     """Turn a target along `Cone`."""
     own = ConeConstants.of(constants)
     inner, pace = soft_clock(t, own.begin)
-    angle = own.angle
     rate = own.rate * pace
     p = own.rate * inner
-    turn_target(target, scaled(-angle, column_of(target.rotation, 0)), (0.0, 0.0, 0.0))
+    turn_target(target, scaled(-own.angle, column_of(target.rotation, 0)), (0.0, 0.0, 0.0))
     # The tool's x and y axes where its z axis is the cone's; the tilt to the start is about x.
     u = column_of(target.rotation, 0)
     v = column_of(target.rotation, 1)
     sine, cosine = sin_cos(p)
-    tilt = combined(angle * cosine, u, angle * sine, v)
-    speed = angle * rate
+    tilt = combined(own.angle * cosine, u, own.angle * sine, v)
+    speed = own.angle * rate
     turn_target(target, tilt, combined(speed * cosine, v, -speed * sine, u))
 
 
@@ -78,14 +86,15 @@ class Cone(SoftStart):
     """
 
     path: ClassVar[Any] = staticmethod(cone_path)
+    _checks: ClassVar[Checks] = {"angle": _acute, "period": positive}
     angle: float = TILT
     period: float = 10.0
 
-    def __post_init__(self) -> None:
-        self._check(angle=_acute, period=positive)
+    @cached_property
+    def constants(self) -> Array:
+        """`ConeConstants`."""
         rate = 2.0 * np.pi / self.period
-        own = ConeConstants.make(begin=self._set_begin(), angle=self.angle, rate=rate)
-        self._set(constants=own.numbers)
+        return ConeConstants.make(begin=self.begin, angle=self.angle, rate=rate).numbers
 
 
 class Along(IntEnum):
@@ -133,11 +142,11 @@ def tilting_path(t: float, constants: Array, target: TargetData) -> None:
     for i in range(3):
         target.linear_velocity[i] *= pace
         target.angular_velocity[i] *= pace
-    axis = triple(own.axis)
+    about = triple(own.axis)
     sine, cosine = sin_cos(own.rate * inner)
     tilt = own.angle * sine
     speed = own.angle * (own.rate * pace) * cosine
-    turn_target(target, scaled(tilt, axis), scaled(speed, axis))
+    turn_target(target, scaled(tilt, about), scaled(speed, about))
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +172,7 @@ class Tilting(SoftStart):
     """
 
     path: ClassVar[Any] = staticmethod(tilting_path)
+    _checks: ClassVar[Checks] = {"angle": _acute, "axis": axis, "turns": partial(integer, least=1)}
     along: Reference = field(default_factory=Circle)
     angle: float = TILT
     axis: Vector3 = (1.0, 0.0, 0.0)
@@ -172,19 +182,23 @@ class Tilting(SoftStart):
         if type(self.along) not in _ALONG:
             problem = f"must be one of {', '.join(kind.__name__ for kind in _ALONG)}"
             raise InvalidInputError("along", problem, self.along)
-        rate = 2.0 * np.pi * integer("turns", self.turns, 1) / self._round
-        self._check(angle=_acute, axis=vector3)
-        begin = self._set_begin(getattr(self.along, "begin", None))
+        if self.begin is None:
+            self._set(begin=getattr(self.along, "begin", None))
+        super().__post_init__()
+
+    @cached_property
+    def constants(self) -> Array:
+        """`TiltingConstants`, and then those of the path."""
         # One clock for both.
         along = replace(self.along, begin=0.0) if isinstance(self.along, SoftStart) else self.along
         own = TiltingConstants.make(
             along=_ALONG.index(type(self.along)),
-            begin=begin,
+            begin=self.begin,
             angle=self.angle,
-            rate=rate,
+            rate=2.0 * np.pi * self.turns / self._round,
             axis=direction("axis", self.axis),
         )
-        self._set(constants=np.append(own.numbers, along.constants))
+        return np.append(own.numbers, along.constants)
 
     @property
     def _round(self) -> float:
@@ -195,10 +209,3 @@ class Tilting(SoftStart):
     def period(self) -> float:
         """Time after which the path repeats [s]."""
         return self.along.period
-
-
-def _acute(argument: str, angle: float) -> float:
-    """Return an angle between 0 and pi / 2, or raise InvalidInputError."""
-    if not 0.0 < positive(argument, angle) < 0.5 * math.pi:
-        raise InvalidInputError(argument, f"must be below pi / 2, not {angle}", angle)
-    return float(angle)

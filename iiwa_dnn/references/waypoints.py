@@ -8,14 +8,16 @@ import re
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.checks import (
     Array,
+    Checks,
     Matrix,
     Vector3,
     finite_array,
@@ -165,6 +167,12 @@ class Waypoints(Reference):
     """
 
     path: ClassVar[Any] = staticmethod(waypoints_path)
+    _checks: ClassVar[Checks] = {
+        "ends": partial(one_of, choices=get_args(Ends)),
+        "interpolation": partial(one_of, choices=get_args(Interpolation)),
+        "noise": not_negative,
+        "turn_noise": not_negative,
+    }
     times: Array
     points: Array
     ends: Ends = "clamped"
@@ -177,6 +185,7 @@ class Waypoints(Reference):
     turned: Array = field(init=False)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         self._check_rows()
         knots = self.times - self.times[0]
         rule = (self.ends == "closed", self.interpolation == "limited")
@@ -206,8 +215,6 @@ class Waypoints(Reference):
         """Check all parameters but the quaternions; raises InvalidInputError."""
         times = finite_array("times", self.times, (-1,))
         self._set(times=times, points=finite_array("points", self.points, (len(times), 3)))
-        one_of("ends", self.ends, ("clamped", "closed"))
-        one_of("interpolation", self.interpolation, ("limited", "cubic"))
         if len(times) < 2:
             raise InvalidInputError("times", "at least 2 points are needed", times)
         for row in np.flatnonzero(times[1:] <= times[:-1]) + 1:
@@ -215,7 +222,6 @@ class Waypoints(Reference):
             raise InvalidInputError("times", problem, times)
         turn_noise = self.noise if self.turn_noise is None else self.turn_noise
         self._set(turn_noise=turn_noise, turned=read_only(np.zeros(len(times))))
-        self._check(noise=not_negative, turn_noise=not_negative)
 
     def _poses(self, knots: Array, quaternions: Array) -> Any:
         """Check the quaternions, and return the orientations, smoothed if there is noise."""

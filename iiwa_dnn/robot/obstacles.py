@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -42,7 +42,7 @@ def box_around(a: ArrayLike, b: ArrayLike) -> PlacedBox:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Obstacle(ABC):
+class Obstacle(checks.Checked, ABC):
     """A convex shape that is fixed, or moves without turning.
 
     Attributes:
@@ -52,13 +52,8 @@ class Obstacle(ABC):
         InvalidInputError: A parameter is wrong; it is named. So do all shapes.
     """
 
+    _checks: ClassVar[checks.Checks] = {"velocity": checks.vector3}
     velocity: Sequence[float] = (0.0, 0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        for name in {"center", "a", "b", "half_extents", "velocity"} & vars(self).keys():
-            object.__setattr__(self, name, checks.vector3(name, getattr(self, name)))
-        if hasattr(self, "radius"):
-            checks.positive("radius", self.radius)
 
     @property
     def speed(self) -> float:
@@ -94,6 +89,7 @@ class Sphere(Obstacle):
         radius: Its radius [m], above 0.
     """
 
+    _checks: ClassVar[checks.Checks] = {"center": checks.vector3, "radius": checks.positive}
     center: Sequence[float]
     radius: float
 
@@ -113,6 +109,11 @@ class Capsule(Obstacle):
         radius: The radius [m], above 0.
     """
 
+    _checks: ClassVar[checks.Checks] = {
+        "a": checks.vector3,
+        "b": checks.vector3,
+        "radius": checks.positive,
+    }
     a: Sequence[float]
     b: Sequence[float]
     radius: float
@@ -121,6 +122,13 @@ class Capsule(Obstacle):
     def box(self) -> PlacedBox:
         """The segment."""
         return box_around(self.a, self.b)
+
+
+def extents(argument: str, value: Sequence[float]) -> checks.Vector3:
+    """Return half-extents of a box [m] as a tuple; refuse any that are not above 0."""
+    found = checks.vector3(argument, value)
+    checks.positive(argument, min(found))
+    return found
 
 
 @dataclass(frozen=True)
@@ -133,16 +141,14 @@ class Box(Obstacle):
         rotation: Its axes in the world as columns, (3, 3); None: the world's.
     """
 
+    _checks: ClassVar[checks.Checks] = {
+        "center": checks.vector3,
+        "half_extents": extents,
+        "rotation": lambda name, axes: tuple(map(tuple, checks.rotation(name, axes).tolist())),
+    }
     center: Sequence[float]
     half_extents: Sequence[float]
     rotation: Sequence[Sequence[float]] | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.positive("half_extents", min(self.half_extents))
-        if self.rotation is not None:
-            turn = checks.rotation("rotation", self.rotation)
-            object.__setattr__(self, "rotation", tuple(map(tuple, turn.tolist())))
 
     @property
     def box(self) -> PlacedBox:
@@ -160,13 +166,9 @@ class HalfSpace(Obstacle):
         offset: Its boundary's distance from the origin along the normal [m].
     """
 
+    _checks: ClassVar[checks.Checks] = {"normal": checks.direction, "offset": checks.finite}
     normal: Sequence[float]
     offset: float
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        object.__setattr__(self, "normal", checks.direction("normal", self.normal))
-        checks.finite("offset", self.offset)
 
     @property
     def box(self) -> PlacedBox:

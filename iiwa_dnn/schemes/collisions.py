@@ -35,7 +35,7 @@ from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Placement
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacles
-from iiwa_dnn.schemes.parts import Checks, Limit
+from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.scene import (
     Body,
     Contact,
@@ -218,7 +218,7 @@ class CollisionAvoidance(Limit):
     """
 
     kernel = staticmethod(collision_rows)
-    _checks: ClassVar[Checks] = {
+    _checks: ClassVar[checks.Checks] = {
         "obstacles": tuple_of_obstacles,
         "self_collision": partial(checks.one_of, choices=(True, False)),
         "distance": checks.positive,

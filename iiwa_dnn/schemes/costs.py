@@ -17,7 +17,7 @@ from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.schemes.parts import Checks, Cost
+from iiwa_dnn.schemes.parts import Cost
 from iiwa_dnn.schemes.step import Step, StepViews
 
 Kinetic = Literal["identity", "inertia"]
@@ -31,7 +31,7 @@ class WeightedCost(Cost):
         weight: w, at least 0.
     """
 
-    _checks: ClassVar[Checks] = {"weight": checks.not_negative}
+    _checks: ClassVar[checks.Checks] = {"weight": checks.not_negative}
     weight: float = 1.0
 
 
@@ -69,7 +69,9 @@ class KineticEnergy(WeightedCost):
     """
 
     kernel = staticmethod(add_kinetic_energy)
-    _checks: ClassVar[Checks] = {"kinetic": partial(checks.one_of, choices=get_args(Kinetic))}
+    _checks: ClassVar[checks.Checks] = {
+        "kinetic": partial(checks.one_of, choices=get_args(Kinetic))
+    }
     kinetic: Kinetic = "identity"
 
     def constants(self, robot: Robot) -> Vector:
@@ -111,7 +113,7 @@ class CyclicMotion(WeightedCost):
     """
 
     kernel = staticmethod(add_cyclic_motion)
-    _checks: ClassVar[Checks] = {
+    _checks: ClassVar[checks.Checks] = {
         "gain": checks.not_negative,
         "home": lambda name, home: tuple(checks.finite_array(name, home, (-1,)).tolist()),
     }

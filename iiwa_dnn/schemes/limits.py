@@ -58,7 +58,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references.rotations import combined, dot, scaled, triple
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Placement
-from iiwa_dnn.schemes.parts import Checks, Limit, Task
+from iiwa_dnn.schemes.parts import Limit, Task
 from iiwa_dnn.schemes.step import StepViews, point_rate, rate_along
 from iiwa_dnn.schemes.tasks import JointCouplingTask
 
@@ -293,7 +293,7 @@ class JointLimits(Limit):
     """
 
     kernel = staticmethod(joint_limits)
-    _checks: ClassVar[Checks] = {"gain": checks.positive}
+    _checks: ClassVar[checks.Checks] = {"gain": checks.positive}
     gain: float = 20.0
 
     def constants(self, robot: Robot) -> Vector:
@@ -319,7 +319,7 @@ class RateLimits(Limit):
             that there is none.
     """
 
-    _checks: ClassVar[Checks] = {"limit": positive_rates}
+    _checks: ClassVar[checks.Checks] = {"limit": positive_rates}
     limit: ArrayLike | None = None
     quantity: ClassVar[str]
     row: ClassVar[int]
@@ -857,7 +857,7 @@ class TipSpeedLimit(Limit):
     """
 
     kernel = staticmethod(tip_speed_bounds)
-    _checks: ClassVar[Checks] = {"limit": checks.positive, "gain": checks.positive}
+    _checks: ClassVar[checks.Checks] = {"limit": checks.positive, "gain": checks.positive}
     limit: float
     frame: str | None = None
     gain: float = 100.0

@@ -16,12 +16,12 @@ of its kind, copies the answer out of the constants.
 """
 
 import math
-from collections.abc import Callable, Mapping
 from dataclasses import fields
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
+from iiwa_dnn.checks import Checked
 from iiwa_dnn.compiling.library import compiled, entry
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
@@ -31,9 +31,6 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.step import Step, StepViews
 
 PartT = TypeVar("PartT", bound="Part")
-
-Checks = Mapping[str, Callable[[str, Any], Any]]
-"""Checks of a part's parameters by their names, `iiwa_dnn.checks`."""
 
 
 @entry
@@ -72,10 +69,8 @@ _ROUNDING = 1e-9
 """Asymmetry and negative curvature of P that are forgiven, by its largest entry."""
 
 
-class Part:
+class Part(Checked):
     """A block of a program's rows; a cost, a task or a limit.
-
-    A part that is made with a wrong parameter raises an `InvalidInputError` that names it.
 
     Attributes:
         kernel: Compiled function that writes the rows; in a class with methods in numpy it copies
@@ -89,20 +84,12 @@ class Part:
     entry: ClassVar[Any]
     _copy: Any
     _methods: ClassVar[dict[str, tuple[str, str]]] = {}
-    _checks: ClassVar[Checks] = {}
 
     def __init_subclass__(cls, **options: Any) -> None:
         """Take the kernel that copies answers if the class has a method in numpy."""
         super().__init_subclass__(**options)
         if not cls._methods.keys().isdisjoint(vars(cls)):
             cls.kernel = staticmethod(cls._copy)
-
-    def __post_init__(self) -> None:
-        """Check and convert the given parameters."""
-        for kind in type(self).__mro__:
-            for name, check in vars(kind).get("_checks", {}).items():
-                if getattr(self, name) is not None:
-                    self._set(**{name: check(name, getattr(self, name))})
 
     @property
     def copies(self) -> bool:
@@ -143,11 +130,6 @@ class Part:
     def anchored(self: PartT, conf: Configuration) -> PartT:
         """Return the part with `conf` as the posture to come back to, where it lacks one."""
         return self
-
-    def _set(self, **values: Any) -> None:
-        """Set checked parameters of a frozen dataclass."""
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""

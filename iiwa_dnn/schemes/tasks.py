@@ -35,7 +35,7 @@ from iiwa_dnn.references.rotations import (
 from iiwa_dnn.references.targets import Target, TargetData
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Placement
-from iiwa_dnn.schemes.parts import Checks, Task
+from iiwa_dnn.schemes.parts import Task
 from iiwa_dnn.schemes.step import (
     FrameConstants,
     StepViews,
@@ -172,7 +172,7 @@ class GainTask(Task):
         weight: None for hard rows, else the weight of the soft task, at least 0.
     """
 
-    _checks: ClassVar[Checks] = {"gain": feedback_gain, "weight": checks.not_negative}
+    _checks: ClassVar[checks.Checks] = {"gain": feedback_gain, "weight": checks.not_negative}
     gain: float = 10.2
     weight: float | None = None
 
@@ -263,7 +263,7 @@ class OrientationTask(FrameTask):
     """
 
     kernel = staticmethod(rotation_rows)
-    _checks: ClassVar[Checks] = {"form": partial(checks.one_of, choices=("so3", "block"))}
+    _checks: ClassVar[checks.Checks] = {"form": partial(checks.one_of, choices=("so3", "block"))}
     form: Literal["so3", "block"] = "so3"
     rows = 3
     row_weight = ROTATION_LENGTH
@@ -304,7 +304,7 @@ class RelativePoseTask(FrameTask):
     """
 
     kernel = staticmethod(held_pose_rows)
-    _checks: ClassVar[Checks] = {
+    _checks: ClassVar[checks.Checks] = {
         "pose": lambda name, pose: tuple(
             map(tuple, checks.finite_array(name, pose, (4, 4)).tolist())
         )
@@ -386,7 +386,7 @@ class AxisTask(FrameTask):
     """
 
     kernel = staticmethod(axis_rows)
-    _checks: ClassVar[Checks] = {"axis": checks.direction, "direction": checks.direction}
+    _checks: ClassVar[checks.Checks] = {"axis": checks.direction, "direction": checks.direction}
     axis: Sequence[float] = (0.0, 0.0, 1.0)
     direction: Sequence[float] | None = None
     rows = 2
@@ -459,7 +459,7 @@ class RemoteCenterTask(FrameTask):
     """
 
     kernel = staticmethod(remote_center_rows)
-    _checks: ClassVar[Checks] = {
+    _checks: ClassVar[checks.Checks] = {
         "axis": checks.direction,
         "point": lambda name, at: at if isinstance(at, str) else checks.vector3(name, at),
     }
@@ -575,7 +575,7 @@ class PostureTask(JointTask):
         joints: Desired positions by joint name [rad].
     """
 
-    _checks: ClassVar[Checks] = {"joints": numbers_of}
+    _checks: ClassVar[checks.Checks] = {"joints": numbers_of}
     row_weight = 0.1
     joints: Mapping[str, float]
 
@@ -597,7 +597,7 @@ class JointCouplingTask(JointTask):
         offset: c_0 [rad].
     """
 
-    _checks: ClassVar[Checks] = {"coefficients": numbers_of, "offset": checks.finite}
+    _checks: ClassVar[checks.Checks] = {"coefficients": numbers_of, "offset": checks.finite}
     row_weight = 0.0
     coefficients: Mapping[str, float]
     offset: float = 0.0

@@ -10,7 +10,7 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_kinematics import example_urdf, finite_difference
-from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
+from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 from iiwa_dnn.robot.collision import make_collision_model
 from iiwa_dnn.robot.mujoco_model import JointDynamics, compile_model
@@ -53,41 +53,6 @@ def test_by_name_and_by_path(robot: Robot, written) -> None:
         robot = load_robot(path)
         assert (robot.name, robot.tip, robot.dof) == ("one", "b", 1)
         assert [robot.q_lower, robot.q_upper, robot.dq_max] == [-1, 2, 4]
-
-
-@pytest.mark.parametrize(
-    ("content", "reason"),
-    [
-        ("", "not XML"),
-        (b"\x00\xff\xfe", "not XML"),
-        ("<sdf/>", "no URDF: its first element is <sdf>, not <robot>"),
-        (
-            one_joint().replace('child link="b"', 'child link="c"'),
-            r"child link \[c\] of joint \[j\]",
-        ),
-        (one_joint(""), r"Joint \[j\] is of type REVOLUTE but it does not specify limits"),
-        (one_joint(LIMIT.replace("velocity", "speed")), r"joint \[j\]: limit has no velocity"),
-        (one_joint('<limit effort="3" velocity="4"/>'), "gives no range for joint 'j'"),
-        (one_joint(LIMIT.replace("-1", "nan")), r"joint \[j\]: lower value \(nan\)"),
-        (one_joint(LIMIT.replace('velocity="4"', 'velocity="-4"')), "joint 'j': velocity must be"),
-        ('<robot name="x"><link name="a"/></robot>', "^tip: no joint moves frame 'a'"),
-        (one_joint().replace("0 1 0", "0 0 0"), "the axis of joint 'j' is zero"),
-        (one_joint("", "fixed"), "^tip: no joint moves frame"),
-        (one_joint(LIMIT.replace("-1", "2")), "joint 'j': lower limit 2 is not below 2"),
-        (one_joint("", "floating"), "'j' has 7 coordinates"),
-    ],
-)
-def test_bad_robots(written, content: str | bytes, reason: str) -> None:
-    path = written(content)
-    with pytest.raises((FileError, InvalidInputError), match=reason) as caught:
-        load_robot(path)
-    assert "\n" not in str(caught.value)
-    assert getattr(caught.value, "path", str(path)) == str(path)
-
-
-def test_limits_in_degrees_are_warned_of(written) -> None:
-    with pytest.warns(UserWarning, match="joint 'j' has a limit of 120: is it in degrees"):
-        load_robot(written(one_joint(LIMIT.replace("2", "120"))))
 
 
 def test_the_reach_bounds_the_tips_distance(robot: Robot) -> None:

@@ -114,18 +114,11 @@ def test_acceleration_and_jerk_limits_of_the_file(
 FAULTS = {
     "no type": (elbow(' type="revolute"', ""), "joint [elbow] has no type"),
     "no joint name": (elbow(' name="elbow"', ""), "unnamed joint"),
-    "no link name": (
-        ARM.replace('<link name="lower">', "<link>"),
-        "child link [lower] of joint [elbow]",
-    ),
     "no parent": (elbow('<parent link="upper"/>', ""), "Joint [elbow] is missing a parent"),
-    "no child": (elbow('<child link="lower"/>', ""), "Joint [elbow] is missing"),
-    "parent under another key": (elbow("parent link", "parent name"), "Joint [elbow] is missing"),
     "parent misspelt": (
         elbow('"upper"', '"uper"'),
         "parent link [uper] of joint [elbow] not found$",
     ),
-    "child in capitals": (elbow('"lower"', '"Lower"'), "child link [Lower] of joint [elbow]"),
     "two parents": (plus(joint("twin", "base", "hand")), "joint 'twin' is in a loop, or its child"),
     "a loop aside": (
         plus('<link name="p"/><link name="q"/>' + joint("pq", "p", "q") + joint("qp", "q", "p")),
@@ -133,14 +126,7 @@ FAULTS = {
     ),
     "onto itself": (elbow('link="upper"', 'link="lower"'), "joint 'elbow' is in a loop"),
     "a loop of all": (plus(joint("back", "hand", "base")), "No root link found"),
-    "tag in capitals": (
-        elbow("<joint", "<Joint")
-        .replace("</joint>", "</Joint>", 2)
-        .replace("</Joint>", "</joint>", 1),
-        "[base] and [lower]",
-    ),
     "no limit": (elbow(LIMIT, ""), "Joint [elbow] is of type REVOLUTE but it does not"),
-    "no velocity": (elbow(' velocity="1"', ""), "joint [elbow]: limit has no velocity"),
     "velocity in words": (
         elbow('velocity="1"', 'velocity="fast"'),
         "joint 'elbow': velocity must be",
@@ -149,14 +135,6 @@ FAULTS = {
     "velocity below 0": (
         elbow('velocity="1"', 'velocity="-2.5"'),
         "joint 'elbow': velocity .*not '-2.5'",
-    ),
-    "effort in words": (
-        elbow('effort="10"', 'effort="high"'),
-        "joint [elbow]: effort value (high)",
-    ),
-    "limits exchanged": (
-        elbow('lower="-2" upper="2"', 'lower="2" upper="-2"'),
-        "joint 'elbow': lower limit 2",
     ),
     "limits equal": (
         elbow('lower="-2"', 'lower="2"'),
@@ -167,18 +145,8 @@ FAULTS = {
         elbow('upper="2"', 'upper="2rad"'),
         "joint [elbow]: upper value (2rad)",
     ),
-    "upper a formula": (elbow('upper="2"', 'upper="pi/2"'), "joint [elbow]: upper value (pi/2)"),
-    "upper empty": (elbow('upper="2"', 'upper=""'), "joint [elbow]: upper value ()"),
-    "lower too large": (
-        elbow('lower="-2"', 'lower="-1e999"'),
-        "joint [elbow]: lower value (-1e999)",
-    ),
     "acceleration in words": (
         elbow("<limit", '<limit acceleration="x"'),
-        "'elbow': acceleration must",
-    ),
-    "acceleration below 0": (
-        elbow("<limit", '<limit acceleration="-1"'),
         "'elbow': acceleration must",
     ),
     "jerk nan": (elbow("<limit", '<limit jerk="nan"'), "joint 'elbow': jerk must be"),
@@ -186,26 +154,21 @@ FAULTS = {
         elbow("<limit", '<position_based_velocity_limits deceleration_limit="-6"/><limit'),
         "joint 'elbow': deceleration_limit must be",
     ),
-    "axis of two numbers": (elbow('"0 1 0"', '"0 1"'), "axis element for joint [elbow]"),
     "axis with commas": (elbow('"0 1 0"', '"0,1,0"'), "axis element for joint [elbow]"),
     "axis zero": (elbow('"0 1 0"', '"0 0 0"'), "the axis of joint 'elbow' is zero"),
-    "origin of two numbers": (elbow('"0.1 0 0.3"', '"0.1 0"'), "origin element for joint [elbow]"),
     "angles in degrees": (elbow('"0 0.2 0"', '"0 90\xb0 0"'), "origin element for joint [elbow]"),
     "mimic of nobody": (elbow(LIMIT, LIMIT + "<mimic/>"), "mimic element for joint  [elbow]"),
-    "damping in words": (elbow(LIMIT, LIMIT + '<dynamics damping="x"/>'), "for joint [elbow]"),
-    "safety of one key": (elbow(LIMIT, LIMIT + "<safety_controller/>"), "for joint [elbow]"),
     "floating": (elbow("revolute", "floating"), "joint 'elbow' has 7 coordinates"),
-    "planar": (elbow("revolute", "planar"), "joint 'elbow' has 4 coordinates"),
     "tag left open": (elbow("</joint>", ""), "line 10"),
-    "no quotes": (elbow('velocity="1"', "velocity=1"), "line 8"),
     "a key twice": (
         elbow('velocity="1"', 'velocity="1" velocity="2"'),
         "duplicate attribute: line 8",
     ),
-    "half a file": (ARM[: len(ARM) // 2], "line 7"),
     "empty": ("", "no element found: line 1"),
     "a program": (b"\x7fELF\x00\x01", "line 1"),
     "a web page": ("<!DOCTYPE html>\n<html><body>404</body></html>", "first element is <html>"),
+    "no joint": ('<robot name="x"><link name="a"/></robot>', "^tip: no joint moves frame 'a'"),
+    "lower nan": (elbow('"-2"', '"nan"'), "joint [elbow]: lower value (nan)"),
     "no links": ('<robot name="x"/>', "No link elements"),
     "material twice": (plus('<material name="m"><color rgba="1 0 0 1"/></material>' * 2), "'m'"),
 }
@@ -213,11 +176,13 @@ FAULTS = {
 
 @pytest.mark.parametrize(("content", "reason"), FAULTS.values(), ids=FAULTS.keys())
 def test_a_fault_is_named_in_one_line(written, capfd, content: str | bytes, reason: str) -> None:
+    path = written(content)
     with pytest.raises(IiwaDnnError) as caught:
-        d.load_robot(written(content))
+        d.load_robot(path)
     message = str(caught.value)
     assert re.search(re.sub(r"[][()]", r"\\\g<0>", reason), message), message
     assert "\n" not in message
+    assert getattr(caught.value, "path", str(path)) == str(path)
     assert capfd.readouterr().err == ""
 
 

@@ -1,9 +1,5 @@
 """Programs composed of parts: built-in ones, parts of one's own, slack variables, costs."""
 
-import re
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -103,14 +99,3 @@ def test_parts_leave_slack_variables_out() -> None:
     qp = scheme.build_qp(START, HERE)
     assert_array_equal(qp.A[:, 7:], 0.0)
     assert_allclose(qp.A[:, :7], START.jacobian, rtol=0, atol=1e-15)
-
-
-def test_the_kernel_in_numba_that_the_page_of_schemes_shows() -> None:
-    pytest.importorskip("numba")
-    page = (Path(__file__).parents[2] / "docs" / "schemes.md").read_text(encoding="utf-8")
-    (block,) = re.findall(r"^```py\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
-    names: dict[str, Any] = {"iiwa_dnn": d, "np": np}
-    exec(block, names)
-    qp = d.Scheme(limits=[names["Slower"]()]).build_qp(START, HERE)
-    assert_array_equal(qp.G, np.eye(7)[:1])
-    assert_allclose(qp.h, [0.7 - START.q[0]])
