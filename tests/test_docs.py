@@ -20,7 +20,7 @@ import tyro
 
 from helpers_export import compile_quickly
 from iiwa_dnn.app.main import CONFIG
-from iiwa_dnn.app.words import RunWords
+from iiwa_dnn.app.words import ExportWords, RunWords
 from iiwa_dnn.compiling.library import source_of
 
 ROOT = Path(__file__).parents[1]
@@ -72,7 +72,8 @@ def test_the_commands_of_a_page_are_understood_and_none_is_refused_its_folder(pa
     owners = {Path("runs/heart"): ["track"]}  # make heart, the first thing that a reader does
     for line in _RUN.findall(path.read_text(encoding="utf-8")):
         words = shlex.split(line, comments=True)
-        options = tyro.cli(RunWords, args=words[1:], config=CONFIG)
+        kind = ExportWords if words[0] == "export" else RunWords
+        options = tyro.cli(kind, args=words[1:], config=CONFIG)
         if options.config is None and words[0] != "export":
             name = options.path or options.reference or "heart"
             out = Path("runs") / ("physics" if words[0] == "physics" else Path(name).stem)

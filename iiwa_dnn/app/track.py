@@ -11,7 +11,15 @@ from typing import Any
 
 from tqdm import tqdm
 
-from iiwa_dnn import Controller, InvalidInputError, Record, export as exports, failures, simulate
+from iiwa_dnn import (
+    Controller,
+    InvalidInputError,
+    Record,
+    Shield,
+    export as exports,
+    failures,
+    simulate,
+)
 from iiwa_dnn.app.command_line import check_folder, write_settings
 from iiwa_dnn.app.settings import Tables, build, read_tables
 from iiwa_dnn.app.words import ExportWords, RunWords
@@ -21,6 +29,7 @@ from iiwa_dnn.results.plots import CAPTIONS
 from iiwa_dnn.results.report import save_run, summary
 from iiwa_dnn.robot.mujoco_model import prepare_renderer
 from iiwa_dnn.robot.robot import model_limits
+from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.simulation import count_steps
 from iiwa_dnn.studies.paper import published
 
@@ -99,9 +108,33 @@ def physics(options: RunWords) -> int:
     return track(replace(options, plant=options.plant or "mujoco", out=options.out or usual))
 
 
+def _export_package(options: ExportWords, tables: Tables, arguments: Tables) -> int:
+    """Write a shield with the robot, obstacles and period of the settings as a package."""
+    avoidance = avoidance_of(arguments["scheme"])
+    shield = Shield(
+        arguments["robot"],
+        dt=arguments["dt"],
+        obstacles=avoidance.obstacles if avoidance else None,
+        distance=avoidance.distance if avoidance else 0.02,
+    )
+    folder = options.out or Path(options.python)
+    check_folder(folder, tables, options.overwrite)
+    write_settings(folder, tables)
+    q0 = arguments["q0"]
+    exports.python(shield, folder, options.python, q0=q0, platforms=options.platforms)
+    if not options.quiet:
+        print(f"written to {folder}; to install it: pip install ./{folder}")
+    return 0
+
+
 def export(options: ExportWords) -> int:
-    """Write the controller of a run as C99: one file without dependencies, and its tests."""
+    """Write the controller of a run as C99: one file without dependencies, and its tests.
+
+    With ``--python NAME`` a shield of its robot, among its obstacles, as a package of Python.
+    """
     tables, arguments = _read(options)
+    if options.python:
+        return _export_package(options, tables, arguments)
     if "filter_window" in arguments:
         raise InvalidInputError("filter_window", "is no part of a controller and is not exported")
     known = signature(Controller).parameters

@@ -187,6 +187,16 @@ class OfRuns(Common):
     """draw no figures, pictures or video"""
 
 
+@dataclass(frozen=True)
+class OfExports(Common):
+    """Words of an export that stand for no setting."""
+
+    python: Annotated[str | None, shown("NAME")] = None
+    """write a shield of the robot as a package of Python, in the folder NAME"""
+    platforms: Annotated[tuple[str, ...], shown("NAME ...")] = ()
+    """machines that the package is compiled for here, by ziglang: linux_aarch64, ... or all"""
+
+
 def _options(name: str, base: type[Common], without: frozenset[str] = frozenset()) -> Any:
     """Make the class of a command's options: the settings `WORDS` without some, and a base's."""
     fields = [
@@ -199,4 +209,4 @@ def _options(name: str, base: type[Common], without: frozenset[str] = frozenset(
 
 
 RunWords: Any = _options("RunWords", OfRuns)
-ExportWords: Any = _options("ExportWords", Common, OF_RUNS)
+ExportWords: Any = _options("ExportWords", OfExports, OF_RUNS)

@@ -5,6 +5,10 @@ import json
 import keyword
 import os
 import re
+import subprocess
+import sys
+from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +21,7 @@ from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import by_frame
 from iiwa_dnn.control.shield import TWIST, Reason, Shield
 from iiwa_dnn.control.shields import Shields
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.export.code import TEMPLATES, code_of, filled, shield_code
 from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
@@ -27,6 +31,16 @@ from iiwa_dnn.schemes.step import TARGET_SIZE
 
 STEPS = 500
 """Steps of the vectors."""
+
+PLATFORMS = {
+    "linux_x86_64": "x86_64-linux-gnu.2.17",
+    "linux_aarch64": "aarch64-linux-gnu.2.17",
+    "windows_x86_64": "x86_64-windows-gnu",
+    "windows_aarch64": "aarch64-windows-gnu",
+    "macos_x86_64": "x86_64-macos.10.13",
+    "macos_aarch64": "aarch64-macos.11.0",
+}
+"""Targets of zig by the machines that a wheel may be for."""
 
 _POSE = np.repeat([1.0, 0.0], [12, 6])
 """1 for the numbers of a target's pose, 0 for those of its velocities."""
@@ -86,8 +100,12 @@ def python(
     name: str,
     frame: str | None = None,
     q0: ArrayLike | None = None,
+    platforms: Sequence[str] = (),
 ) -> Path:
     """Write a shield as a package of Python that needs numpy alone, for ``pip install folder``.
+
+    Where it is built, it is compiled for that machine; with `platforms` it is compiled here by zig
+    (``pip install ziglang``), and its wheel is for all of them.
 
     Args:
         shield: The shield; it stays as it is.
@@ -95,13 +113,15 @@ def python(
         name: Name by which the package is imported.
         frame: Frame of twists; None stands for the tip.
         q0: Joint positions where the vectors of its own test begin [rad], (n,).
+        platforms: Machines of `PLATFORMS`, or ``"all"``.
 
     Returns:
         The folder.
 
     Raises:
         InvalidInputError: The name is none of a package, or a part has no C; it is named.
-        NotFoundError: There is no such frame.
+        NotFoundError: There is no such frame or platform.
+        MissingDependencyError: `platforms` are given, and ziglang is not installed.
         FileError: The folder cannot be written.
     """
     checks.instance("shield", shield, Shield)
@@ -128,7 +148,31 @@ def python(
         inner = path.name.startswith("__") or path.name == "py.typed"
         place = package if inner else package.parent
         write_text(place / path.name.removesuffix(".in"), filled(f"python/{path.name}", texts))
+    for platform in PLATFORMS if "all" in platforms else platforms:
+        _compile_for(package, platform)
     return package.parent
+
+
+def _compile_for(package: Path, platform: str) -> None:
+    """Compile the library of a package for a platform, by zig."""
+    if platform not in PLATFORMS:
+        raise NotFoundError("platform", platform, PLATFORMS)
+    if not find_spec("ziglang"):
+        raise MissingDependencyError("ziglang", "pip install ziglang")
+    flags = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC", "-s")
+    output = package / f"_shield_{platform}.bin"
+    words = [sys.executable, "-m", "ziglang", "cc", "-target", PLATFORMS[platform], *flags]
+    done = subprocess.run(
+        [*words, str(package / "shield.c"), "-o", str(output)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode:
+        raise FileError(output, done.stderr[:500])
+    for other in package.glob(f"_shield_{platform}.*"):  # what a linker leaves beside it
+        if other != output:
+            other.unlink()
 
 
 def shield_texts(shield: Shield, frame: str | None, q0: ArrayLike | None) -> dict[str, Any]:

@@ -32,3 +32,17 @@ def test_the_settings_of_a_run_become_c(tmp_path, capsys, monkeypatch) -> None:
     assert "--joint-limit datasheet" in capsys.readouterr().err
     assert call(*words, "--acceleration-limit", "none") == 0
     assert "--acceleration-limit robot" in capsys.readouterr().err
+
+
+def test_a_shield_of_the_settings_becomes_a_package(tmp_path, capsys, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = ("export", "--python", "my_shield", "--robot", "panda", "--dt", "2e-3")
+    assert call(*words) == 0
+    assert "pip install ./my_shield" in capsys.readouterr().out
+    text = (tmp_path / "my_shield" / "my_shield" / "__init__.py").read_text(encoding="utf-8")
+    assert 'ROBOT = "panda"' in text
+    assert "DT = 0.002" in text
+    assert call(*words[:2], "my-shield", "--overwrite") == 2
+    assert "name: must be" in capsys.readouterr().err
+    assert call(*words, "--overwrite", "--platforms", "amiga") == 2
+    assert "amiga" in capsys.readouterr().err

@@ -3,6 +3,7 @@
 import copy
 import multiprocessing
 import pickle
+import platform
 import shutil
 import subprocess
 import sys
@@ -15,7 +16,16 @@ import numpy as np
 import pytest
 
 from helpers_export import needs, packaged, run
-from iiwa_dnn import InvalidInputError, Shield, Shields, Sphere, export, load_robot
+from iiwa_dnn import (
+    InvalidInputError,
+    MissingDependencyError,
+    NotFoundError,
+    Shield,
+    Shields,
+    Sphere,
+    export,
+    load_robot,
+)
 
 pytestmark = needs("gcc")
 
@@ -219,3 +229,27 @@ assert "iiwa_dnn" not in sys.modules and "pinocchio" not in sys.modules
 def test_a_name_that_is_none_is_refused(name: str, tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match="name: must be"):
         export.python(Shield(SMOOTH, DT), tmp_path, name)
+
+
+def test_one_wheel_serves_the_platforms_that_are_compiled_for(tmp_path: Path) -> None:
+    """As `platforms` leaves them; here gcc stands for zig, and this machine for all."""
+    pytest.importorskip("hatchling")
+    project = export.python(Shield(SMOOTH, DT), tmp_path / "project", "fat", q0=START)
+    package = project / "fat"
+    name = f"_shield_linux_{platform.machine()}.bin"
+    flags = ["-std=c99", "-O1", "-ffp-contract=off", "-shared", "-fPIC"]
+    run("gcc", *flags, package / "shield.c", "-o", package / name, "-lm")
+    run(sys.executable, "-m", "hatchling", "build", "-t", "wheel", cwd=project)
+    [wheel] = (project / "dist").glob("fat-0.1.0-py3-none-any.whl")
+    with zipfile.ZipFile(wheel) as own:
+        assert f"fat/{name}" in own.namelist()
+    said = run(sys.executable, "-m", "fat", cwd=project)
+    assert "500 steps, 0 differ" in said
+
+
+def test_platforms_are_known_and_need_zig(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(NotFoundError, match="amiga"):
+        export.python(Shield(SMOOTH, DT), tmp_path, "fat", platforms=["amiga"])
+    monkeypatch.setattr("iiwa_dnn.export.folder.find_spec", lambda name: None)
+    with pytest.raises(MissingDependencyError, match="pip install ziglang"):
+        export.python(Shield(SMOOTH, DT), tmp_path, "fat", platforms=["all"])
