@@ -56,7 +56,7 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
     (lambda: d.Circle().anchored([0, 0, 0]), "pose: must be an object with position"),
     (lambda: d.MovingTarget(EYE), "pose: must be an object with position"),
     (lambda: d.Target(EYE[0], 2.0 * EYE), "rotation: is not a rotation matrix"),
-    (lambda: d.Tilting(d.Circle), "along: must be one of Still"),
+    (lambda: d.Tilting(d.Circle), "along: must be one of FixedPose"),
     (lambda: d.Scheme(3), "costs: must be a list of parts"),
     (lambda: d.CollisionAvoidance(3), "obstacles: must be an iiwa_dnn.Obst"),
     (lambda: d.MujocoPlant(3), "disturbances: must be an iiwa_dnn.Disturbances"),
