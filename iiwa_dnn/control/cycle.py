@@ -24,7 +24,7 @@ from iiwa_dnn.control.command import (
     log_of,
     note_command,
 )
-from iiwa_dnn.control.fallback import Yielding, fallback_size, largest_entry
+from iiwa_dnn.control.fallback import Yielding, fallback_size
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.yielding import (
     BRAKE,
@@ -43,7 +43,7 @@ from iiwa_dnn.networks.integrators.base import (
 )
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
-from iiwa_dnn.qp.dense import all_finite
+from iiwa_dnn.qp.dense import all_finite, largest_entry
 from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, copied
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference

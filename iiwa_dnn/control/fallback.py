@@ -45,9 +45,9 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.networks.integrators.implicit import solve_within
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import all_finite, row_dot
+from iiwa_dnn.qp.dense import all_finite, largest_entry, row_dot
 from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, copied, data_size, qp_views
-from iiwa_dnn.qp.residuals import within
+from iiwa_dnn.qp.residuals import cost_size, within
 from iiwa_dnn.schemes.limits import MotionNumbers, Periods
 from iiwa_dnn.schemes.program import add_soft
 
@@ -125,15 +125,6 @@ def fallback_size(sizes: Sizes) -> int:
     """
     n, m, p = sizes
     return (3 * n + 3 + m + p) + (3 * n + m + p)
-
-
-@compiled
-def largest_entry(values: Vector) -> float:
-    """Return the largest absolute value of an array (k,)."""
-    largest = 0.0
-    for i in range(values.size):
-        largest = max(largest, abs(values[i]))
-    return largest
 
 
 @compiled
@@ -230,7 +221,7 @@ def _longest_asked(qp: QPViews, weights: Vector, retreats: bool) -> float:
 def _copy_cost(qp: QPViews, other: QPViews) -> None:
     """Write w times the cost into a program that has more variables."""
     n = qp.q.size
-    weight = PENALTY / max(max(largest_entry(qp.q), largest_entry(qp.P.reshape(n * n))), PENALTY)
+    weight = PENALTY / max(cost_size(qp), PENALTY)
     for i in range(n):
         other.q[i] = weight * qp.q[i]
         for k in range(n):

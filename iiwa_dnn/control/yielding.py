@@ -24,7 +24,6 @@ from iiwa_dnn.control.fallback import (
     REACHED,
     Yielding,
     attained,
-    largest_entry,
     largest_factor,
     nearest_within,
     note_limiting,
@@ -42,7 +41,7 @@ from iiwa_dnn.control.stopping import (
 )
 from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import row_dot, times
+from iiwa_dnn.qp.dense import largest_entry, row_dot, times
 from iiwa_dnn.qp.layout import QPViews, copied
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.references.targets import TargetData

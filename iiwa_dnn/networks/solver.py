@@ -235,10 +235,9 @@ class DNNSolver:
 
     def _status(self, qp: QP, point: Vector, residuals: Triple) -> Status:
         """Judge a point by its residuals, and the cost by a Cholesky factor."""
-        total = sum(residuals)
-        if is_accepted(qp.data, *qp.sizes, point, total, self.tol, self.eps_rel):
+        if is_accepted(qp.data, *qp.sizes, point, self.tol, self.eps_rel):
             return Status.SOLVED
-        if not math.isfinite(total):
+        if not math.isfinite(sum(residuals)):
             return Status.NOT_FINITE
         return Status.NOT_CONVERGED if is_convex(qp.P, np.empty_like(qp.P)) else Status.NOT_CONVEX
 

@@ -55,6 +55,15 @@ def _long_dot(start: float, a: Vector, b: Vector) -> float:
 
 
 @compiled
+def largest_entry(values: Vector) -> float:
+    """Return the largest absolute value of an array (k,); NaN if one is NaN."""
+    largest = 0.0
+    for i in range(values.size):
+        largest = larger(largest, abs(values[i]))
+    return largest
+
+
+@compiled
 def row_dot(rows: Matrix, j: int, x: Vector) -> float:
     """Compute the product of row j of a matrix (k, n) and the first n entries of x."""
     return dot(0.0, rows[j], x[: rows.shape[1]])
@@ -185,11 +194,7 @@ def is_symmetric(P: Matrix, largest: float) -> bool:
 @compiled
 def symmetrize(P: Matrix) -> None:
     """Replace P (n, n) by its symmetric part if it is symmetric to `ASYMMETRY` and `ROUNDING`."""
-    largest = 0.0
-    for i in range(P.shape[0]):
-        for k in range(P.shape[0]):
-            largest = larger(largest, abs(P[i, k]))
-    if is_symmetric(P, largest):
+    if is_symmetric(P, largest_entry(P.reshape(P.size))):
         for i in range(P.shape[0]):
             for k in range(i):
                 if P[i, k] != P[k, i]:
@@ -203,11 +208,10 @@ def is_convex(P: Matrix, K: Matrix) -> bool:
 
     The latter is asked of its symmetric part, relative to its largest entry. K (n, n) is scratch.
     """
-    largest = 0.0
+    largest = largest_entry(P.reshape(P.size))
     for i in range(P.shape[0]):
         for k in range(P.shape[0]):
             K[i, k] = 0.5 * (P[i, k] + P[k, i])
-            largest = larger(largest, abs(P[i, k]))
     for i in range(P.shape[0]):
         K[i, i] += ROUNDING * P.shape[0] * largest + 1e-300
     return is_symmetric(P, largest) and cholesky_factor(K)

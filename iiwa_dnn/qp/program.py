@@ -221,8 +221,7 @@ class QP:
         """
         n, m, p = self.sizes
         check_size("point", point, 2 * n + m + p)
-        total = sum(residuals_of(self.data, n, m, p, point))
-        return is_accepted(self.data, n, m, p, point, total, eps_abs, eps_rel)
+        return is_accepted(self.data, n, m, p, point, eps_abs, eps_rel)
 
     def check_values(self) -> None:
         """Check the numbers, and that the program is convex.

@@ -16,7 +16,7 @@ with it the dual residuals and the gap.
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.qp.dense import ROUNDING, add_row, is_convex, row_dot
+from iiwa_dnn.qp.dense import ROUNDING, add_row, is_convex, largest_entry, row_dot
 from iiwa_dnn.qp.layout import Matrix, QPViews, Triple, Vector, copied, larger, qp_views
 
 SLIGHT = 1e-3
@@ -126,11 +126,7 @@ def weight_of(largest: float) -> float:
 @compiled
 def cost_size(qp: QPViews) -> float:
     """Compute the largest absolute entry of P and q; NaN if one is NaN."""
-    largest = 0.0
-    for i in range(qp.q.size):
-        _, _, of_row = terms(qp.P, i, qp.q, False)
-        largest = larger(largest, larger(of_row, abs(qp.q[i])))
-    return largest
+    return larger(largest_entry(qp.P.reshape(qp.P.size)), largest_entry(qp.q))
 
 
 @compiled
@@ -158,44 +154,12 @@ def is_accepted(
     m: int,
     p: int,
     point: Vector,
-    total: float,
     eps_abs: float,
     eps_rel: float,
 ) -> bool:
-    """Check a point (2n + m + p,) by the rule of acceptance, and that `QP.data` is convex.
-
-    The sum of its three residuals is given: it spares the rule where all weights are 1.
-    """
+    """Check a point (2n + m + p,) by the rule of acceptance, and that `QP.data` is convex."""
     qp = qp_views(data, n, m, p)
-    is_small = total <= eps_abs and has_weights_of_one(qp)
-    if not (is_small or fits(qp, point, eps_abs, eps_rel)):
-        return False
-    return is_convex(qp.P, np.empty((n, n)))
-
-
-@compiled
-def has_weights_of_one(qp: QPViews) -> bool:
-    """Check that each row of A and G and of [P | q] has an entry of at least `SLIGHT`.
-
-    All weights are 1 then: a point whose residuals are within `eps_abs` keeps the rule.
-    """
-    p = qp.b.size
-    for j in range(p + qp.h.size):
-        if not has_weight_of_one(qp.A if j < p else qp.G, j if j < p else j - p):
-            return False
-    is_felt = True
-    for i in range(qp.q.size):
-        is_felt = is_felt and (abs(qp.q[i]) >= SLIGHT or has_weight_of_one(qp.P, i))
-    return is_felt
-
-
-@compiled
-def has_weight_of_one(rows: Matrix, j: int) -> bool:
-    """Check that row j of a matrix (k, n) has an entry of at least `SLIGHT`."""
-    k = 0
-    while k < rows.shape[1] and not abs(rows[j, k]) >= SLIGHT:
-        k += 1
-    return k < rows.shape[1]
+    return fits(qp, point, eps_abs, eps_rel) and is_convex(qp.P, np.empty((n, n)))
 
 
 @compiled

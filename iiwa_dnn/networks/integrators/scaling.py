@@ -16,9 +16,10 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp.certificates import certified, find_certificate
-from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, qp_views
+from iiwa_dnn.qp.dense import largest_entry
+from iiwa_dnn.qp.layout import Matrix, Vector, qp_views
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import SLIGHT, cost_size, has_weight_of_one
+from iiwa_dnn.qp.residuals import SLIGHT, cost_size
 from iiwa_dnn.qp.solution import Status
 
 LARGE = 1e3
@@ -39,35 +40,23 @@ def is_ordinary(data: Vector, n: int, m: int, p: int) -> bool:
     A cost of zeros is ordinary, and so is a row of zeros that holds. P is symmetric to the bit.
     """
     qp = qp_views(data, n, m, p)
-    for j in range(p + m):
-        holds = qp.b[j] == 0.0 if j < p else qp.h[j - p] >= 0.0
-        if not _is_ordinary_row(qp.A if j < p else qp.G, j if j < p else j - p, holds):
+    for j in range(p):
+        if not _is_ordinary_size(largest_entry(qp.A[j]), qp.b[j] == 0.0):
             return False
-    return _is_ordinary_cost(qp)
-
-
-@compiled
-def _is_ordinary_cost(qp: QPViews) -> bool:
-    """Check that P is symmetric, and its and q's largest entry from `SLIGHT` to `LARGE`, or 0."""
-    is_felt = False
-    for i in range(qp.q.size):
-        if not abs(qp.q[i]) <= LARGE:
+    for j in range(m):
+        if not _is_ordinary_size(largest_entry(qp.G[j]), qp.h[j] >= 0.0):
             return False
-        for k in range(qp.q.size):
-            if not abs(qp.P[i, k]) <= LARGE or qp.P[i, k] != qp.P[k, i]:
+    for i in range(n):
+        for k in range(i):
+            if qp.P[i, k] != qp.P[k, i]:
                 return False
-        is_felt = is_felt or abs(qp.q[i]) >= SLIGHT or has_weight_of_one(qp.P, i)
-    return is_felt or cost_size(qp) == 0.0
+    return _is_ordinary_size(cost_size(qp), True)
 
 
 @compiled
-def _is_ordinary_row(rows: Matrix, j: int, holds: bool) -> bool:
-    """Check the largest entry of row j of a matrix (k, n), which `holds` where it is zero."""
-    for k in range(rows.shape[1]):
-        if not abs(rows[j, k]) <= LARGE:
-            return False
-        holds = holds and rows[j, k] == 0.0
-    return holds or has_weight_of_one(rows, j)
+def _is_ordinary_size(largest: float, holds: bool) -> bool:
+    """Check the largest entry of a row or the cost, which `holds` where that is zero."""
+    return SLIGHT <= largest <= LARGE or (largest == 0.0 and holds)
 
 
 class Scaling(NamedTuple):
