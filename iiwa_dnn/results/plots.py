@@ -211,20 +211,22 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
         dashes = _DASHES[joint % len(_DASHES)]
         style = {"color": colors[joint], "linestyle": dashes, "label": labels[joint]}
         _draw_curve(axes, record.t[: len(curve)], curve, **style)
-    low, high = axes.get_ylim()
-    margin = 0.15 * (high - low)  # a limit farther off would only flatten the curves
+    reach = np.array(axes.get_ylim())  # as both kinds of limits move it
     for bound in (lower, upper):
-        common = not np.ptp(bound)
-        for joint in np.flatnonzero((low - margin <= bound) & (bound <= high + margin)):
-            # A limit of one joint is a mark at the end of the run.
-            line = axes.axhline(bound[joint], xmin=0.0 if common else 0.94, linewidth=0.8)
-            line.set(linestyle=(0, (8, 3)), color="0.0")
-            if not common:
-                line.set(linestyle="-", linewidth=2.0, color=colors[joint])
-            line.set_label("_" if "limit" in axes.get_legend_handles_labels()[1] else "limit")
-            if common:
-                break
+        _draw_limits(axes, bound, reach, colors)
     label_time(axes, record, quantity, columns=4 if max(map(len, names)) < 8 else 2)
+
+
+def _draw_limits(axes: Axes, bound: Array, reach: Array, colors: Array) -> None:
+    """Draw the limits near a reach: one that all joints share as a line, others as marks."""
+    margin = 0.15 * np.ptp(reach)  # a limit farther off would only flatten the curves
+    near = np.flatnonzero((reach[0] - margin <= bound) & (bound <= reach[1] + margin))
+    dashed = {"linestyle": (0, (8, 3)), "linewidth": 0.8, "color": "0.0"}
+    common = not np.ptp(bound)
+    for joint in near[:1] if common else near:
+        marked = {"xmin": 0.94, "linewidth": 2.0, "color": colors[joint]}
+        line = axes.axhline(bound[joint], **(dashed if common else marked))
+        line.set_label("_" if "limit" in axes.get_legend_handles_labels()[1] else "limit")
 
 
 def _draw_curve(axes: Axes, t: Array, curve: Array, **line: Any) -> None:
