@@ -168,7 +168,6 @@ class Expressions:
         kinds: Types of its parameters and variables.
         written: Arrays that are written into, as Python names them.
         aliases: For a variable, or a member of one, others whose memory it may be a view of.
-        views: The same for the result, in terms of the parameters.
         assigned: Variables that have a value wherever the current statement is reached.
         plans: Variables that are the exported plan, or a part of it.
         lines: Lines of the body so far.
@@ -184,7 +183,6 @@ class Expressions:
         self.kinds = dict(parameters)
         self.written: set[str] = set()
         self.aliases: dict[str, set[str]] = {}
-        self.views: dict[str, set[str]] = {}
         self.assigned = {*parameters}
         self.plans = {own for own, kind in parameters.items() if kind.tag in translator.plan}
         self.lines: list[str] = []

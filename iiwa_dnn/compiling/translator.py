@@ -125,14 +125,9 @@ class Function(Expressions):
     """Translation of one function; a variable has the type of what is first assigned to it.
 
     Attributes:
-        name: Its name in C.
-        about: Its docstring.
-        decoration: The decorator that it has in Python.
-        types: Types in C of its parameters.
-        result: Type of its result.
-        head: Its declaration in C.
-        text: The function in C.
         node: Its syntax tree.
+        result: Type of its result.
+        text: The function in C.
     """
 
     def __init__(
@@ -152,17 +147,39 @@ class Function(Expressions):
         else:
             kinds = {own.arg: of(module, own.annotation or own) for own in node.args.args}
         super().__init__(translator, module, kinds)
-        self.name = module.c_name(node.name)
-        self.about = ast.get_docstring(node) or ""
-        self.decoration = decoration(node)
+        self.node = node
         self.result: Kind = result
-        self.types = [f"const {k.tag} *" if k.is_named else f"{k.tag} " for k in kinds.values()]
         self.text = ""
         self.uses_arena |= self.decoration == ENTRY
-        self.node = node
         self._stored = Counter(stored_names(node))
         self._declared = dict.fromkeys(kinds, 0)
         self._is_const = [False]
+
+    @property
+    def name(self) -> str:
+        """Name in C."""
+        return self.module.c_name(self.node.name)
+
+    @property
+    def about(self) -> str:
+        """Docstring."""
+        return ast.get_docstring(self.node) or ""
+
+    @property
+    def decoration(self) -> str:
+        """Decorator that makes it a kernel or an entry."""
+        return decoration(self.node)
+
+    @property
+    def types(self) -> list[str]:
+        """Types of its parameters in C."""
+        kinds = self.parameters.values()
+        return [f"const {own.tag} *" if own.is_named else f"{own.tag} " for own in kinds]
+
+    @property
+    def views(self) -> dict[str, set[str]]:
+        """Parameters, or members of them, that the result or its members may be views of."""
+        return {place: self.sources(f"return{place}") for place in _arrays(self.result)}
 
     @property
     def head(self) -> str:
@@ -194,7 +211,6 @@ class Function(Expressions):
         if self._takes and _LEFT not in left:
             self.lines.append("arena_leave(arena, &mark);")
         self.written = {own for place in self.written for own in self.sources(place)}
-        self.views = {place: self.sources(f"return{place}") for place in _arrays(self.result)}
         about = f"{self.about}\n\n{self.module.path}: {self.node.name}"
         self.text = self.written_out(about, self.lines)
 

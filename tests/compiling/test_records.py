@@ -150,51 +150,7 @@ def count_in(stats: Stats) -> None:
 class Large(NamedTuple):
     """A plan of many numbers."""
 
-    x0: float
-    x1: float
-    x2: float
-    x3: float
-    x4: float
-    x5: float
-    x6: float
-    x7: float
-    x8: float
-    x9: float
-    x10: float
-    x11: float
-    x12: float
-    x13: float
-    x14: float
-    x15: float
-    x16: float
-    x17: float
-    x18: float
-    x19: float
-    x20: float
-    x21: float
-    x22: float
-    x23: float
-    x24: float
-    x25: float
-    x26: float
-    x27: float
-    x28: float
-    x29: float
-    x30: float
-    x31: float
-    x32: float
-    x33: float
-    x34: float
-    x35: float
-    x36: float
-    x37: float
-    x38: float
-    x39: float
-    x40: float
-    x41: float
-    x42: float
-    x43: float
-    x44: float
+MEMBERS
 
 
 @compiled
@@ -205,7 +161,7 @@ def last_of(large: Large) -> float:
 @entry
 def enter(address: int, plan: Plan, stats: Stats) -> float:
     """Enter a kernel with records."""
-'''
+'''.replace("MEMBERS", "\n".join(f"    x{i}: float" for i in range(45)))
 
 
 def _module(path: Path, name: str) -> ModuleType:

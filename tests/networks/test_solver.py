@@ -114,7 +114,7 @@ def test_a_sharpened_answer_is_never_worse() -> None:
 
 
 @pytest.mark.parametrize("n", [2, 150])
-def test_madewithout_a_choice_are_judged(n: int) -> None:
+def test_programs_without_a_choice_are_judged(n: int) -> None:
     one = np.ones(n)
     qp = d.QP(np.eye(n), -2.0 * one, A=one[np.newaxis], b=[float(n)], lb=one, ub=one)
     solution = d.DNNSolver().solve(qp)
@@ -198,7 +198,7 @@ def test_a_network_that_diverges_says_so() -> None:
     assert seen.index(d.Status.DIVERGED) < seen.index(d.Status.NOT_FINITE)
 
 
-def test_solve_problem_starts_cold_whoever_fractions_its_solver() -> None:
+def test_solve_problem_starts_cold_whoever_shares_its_solver() -> None:
     made = [programs.strictly_convex(np.random.default_rng([59, k]), 7)[0] for k in range(20)]
     cold = [d.DNNSolver().solve(qp).x for qp in made]
     solver = d.DNNSolver()

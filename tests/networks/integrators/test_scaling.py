@@ -131,7 +131,7 @@ def test_scaled_units_round_nothing() -> None:
         assert (largest >= 0.05).all()
 
 
-def test_the_budget_counts_the_linear_linear_solves_of_all_attempts() -> None:
+def test_the_budget_counts_the_linear_solves_of_all_attempts() -> None:
     for seed in range(20):
         rng = np.random.default_rng([24, seed])
         qp = programs.infeasible(rng) if seed % 2 else programs.strictly_convex(rng)[0]
