@@ -148,7 +148,7 @@ def joint_positions(argument: str, value: ArrayLike, dof: int) -> Array:
     Kernels take their sines to the last digits up to there.
     """
     q = array(argument, value, (dof,))
-    if not q @ q <= LARGEST * LARGEST:  # rarely, and at NaN
+    if not q.dot(q) <= LARGEST * LARGEST:  # rarely, and at NaN; `@` would warn of an overflow
         finite_array(argument, q, (dof,))
         if np.abs(q).max() > LARGEST:
             raise InvalidInputError(argument, f"must be within ±{LARGEST:.0f} rad", value)
