@@ -1,13 +1,14 @@
-"""Step of a shield as one kernel, from all that an arm keeps in one array: in C, and for many arms.
+"""Step of a shield as kernels over the memory of an arm: at the desk, for many arms, and in C.
 
-`Shield` does the same at the desk, where Pinocchio computes the kinematics and a command carries
-its program. Here the kinematics are `write_kinematics`, and an arm keeps what can be asked about
-its last step: which limits were active, its margin, the time to rest.
+A step takes what it is given over, needs the kinematics at the commanded positions, and answers the
+request. `Shield` asks Pinocchio for the kinematics, `step_arm` the kernel `write_kinematics`. An
+arm keeps what can be asked about its last step: which limits are active, its margin, the time to
+rest.
 """
 
 from __future__ import annotations
 
-from enum import IntEnum
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -20,41 +21,35 @@ from iiwa_dnn.control.controller import SLACK
 from iiwa_dnn.control.cycle import INVALID, ControlPlan, take_step
 from iiwa_dnn.control.fallback import Yielding
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.shield import (
+from iiwa_dnn.control.requests import (
+    CUT,
+    FASTEST,
     TWIST,
-    Flags,
     Reason,
-    ShieldSettings,
-    ShieldState,
-    come_nearer,
+    Request,
     cut_twist,
     falls_short,
-    take_request,
 )
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import row_dot
-from iiwa_dnn.qp.layout import IntVector, copied
-from iiwa_dnn.robot.kinematics import Placement
+from iiwa_dnn.qp.dense import all_finite, row_dot
+from iiwa_dnn.qp.layout import IntVector, QPViews, copied
+from iiwa_dnn.references.targets import TargetData
+from iiwa_dnn.robot.kinematics import Placement, Twist
 from iiwa_dnn.robot.kinematics_kernel import ModelTables, write_kinematics
-from iiwa_dnn.schemes.limits import MotionNumbers, Periods, constant_periods, joint_rates
-from iiwa_dnn.schemes.program import (
-    ProgramArrays,
-    block_constants,
-    bound_kind,
-    program_views,
+from iiwa_dnn.schemes.limits import (
+    MotionNumbers,
+    Periods,
+    Rates,
+    arriving,
+    braking,
+    constant_periods,
+    joint_bounds,
+    joint_rates,
 )
+from iiwa_dnn.schemes.program import ProgramArrays, block_constants, bound_kind, program_views
 from iiwa_dnn.schemes.scene import Body, scene_views, write_distances
-
-
-class Request(IntEnum):
-    """Kinds of a request."""
-
-    NONE = 0
-    VELOCITY = 1
-    TWIST = 2
-    POSITION = 3
 
 
 class ArmSettings(Record):
@@ -64,7 +59,7 @@ class ArmSettings(Record):
         dt: Control period [s].
         longest: Longest control period where periods vary [s]; 0: they do not.
         timeout: Time for which a request counts [s].
-        tracking_error: Difference from which on an arm is resynchronised to measured positions
+        tracking_error: Difference from which on the arm is resynchronised to measured positions
             [rad].
     """
 
@@ -74,6 +69,18 @@ class ArmSettings(Record):
     tracking_error: float
 
 
+class ArmSizes(NamedTuple):
+    """Sizes of `ArmState`, by its names."""
+
+    n: int
+    request: int
+    motion: int
+    network: int
+    fallback: int
+    obstacles: int
+    limiting: int
+
+
 class ArmState(Record):
     """All that an arm keeps from one step to the next, and of the last one what can be asked.
 
@@ -81,20 +88,26 @@ class ArmState(Record):
         time: Time of the arm's clock [s].
         period: Period that counts for the last command [s].
         spacing: Period over which accelerations count [s]; 0 before the first step.
+        age: Time since the request came [s].
+        reason: `Reason` why it is one to rest.
         kind: `Request` of the last request.
+        answered: `Request` that the last step answered; `NONE`: its positions are not known.
         action: `Action` of the last step.
-        is_clipped: Whether its command was another one than the request.
-        is_late: Whether its period was above the longest.
+        has_begun: Whether there was a first step.
+        is_repeated: Whether the request is that of the step before.
+        is_resynchronised: Whether it was resynchronised to measured positions.
+        is_blind: Whether the measured positions were not finite.
+        is_cut: Whether the request was cut.
+        is_late: Whether the period was above the longest.
         is_singular: Whether the damping alone kept a twist from being fulfilled.
-        is_blind: Whether its measured positions were not finite.
-        asked: State of the request.
+        is_clipped: Whether the command was another one than the request.
         positions: Commanded joint positions [rad], (n,).
-        request: The request that counts, (max(n, 6),).
+        request: The request that counts, (max(n, 6),): zero without one.
         motion: `MotionState`.
         network: State of the network that answers twists.
         fallback: States of the networks of fallback programs, for requests of joints.
         twist_relaxed: The same for twists.
-        obstacles: Places of the obstacles [m], three numbers each.
+        obstacles: Places of the obstacles at time 0 [m], (k, 3).
         limiting: For each joint the kind of the bound that limits it, below 0 for a lower one, or
             0; then 1 for each row that limits the command, (n + m,).
     """
@@ -102,20 +115,26 @@ class ArmState(Record):
     time: float
     period: float
     spacing: float
+    age: float
+    reason: int
     kind: int
+    answered: int
     action: int
-    is_clipped: bool
+    has_begun: bool
+    is_repeated: bool
+    is_resynchronised: bool
+    is_blind: bool
+    is_cut: bool
     is_late: bool
     is_singular: bool
-    is_blind: bool
-    asked: Flags = part(Flags)
+    is_clipped: bool
     positions: Vector = part("n")
     request: Vector = part("request")
     motion: Vector = part("motion")
     network: Vector = part("network")
     fallback: Vector = part("relaxed")
-    twist_relaxed: Vector = part("twist_relaxed")
-    obstacles: Vector = part("obstacles")
+    twist_relaxed: Vector = part("relaxed")
+    obstacles: Matrix = part("obstacles", 3)
     limiting: Vector = part("limiting")
 
 
@@ -126,11 +145,13 @@ class ArmProgram(NamedTuple):
         step: Layout of the control step.
         width: Length of its log.
         rates: Number of the block of acceleration and jerk limits; -1: there is none.
+        scene: Number of the block of the watched pairs; -1: there is none.
     """
 
     step: ControlPlan
     width: int
     rates: int
+    scene: int
 
 
 class ArmPlan(NamedTuple):
@@ -141,18 +162,22 @@ class ArmPlan(NamedTuple):
         joint: Step for requests of joint velocities and positions.
         twist: Step for requests of a frame's twist.
         motion: Limits of the joints.
-        range: Lower and upper position limits [rad], (2, n).
+        lower: Lower position limits [rad], (n,).
+        upper: Upper position limits [rad], (n,).
+        velocities: Velocities of the obstacles [m/s], (k, 3).
         settings: Settings of the shield.
-        sizes: Sizes of `ArmState`, (8,).
+        sizes: Sizes of `ArmState`.
     """
 
     robot: ModelTables
     joint: ArmProgram
     twist: ArmProgram
     motion: MotionNumbers
-    range: Matrix
+    lower: Vector
+    upper: Vector
+    velocities: Matrix
     settings: ArmSettings
-    sizes: IntVector
+    sizes: ArmSizes
 
 
 class ArmInput(NamedTuple):
@@ -176,8 +201,23 @@ class ArmInput(NamedTuple):
 @compiled
 def arm_state(plan: ArmPlan, memory: Vector) -> ArmState:
     """View the memory (k,) of an arm by its names."""
-    own = plan.sizes
-    return ArmState.of(memory, own[0], own[1], own[2], own[3], own[4], own[5], own[6], own[7])
+    return ArmState.of(
+        memory,
+        plan.sizes.n,
+        plan.sizes.request,
+        plan.sizes.motion,
+        plan.sizes.network,
+        plan.sizes.fallback,
+        plan.sizes.obstacles,
+        plan.sizes.limiting,
+    )
+
+
+@compiled
+def motion_of(plan: ArmPlan, own: ArmState) -> MotionState:
+    """View the state of an arm's motion."""
+    sizes = plan.joint.step.arrays.sizes
+    return MotionState.of(own.motion, sizes.joints, sizes.pairs)
 
 
 @compiled
@@ -189,19 +229,43 @@ def rest_arm(plan: ArmPlan, memory: Vector, q: Vector) -> None:
     own = arm_state(plan, memory)
     places = own.obstacles.copy()
     memory[:] = 0.0
-    copied(own.obstacles, places)
+    for k in range(len(places)):
+        copied(own.obstacles[k], places[k])
     own.period = plan.settings.dt
-    own.asked.reason = Reason.NO_REQUEST
+    own.reason = Reason.NO_REQUEST
     if q.size > 0:
-        own.asked.begun = True
+        own.has_begun = True
         copied(own.positions, q)
 
 
 @compiled
-def motion_of(plan: ArmPlan, own: ArmState) -> MotionState:
-    """View the state of an arm's motion."""
-    sizes = plan.joint.step.arrays.sizes
-    return MotionState.of(own.motion, sizes.joints, sizes.pairs)
+def place_arm(plan: ArmPlan, memory: Vector, centers: Matrix) -> None:
+    """Let the obstacles have their centres at places (k, 3) [m] now, and move on from there."""
+    own = arm_state(plan, memory)
+    for k in range(len(own.obstacles)):
+        for i in range(3):
+            own.obstacles[k, i] = centers[k, i] - own.time * plan.velocities[k, i]
+
+
+@compiled
+def halt_arm(plan: ArmPlan, memory: Vector) -> None:
+    """Brake from now on, whatever is requested, until the arm rests anew."""
+    own = arm_state(plan, memory)
+    own.reason = Reason.HALTED
+
+
+@compiled
+def send_arm(plan: ArmPlan, memory: Vector, dq: Vector, period: float) -> None:
+    """Count a velocity dq (n,) [rad/s] as sent for a period [s], in place of a step's command."""
+    own = arm_state(plan, memory)
+    motion = motion_of(plan, own)
+    copied(motion.before, motion.last)
+    copied(motion.last, dq[: motion.last.size])
+    motion.stopping_periods = 0.0
+    own.age += own.period
+    own.period = period
+    own.spacing = own.spacing if own.spacing > 0.0 else period
+    _go_on(own, motion)
 
 
 @compiled
@@ -214,61 +278,56 @@ def step_arm(plan: ArmPlan, memory: Vector, given: ArmInput) -> int:
         The first `Reason` for another command than the request; `INVALID` if a stated period is
         none: then nothing is changed.
     """
+    if take_input(plan, memory, given) == INVALID:
+        return INVALID
     own = arm_state(plan, memory)
-    settings = plan.settings
-    stated = max(given.dt, given.elapsed)
-    fits = min(given.dt, given.elapsed) >= 0.0 and stated < np.inf
-    if not fits or min(given.dt, given.elapsed) > 0.0:
-        return INVALID
-    if given.elapsed > 0.0 and settings.longest == 0.0:
-        return INVALID
-    periods = _stated_periods(settings, given.dt, given.elapsed)
-    _take_period(plan, own, periods, given.elapsed)
-    own.is_late = 0.0 < settings.longest * (1.0 + SLACK) < stated
-    held = _take_input(own, settings, given)
-    own.period = given.dt if given.dt > 0.0 else settings.dt
-    if own.asked.begun:
-        counts = own.asked.reason == Reason.NONE and not own.is_blind
-        if own.kind == Request.TWIST and counts:
-            own.action = _answer(plan, plan.twist, own, periods, Request.TWIST, held)
-        elif own.kind == Request.POSITION and counts:
-            own.action = _answer(plan, plan.joint, own, periods, Request.POSITION, held)
-        else:
-            own.action = _answer(plan, plan.joint, own, periods, Request.VELOCITY, held)
-    dq = motion_of(plan, own).last
-    for i in range(dq.size):
-        own.positions[i] += own.period * dq[i]
-    own.time += own.period
+    base = plan.joint.step.arrays
+    jacobian = np.empty((own.positions.size, 6))
+    placements = np.empty((base.placements.shape[0], 12))
+    write_kinematics(plan.robot, own.positions, jacobian, placements, base.inertia)
+    row = np.empty(max(plan.joint.width, plan.twist.width))
+    answer_request(plan, memory, given, jacobian, placements, row)
     return first_reason(own)
 
 
 @compiled
-def first_reason(own: ArmState) -> int:
-    """Return the first `Reason` for another command than the request, beside limits."""
-    if own.is_blind and own.asked.reason != Reason.HALTED:
-        return Reason.Q_NOT_FINITE
-    if own.asked.reason != Reason.NONE:
-        return own.asked.reason
-    if own.asked.resynchronised:
-        return Reason.RESYNCHRONISED
-    if own.asked.is_cut:
-        return Reason.CUT
-    if own.is_late:
-        return Reason.PERIOD_EXCEEDED
-    return Reason.SINGULAR if own.is_singular else Reason.NONE
+def take_input(plan: ArmPlan, memory: Vector, given: ArmInput) -> int:
+    """Take positions, a request and periods over: the part of a step before the kinematics.
+
+    Returns:
+        The `Request` that is to be answered; `NONE`: the arm's positions are not known. `INVALID`
+        if a stated period is none: then nothing is changed.
+    """
+    own = arm_state(plan, memory)
+    settings = plan.settings
+    stated = max(given.dt, given.elapsed)
+    fits = stated < np.inf and min(given.dt, given.elapsed) == 0.0
+    if not fits or (given.elapsed > 0.0 and settings.longest == 0.0):
+        return INVALID
+    _take_period(plan, own, _stated_periods(settings, given), given.elapsed)
+    own.is_late = 0.0 < settings.longest * (1.0 + SLACK) < stated
+    _take_positions(own, settings, given)
+    _take_request(own, settings, given)
+    own.period = given.dt if given.dt > 0.0 else settings.dt
+    own.answered = Request.VELOCITY
+    if own.reason == Reason.NONE and not own.is_blind:
+        own.answered = own.kind
+    if not own.has_begun:
+        own.answered = Request.NONE
+    return own.answered
 
 
 @compiled
-def _stated_periods(settings: ArmSettings, dt: float, elapsed: float) -> Periods:
+def _stated_periods(settings: ArmSettings, given: ArmInput) -> Periods:
     """Return `limits.stated_periods`, where 0 is a period that is not stated."""
     longest = settings.longest
-    hold = dt if dt > 0.0 else settings.dt
+    hold = given.dt if given.dt > 0.0 else settings.dt
     if longest == 0.0:
         return constant_periods(hold)
-    if dt > 0.0:
+    if given.dt > 0.0:
         return Periods(hold, hold, longest, 1.0, True)
-    if elapsed > 0.0:
-        return Periods(elapsed, longest, longest, 1.0, True)
+    if given.elapsed > 0.0:
+        return Periods(given.elapsed, longest, longest, 1.0, True)
     return Periods(hold, hold, hold, hold / longest, True)
 
 
@@ -279,7 +338,7 @@ def _take_period(plan: ArmPlan, own: ArmState, periods: Periods, elapsed: float)
     if elapsed > 0.0:
         for i in range(motion.last.size):
             own.positions[i] += (elapsed - own.period) * motion.last[i]
-        own.time += elapsed - own.period
+        own.time = own.time + elapsed - own.period
         own.period = elapsed
     if own.spacing > 0.0 and periods.dt != own.spacing:
         ratio = periods.dt / own.spacing
@@ -290,45 +349,116 @@ def _take_period(plan: ArmPlan, own: ArmState, periods: Periods, elapsed: float)
 
 
 @compiled
-def _take_input(own: ArmState, settings: ArmSettings, given: ArmInput) -> bool:
-    """Take measured positions and a request over; return whether it is that of the last step."""
-    n = own.positions.size
-    q = own.positions.copy()
+def _take_positions(own: ArmState, settings: ArmSettings, given: ArmInput) -> None:
+    """Take measured positions over at the first step, if they are far, or if nobody states periods.
+
+    Then nobody says for how long the last command was held.
+    """
     far = 0
-    for i in range(n):
-        far += not abs(given.q[i]) <= LARGEST
-    own.is_blind = far > 0
-    if far == 0:
-        copied(q, given.q[:n])
-        if settings.longest > 0.0 and max(given.dt, given.elapsed) == 0.0:
-            copied(own.positions, q)  # nobody says for how long the last command was held
-    numbers = ShieldSettings.of(np.zeros(4))
-    numbers.period = own.period
-    numbers.timeout = settings.timeout
-    numbers.tracking_error = settings.tracking_error
-    request = own.request.copy()
+    beyond = 0
+    for i in range(own.positions.size):
+        far += not abs(given.q[i] - own.positions[i]) <= settings.tracking_error
+        beyond += not abs(given.q[i]) <= LARGEST
+    unstated = settings.longest > 0.0 and max(given.dt, given.elapsed) == 0.0
+    own.is_blind = beyond > 0
+    own.is_resynchronised = False
+    if not own.is_blind and (far > 0 or unstated or not own.has_begun):
+        own.is_resynchronised = own.has_begun and not unstated
+        own.has_begun = True
+        copied(own.positions, given.q[: own.positions.size])
+
+
+@compiled
+def _take_request(own: ArmState, settings: ArmSettings, given: ArmInput) -> None:
+    """Take a request over; without one the last one counts, or one to rest for a reason."""
+    count = 0
     if given.kind != Request.NONE:
         own.kind = given.kind
-        copied(request, given.request[: TWIST if given.kind == Request.TWIST else n])
-    begun = own.asked.begun
-    state = ShieldState(own.positions, own.request, own.asked)
-    held = take_request(q, request, given.kind != Request.NONE, state, numbers)
-    if far > 0:
-        own.asked.begun = begun  # not by positions that nobody has measured
-    return held and far == 0
+        count = TWIST if given.kind == Request.TWIST else own.positions.size
+    own.age += own.period
+    if count > 0 and own.reason != Reason.HALTED:
+        own.age = 0.0
+        finite = all_finite(given.request, 0, count)
+        own.reason = Reason.NONE if finite else Reason.NOT_FINITE
+    if own.reason == Reason.NONE and own.age > settings.timeout + 0.5 * own.period:
+        own.reason = Reason.TIMED_OUT
+    other = 0
+    for i in range(own.request.size):
+        now = given.request[i] if i < count else own.request[i]
+        now = now if own.reason == Reason.NONE else 0.0
+        other += now != own.request[i]
+        own.request[i] = now
+    own.is_repeated = other == 0 and not own.is_blind
+
+
+@compiled
+def answer_request(
+    plan: ArmPlan,
+    memory: Vector,
+    given: ArmInput,
+    jacobian: Matrix,
+    placements: Matrix,
+    row: Vector,
+) -> int:
+    """Answer the request that `take_input` has found: the part of a step after the kinematics.
+
+    Args:
+        plan: Layout of the step.
+        memory: The arm's memory, (k,).
+        given: As for `take_input`.
+        jacobian: `Kinematics.jacobian` at the commanded positions, (n, 6).
+        placements: `Kinematics.placements` there, (frames, 12).
+        row: Room for the log of the control step.
+
+    Returns:
+        The action that was taken, or `INVALID`.
+    """
+    own = arm_state(plan, memory)
+    if own.answered == Request.TWIST:
+        own.action = _answer(plan, plan.twist, own, given, jacobian, placements, row)
+    elif own.answered != Request.NONE:
+        own.action = _answer(plan, plan.joint, own, given, jacobian, placements, row)
+    _go_on(own, motion_of(plan, own))
+    return own.action
+
+
+@compiled
+def _go_on(own: ArmState, motion: MotionState) -> None:
+    """Lead positions and clock to the end of the last command's period."""
+    for i in range(own.positions.size):
+        own.positions[i] += own.period * motion.last[i]
+    own.time += own.period
+
+
+@compiled
+def first_reason(own: ArmState) -> int:
+    """Return the first `Reason` for another command than the request, beside limits."""
+    if own.is_blind and own.reason != Reason.HALTED:
+        return Reason.Q_NOT_FINITE
+    if own.reason != Reason.NONE:
+        return own.reason
+    if own.is_resynchronised:
+        return Reason.RESYNCHRONISED
+    if own.is_cut:
+        return Reason.CUT
+    if own.is_late:
+        return Reason.PERIOD_EXCEEDED
+    return Reason.SINGULAR if own.is_singular else Reason.NONE
 
 
 @compiled
 def _answer(
-    plan: ArmPlan, program: ArmProgram, own: ArmState, periods: Periods, kind: int, held: bool
+    plan: ArmPlan,
+    program: ArmProgram,
+    own: ArmState,
+    given: ArmInput,
+    jacobian: Matrix,
+    placements: Matrix,
+    row: Vector,
 ) -> int:
     """Answer a request by the program of its kind, and keep its command; return the action."""
-    n = own.positions.size
-    motion = motion_of(plan, own)
+    periods = _stated_periods(plan.settings, given)
     base = program.step.arrays
-    jacobian = np.empty((n, 6))
-    placements = np.empty((base.placements.shape[0], 12))
-    write_kinematics(plan.robot, own.positions, jacobian, placements, base.inertia)
     arrays = ProgramArrays(
         base.sizes,
         base.table,
@@ -340,29 +470,19 @@ def _answer(
         1.0 / own.period,
         base.tip,
     )
-    _state_changes(program, own, periods, arrays)
-    row = np.zeros(program.width)
-    log = log_of(row, base.sizes)
-    targets = log.targets.reshape(log.targets.size)
-    state = own.network if kind == Request.TWIST else np.zeros(own.network.size)
-    if kind == Request.TWIST:
-        copied(targets[12:], own.request[:TWIST])
-        placement = Placement.of(placements[base.tip])
-        support = base.support[base.tip]
-        own.asked.is_cut = cut_twist(targets[12:18], jacobian, placement, support, plan.motion)
+    _write_constants(plan, program, own, periods, arrays)
+    motion = motion_of(plan, own)
+    numbers = row[: program.width]
+    log = log_of(numbers, base.sizes)
+    is_twist = own.answered == Request.TWIST
+    state = own.network if is_twist else np.zeros(own.network.size)
+    if is_twist:
+        _write_twist(plan, own, arrays, log)
     else:
-        request = np.zeros(n) if own.is_blind else own.request
-        come_nearer(
-            ShieldState(own.positions, request, own.asked),
-            motion.last,
-            motion.before,
-            plan.motion,
-            periods,
-            kind == Request.POSITION,
-            held,
-            state[:n],
-        )
-        copied(targets, state[:n])
+        come_nearer(own, motion, plan.motion, periods, state)
+        targets = log.targets.reshape(log.targets.size)
+        targets[:] = 0.0
+        copied(targets, state[: own.positions.size])
     settings = program.step.yielding
     yielding = Yielding(
         settings.weights,
@@ -376,26 +496,26 @@ def _answer(
         settings.coupled,
         settings.alike,
     )
-    fallback = own.twist_relaxed if kind == Request.TWIST else own.fallback
+    fallback = own.twist_relaxed if is_twist else own.fallback
     step = ControlPlan(
         arrays, program.step.network, program.step.paths, yielding, fallback, program.step.policy
     )
     next_motion_state = np.empty(own.motion.size)
     action = take_step(
-        row, step, own.positions, own.motion, next_motion_state, state, own.time, False
+        numbers, step, own.positions, own.motion, next_motion_state, state, own.time, False
     )
     if action == INVALID:  # positions that have been led beyond all limits
         motion.last[:] = 0.0
         return action
     copied(own.motion, next_motion_state)
-    motion.yields = False
-    _note_limits(plan, own, log, step, action, kind)
+    motion.yields = False  # a request that can be had again is had at once
+    _note_limits(plan, own, log, step, action)
     return action
 
 
 @compiled
-def _state_changes(
-    program: ArmProgram, own: ArmState, periods: Periods, arrays: ProgramArrays
+def _write_constants(
+    plan: ArmPlan, program: ArmProgram, own: ArmState, periods: Periods, arrays: ProgramArrays
 ) -> None:
     """Write stated periods and the places of the obstacles among a program's constants."""
     if periods.vary and program.rates >= 0:
@@ -404,33 +524,93 @@ def _state_changes(
         limits.hold = periods.hold
         limits.longest = periods.longest
         limits.fraction = periods.fraction
-    count = own.obstacles.size // 3
-    if count > 0:
-        numbers = block_constants(arrays, program.step.yielding.scenes[0])
-        bodies = scene_views(numbers, own.positions.size).bodies
-        for k in range(count):
-            body = Body.of(bodies[len(bodies) - count + k])
-            copied(body.center, own.obstacles[3 * k : 3 * k + 3])
+    if program.scene >= 0:
+        _place_obstacles(plan, own, own.time, block_constants(arrays, program.scene))
+
+
+@compiled
+def _place_obstacles(plan: ArmPlan, own: ArmState, t: float, constants: Vector) -> None:
+    """Write the places of the obstacles at time t [s] among the constants (k,) of a scene."""
+    bodies = scene_views(constants, own.positions.size).bodies
+    first = len(bodies) - len(own.obstacles)
+    for k in range(len(own.obstacles)):
+        body = Body.of(bodies[first + k])
+        for i in range(body.center.size):
+            body.center[i] = own.obstacles[k, i] + t * plan.velocities[k, i]
+
+
+@compiled
+def _write_twist(plan: ArmPlan, own: ArmState, arrays: ProgramArrays, log: StepLog) -> None:
+    """Write the requested twist, cut to what joints can do, as the target of its frame."""
+    twist = own.request[: Twist.width()].copy()
+    placement = Placement.of(arrays.placements[arrays.tip])
+    support = arrays.support[arrays.tip]
+    own.is_cut = cut_twist(twist, arrays.jacobian, placement, support, plan.motion)
+    for k in range(len(log.targets)):
+        target = TargetData.of(log.targets[k])
+        target.numbers[:] = 0.0
+        copied(target.linear_velocity, Twist.of(twist).linear)
+        copied(target.angular_velocity, Twist.of(twist).angular)
+
+
+@compiled
+def come_nearer(
+    own: ArmState, motion: MotionState, limits: MotionNumbers, periods: Periods, dq: Vector
+) -> None:
+    """Write the next velocities dq (n,) [rad/s] on the quickest path to the request that counts.
+
+    Those on the way to positions are the quickest ones from which all joints can still rest there.
+    A joint that jerk limits keep from its velocity in this step, or that is asked for the same one
+    as in the last step, does not pass it.
+
+    Args:
+        own: The request, and where the joints are.
+        motion: Last commands.
+        limits: Limits of the joints.
+        periods: Periods of the step.
+        dq: The velocities, or longer, overwritten.
+    """
+    reaches = own.answered == Request.POSITION
+    own.is_cut = False
+    for i in range(own.positions.size):
+        last = motion.last[i]
+        before = motion.before[i]
+        wanted = 0.0 if own.is_blind else own.request[i]
+        left = wanted - own.positions[i]
+        above = limits.upper[i] - own.positions[i]
+        below = own.positions[i] - limits.lower[i]
+        rates = joint_rates(limits, i)
+        most = CUT * min(rates.velocity, FASTEST)
+        if reaches:
+            above = left if left >= 0.0 else np.inf
+            below = -left if left < 0.0 else np.inf
+            accel = rates.acceleration
+            rates = Rates(rates.velocity, accel, rates.jerk, accel, np.inf, 0.0)
+            wanted = min(max(left / periods.hold, -most), most)
+        elif abs(wanted) > most:
+            wanted = math.copysign(most, wanted)
+            own.is_cut = True
+        lower, upper = joint_bounds(last, before, above, below, rates, periods)
+        if reaches:
+            wanted = min(max(wanted, lower), upper)
+            wanted = arriving(last, before, left, wanted, rates, periods)
+        elif own.is_repeated or wanted < lower or wanted > upper:
+            wanted += braking(last - wanted, -np.inf, np.inf, limits.jerk[i], periods)
+        dq[i] = wanted
 
 
 @compiled
 def _note_limits(
-    plan: ArmPlan, own: ArmState, log: StepLog, step: ControlPlan, action: int, kind: int
+    plan: ArmPlan, own: ArmState, log: StepLog, step: ControlPlan, action: int
 ) -> None:
     """Note which bounds and rows keep the command from the request, and whether they do."""
     qp = program_views(log.program, step.arrays.sizes)
     n = own.positions.size
-    first_row = qp.q.size + qp.b.size
-    first_bound = first_row + qp.h.size
     own.limiting[:] = 0.0
     differs = 0
     limits = 0
     for i in range(n):
-        side = log.limiting[i]
-        if action == Action.NONE:
-            side = log.point[first_bound + i]
-            nearest = qp.ub[i] if side > 0.0 else qp.lb[i]
-            side = _active(side, abs(nearest - log.point[i]))
+        side = _side_of_bound(log, qp, i, action)
         if side != 0.0:
             rates = joint_rates(plan.motion, i)
             bounds = (log.lower[i], log.upper[i])
@@ -440,18 +620,38 @@ def _note_limits(
             limits += 1
         differs += log.dq[i] != own.request[i]
     for j in range(qp.h.size):
-        side = log.limiting[qp.q.size + j]
-        if action == Action.NONE:
-            side = _active(log.point[first_row + j], qp.h[j] - row_dot(qp.G, j, log.point))
-        if side != 0.0:
+        if _side_of_row(log, qp, j, action) != 0.0:
             own.limiting[n + j] = 1.0
             limits += 1
-    own.is_singular = kind == Request.TWIST and falls_short(qp, log.targets[0, 12:])
+    own.is_singular = False
+    if own.answered == Request.TWIST:
+        for k in range(len(log.targets)):
+            own.is_singular = falls_short(qp, TargetData.of(log.targets[k]))
     reason = first_reason(own)
-    if kind == Request.VELOCITY and reason == Reason.NONE:
+    own.is_clipped = limits > 0 or reason != Reason.NONE
+    if own.answered == Request.VELOCITY and reason == Reason.NONE:
         own.is_clipped = differs > 0
-    else:
-        own.is_clipped = limits > 0 or reason != Reason.NONE
+
+
+@compiled
+def _side_of_bound(log: StepLog, qp: QPViews, i: int, action: int) -> float:
+    """Return the side of the bound that limits joint i: above 0 for the upper one, or 0."""
+    side: float = log.limiting[i]
+    if action != Action.NONE:
+        return side
+    side = log.point[qp.q.size + qp.b.size + qp.h.size + i]
+    nearest = qp.ub[i] if side > 0.0 else qp.lb[i]
+    return _active(side, abs(nearest - log.point[i]))
+
+
+@compiled
+def _side_of_row(log: StepLog, qp: QPViews, j: int, action: int) -> float:
+    """Return another number than 0 if inequality row j limits the command."""
+    side: float = log.limiting[qp.q.size + j]
+    if action != Action.NONE:
+        return side
+    side = log.point[qp.q.size + qp.b.size + j]
+    return _active(side, qp.h[j] - row_dot(qp.G, j, log.point))
 
 
 @compiled
@@ -470,29 +670,18 @@ def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
     q = motion_of(plan, own).q
     joint = np.inf
     for i in range(q.size):
-        joint = min(joint, min(q[i] - plan.range[0, i], plan.range[1, i] - q[i]))
-    base = plan.joint.step.arrays
+        joint = min(joint, min(q[i] - plan.lower[i], plan.upper[i] - q[i]))
     distance = np.inf
-    if plan.joint.step.yielding.scenes.size > 0:
+    if plan.joint.scene >= 0:
+        base = plan.joint.step.arrays
         jacobian = np.empty((q.size, 6))
         placements = np.empty((base.placements.shape[0], 12))
         write_kinematics(plan.robot, q, jacobian, placements, base.inertia)
-        arrays = ProgramArrays(
-            base.sizes,
-            base.table,
-            base.constants.copy(),
-            jacobian,
-            placements,
-            base.support,
-            base.inertia,
-            base.rate,
-            base.tip,
-        )
-        _state_changes(plan.joint, own, constant_periods(1.0), arrays)
-        numbers = block_constants(arrays, plan.joint.step.yielding.scenes[0])
-        scene = scene_views(numbers, q.size)
+        constants = block_constants(base, plan.joint.scene).copy()
+        _place_obstacles(plan, own, own.time - own.period, constants)
+        scene = scene_views(constants, q.size)
         distances = np.empty(len(scene.pairs))
-        write_distances(numbers, q.size, placements, distances)
+        write_distances(constants, q.size, placements, distances)
         for k in range(distances.size):
             distance = min(distance, distances[k] - scene.head.least)
     return joint, distance
@@ -509,28 +698,6 @@ def stopping_time_of(plan: ArmPlan, memory: Vector) -> float:
     cubic = plan.joint.step.yielding.cubic
     periods = least_periods(motion.last, motion.before, plan.motion, own.spacing, cubic, False)
     return own.spacing * max(periods, support)
-
-
-@compiled
-def halt_arm(plan: ArmPlan, memory: Vector) -> None:
-    """Brake from now on, whatever is requested, until the arm rests anew."""
-    own = arm_state(plan, memory)
-    own.asked.reason = Reason.HALTED
-
-
-@compiled
-def send_arm(plan: ArmPlan, memory: Vector, dq: Vector, period: float) -> None:
-    """Count a velocity dq (n,) [rad/s] as sent for a period [s], in place of a step's command."""
-    own = arm_state(plan, memory)
-    motion = motion_of(plan, own)
-    copied(motion.before, motion.last)
-    copied(motion.last, dq[: motion.last.size])
-    motion.stopping_periods = 0.0
-    own.asked.age += own.period
-    own.period = period
-    own.time += period
-    for i in range(motion.last.size):
-        own.positions[i] += period * dq[i]
 
 
 class ArmInputs(NamedTuple):

@@ -305,13 +305,12 @@ class Controller:
         if elapsed is not None:
             self._state.book(elapsed)
         found = dt or elapsed or 0.0
-        exceeded = longest is not None and found > longest * (1.0 + SLACK)
+        exceeded = exceeds(found, longest)
         hold = self.dt if dt is None else periods.hold
         control_layout.set_periods(hold, periods, (EXCEEDED,) if exceeded else ())
         if exceeded and not self._state.exceeded:
             self._state.exceeded = True
-            problem = f"a period of {found:g} s is above the longest, {longest:g} s"
-            warnings.warn(f"{problem}: limits may be passed", stacklevel=4)
+            warn_of_period(found, longest)
 
     def _clock(self, t: float, target: Any) -> float:
         """Return the time of the reference's clock at time t [s]; of a given target t itself."""
@@ -475,6 +474,17 @@ class Controller:
             motion = self._state.motion
             least = self._state.next_motion.least.copy()
             return self.program.qp_at(q, motion.last, motion.before, targets, self.dt, t, least)
+
+
+def exceeds(period: float, longest: float | None) -> bool:
+    """Test whether a period [s] is above the longest one, if there is one."""
+    return longest is not None and period > longest * (1.0 + SLACK)
+
+
+def warn_of_period(period: float, longest: float | None) -> None:
+    """Warn whoever has called a step of a period [s] above the longest one."""
+    problem = f"a period of {period:g} s is above the longest, {longest:g} s"
+    warnings.warn(f"{problem}: limits may be passed", stacklevel=5)
 
 
 def _is_plain(q: Any, shape: tuple[int, ...]) -> bool:

@@ -17,105 +17,21 @@ from iiwa_dnn import checks
 from iiwa_dnn.control.arms import (
     ArmInputs,
     ArmOutputs,
-    ArmPlan,
-    ArmProgram,
-    ArmSettings,
-    ArmState,
-    Request,
     halt_arm,
-    margin_of,
+    place_arm,
     rest_arm,
     step_arms,
-    stopping_time_of,
 )
-from iiwa_dnn.control.controller import EXCEEDED, Controller
-from iiwa_dnn.control.shield import (
-    IS_CUT,
-    JOINTS,
-    REASONS,
-    RESYNCHRONISED,
-    SINGULAR,
-    TWIST,
-    Margin,
-    Reason,
-    Shield,
-)
-from iiwa_dnn.control.state import MotionState
+from iiwa_dnn.control.requests import REASONS, TWIST, Request
+from iiwa_dnn.control.shield import Arm, Margin, Shield, one_request
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.naming import KINDS, active_limits, describe
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.robot.kinematics_kernel import model_tables
-from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.limits import MotionLimits, stated_periods
-from iiwa_dnn.schemes.scene import Body, scene_views
+from iiwa_dnn.schemes.limits import stated_periods
 
 BLOCK = 64
 """Arms that a thread takes at a time."""
-
-WORDS = (*REASONS, "q not finite", RESYNCHRONISED, IS_CUT, EXCEEDED, SINGULAR)
-"""Reasons in words, by their codes."""
-
-
-def arm_plan(shield: Shield, frame: str) -> tuple[ArmPlan, Vector]:
-    """Lay the step of an arm out, for requests of joints and of one frame's twist.
-
-    Returns:
-        The plan, and the memory of an arm that has not begun.
-    """
-    robot = shield.robot
-    joint = shield.controller(JOINTS)
-    twist = shield.controller(frame)
-    programs = [joint.program, twist.program]
-    frames = dict.fromkeys(k for each in programs for k in each.kinematics.frame_ids)
-    own = _arm_program(joint)
-    other = _arm_program(twist)
-    places = _places(shield)
-    n, m, _ = programs[0].sizes
-    sizes = [
-        robot.dof,
-        max(robot.dof, TWIST),
-        joint.control_layout.width,
-        joint.solver.state_for(programs[0].sizes).size,
-        own.step.fallback.size,
-        other.step.fallback.size,
-        places.size,
-        n + m,
-    ]
-    longest = shield.longest_period or 0.0
-    own_settings = shield.settings
-    settings = np.array([shield.dt, longest, own_settings.timeout, own_settings.tracking_error])
-    plan = ArmPlan(
-        model_tables(robot, [*frames]),
-        own,
-        other,
-        shield.motion,
-        np.array(robot.limits[:2]),
-        ArmSettings.of(settings),
-        np.array(sizes, dtype=np.int64),
-    )
-    memory = ArmState.zeros(*sizes)
-    memory.obstacles[:] = places
-    rest_arm(plan, memory.numbers, np.zeros(0))
-    return plan, memory.numbers
-
-
-def _arm_program(controller: Controller) -> ArmProgram:
-    """Lay the step of one controller of a shield out."""
-    step = controller.control_layout
-    parts = step.program.parts
-    rates = [k for k, part in enumerate(parts) if isinstance(part, MotionLimits)]
-    return ArmProgram(step.plan, step.log_layout.width, *(rates or [-1]))
-
-
-def _places(shield: Shield) -> Vector:
-    """Return the centres of a shield's obstacles at the beginning [m], three numbers each."""
-    avoidance = avoidance_of(shield)
-    if avoidance is None:
-        return np.zeros(0)
-    bodies = scene_views(avoidance.scene(shield.robot).constants, shield.robot.dof).bodies
-    first = len(bodies) - len(avoidance.obstacles)
-    return np.array([Body.of(body).center for body in bodies[first:]]).ravel()
 
 
 def limit_words(shield: Shield) -> list[str]:
@@ -124,7 +40,7 @@ def limit_words(shield: Shield) -> list[str]:
     They are the reasons, then for each joint the lower and the upper bound of each of
     `naming.KINDS`, then the rows.
     """
-    settings: dict[str, Any] = shield.controller(JOINTS).program.settings()
+    settings: dict[str, Any] = shield.layout(shield.robot.tip).joint.program.settings()
     rows = settings["rows"]
     codes = [sign * kind for kind in range(1, 1 + len(KINDS)) for sign in (-1, 1)]
     n = shield.robot.dof
@@ -136,7 +52,7 @@ def limit_words(shield: Shield) -> list[str]:
             settings, code * np.eye(n, dtype=int)[joint], np.zeros(len(rows))
         )
     ]
-    return [*WORDS, *map(describe, [*bounds, *rows])]
+    return [*REASONS, *map(describe, [*bounds, *rows])]
 
 
 class ShieldsCommand(NamedTuple):
@@ -217,22 +133,19 @@ class Shields:
         self.threads = checks.integer("threads", threads or os.cpu_count() or 1, 1)
         self._begin()
         # Rows of whole cache lines: no two threads write into one.
-        width = -(-self._memory.size // 8) * 8
-        self._memories = np.zeros((self.count, width))
-        self._memories[:, : self._memory.size] = self._memory
-        self._none = np.zeros((self.count, 1))
-        self._given = np.ones(self.count, dtype=np.int64)
-        self._clipped = np.zeros(self.count, dtype=np.int64)
+        own = self._layout.memory
+        self._memories = np.zeros((self.count, -(-own.size // 8) * 8))
+        self._memories[:, : own.size] = own
 
     def _begin(self) -> None:
-        self._plan, self._memory = arm_plan(self._shield, self.frame)
+        self._layout = self._shield.layout(self.frame)
         self._lock = threading.RLock()
         self._pool: tuple[int, ThreadPoolExecutor] | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
             own = {**vars(self), "_memories": self._memories.copy()}
-        return {name: own[name] for name in own if name not in ("_plan", "_lock", "_pool")}
+        return {name: own[name] for name in own if name not in ("_layout", "_lock", "_pool")}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
@@ -269,20 +182,18 @@ class Shields:
             out: A command of these shields whose arrays are overwritten; None: new ones are made.
 
         Raises:
-            InvalidInputError: An array has a wrong shape, there pass exactly one of dq, twist,
-                position, or a period is wrong; no arm has then taken a step.
+            InvalidInputError: An array has a wrong shape, there are several requests, or a period
+                is wrong; no arm has then taken a step.
         """
         shape = (self.count, self.robot.dof)
-        kinds = {Request.VELOCITY: dq, Request.TWIST: twist, Request.POSITION: position}
-        found = [(kind, own) for kind, own in kinds.items() if own is not None]
-        if len(found) > 1:
-            raise InvalidInputError("dq, twist, position", "pass exactly one of them")
-        kind, request = found[0] if found else (Request.NONE, self._none)
-        width = {Request.NONE: 1, Request.TWIST: TWIST}.get(kind, shape[1])
+        kind, request = one_request(dq, twist, position)
+        if request is None:
+            request = np.zeros(shape)
+        width = TWIST if kind is Request.TWIST else shape[1]
         stated_periods(self.dt, self._shield.longest_period, dt, elapsed)
         inputs = ArmInputs(
             _numbers("q", q, shape),
-            int(kind),
+            kind,
             _numbers("request", request, (self.count, width)),
             self._flags("given", given),
             dt or 0.0,
@@ -295,29 +206,31 @@ class Shields:
         with self._lock:
             if obstacles is not None:
                 self._place(obstacles)
-            self._run(inputs, ArmOutputs(out.dq, out.next_q, self._clipped, out.reason))
-            np.not_equal(self._clipped, 0, out=out.clipped)
+            clipped = np.zeros(self.count, dtype=np.int64)
+            self._run(inputs, ArmOutputs(out.dq, out.next_q, clipped, out.reason))
+            np.not_equal(clipped, 0, out=out.clipped)
         return out
 
     def _flags(self, name: str, value: ArrayLike | None) -> NDArray[np.int64]:
         """Return truths (N,) as integers."""
         if value is None:
-            return self._given
+            return np.ones(self.count, dtype=np.int64)
         flags = np.asarray(value)
         if flags.shape != (self.count,) or flags.dtype.kind != "b":
             raise InvalidInputError(name, f"must be booleans of shape ({self.count},)", value)
         return flags.astype(np.int64)
 
     def _place(self, obstacles: ArrayLike) -> None:
-        size = int(self._plan.sizes[6])
+        plan = self._layout.plan
+        shape = (plan.sizes.obstacles, 3)
         places = np.asarray(obstacles, dtype=np.float64)
-        if places.shape not in ((size // 3, 3), (self.count, size // 3, 3)):
-            problem = f"must have shape ({size // 3}, 3), or that for each arm"
+        if places.shape not in (shape, (self.count, *shape)):
+            problem = f"must have shape {shape}, or that for each arm"
             raise InvalidInputError("obstacles", f"{problem}, not {places.shape}", obstacles)
         if not np.isfinite(places).all():
             raise InvalidInputError("obstacles", "must be finite", obstacles)
-        start = ArmState.columns(*self._plan.sizes.tolist())["obstacles"]
-        self._memories[:, start] = places.reshape(-1, size)
+        for i, centers in enumerate(np.broadcast_to(places, (self.count, *shape))):
+            place_arm(plan, self._memory(i), np.ascontiguousarray(centers))
 
     def _run(self, inputs: ArmInputs, out: ArmOutputs) -> None:
         """Let threads take the blocks of arms one after another."""
@@ -329,7 +242,7 @@ class Shields:
                 last = min(first + (BLOCK if workers > 1 else self.count), self.count)
                 if first >= self.count:
                     return
-                step_arms(self._plan, self._memories, inputs, out, first, last)
+                step_arms(self._layout.plan, self._memories, inputs, out, first, last)
 
         if workers > 1:
             others = [self._executor().submit(work) for _ in range(workers - 1)]
@@ -362,56 +275,34 @@ class Shields:
             positions = checks.array("q", q, (self.count, self.robot.dof))
         with self._lock:
             for i in self._chosen(mask):
-                rest_arm(self._plan, self._memories[i, : self._memory.size], positions[i])
+                rest_arm(self._layout.plan, self._memory(i), positions[i])
 
     def halt(self, mask: ArrayLike | None = None) -> None:
         """Let arms brake from now on, whatever is requested, until `reset`."""
         with self._lock:
             for i in self._chosen(mask):
-                halt_arm(self._plan, self._memories[i, : self._memory.size])
+                halt_arm(self._layout.plan, self._memory(i))
 
-    def _arm(self, i: int) -> tuple[Vector, ArmState]:
-        memory = self._memories[i, : self._memory.size]
-        return memory, ArmState.of(memory, *self._plan.sizes.tolist())
+    def _memory(self, i: int) -> Vector:
+        return self._memories[i, : self._layout.memory.size]
+
+    def _arm(self, i: int) -> Arm:
+        return Arm(self._layout.plan, self._memory(i), self._layout.joint.log_layout.names)
 
     def active_limits(self, i: int) -> tuple[str, ...]:
         """Name the active limits of arm i's last command, as `ShieldCommand.active_limits`."""
         with self._lock:
-            _, own = self._arm(i)
-            if not own.is_clipped:
-                return ()
-            reasons = _reasons(own)
-            step = self._shield.controller(JOINTS).control_layout
-            program = step.program
-            names = step.log_layout.names
-            n = self.robot.dof
-            codes = own.limiting[:n].astype(int)
-            words = map(describe, active_limits(names.settings, codes, own.limiting[n:]))
-            motion = MotionState.of(own.motion, n, len(program.pairs))
-            return (*reasons, *words, *names.conditions(motion.q, motion.least))
+            return self._arm(i).active_limits
 
     def margin(self, i: int) -> Margin:
         """Return the distances of arm i at the positions that its last command starts from."""
         with self._lock:
-            return Margin(*margin_of(self._plan, self._arm(i)[0]))
+            return self._arm(i).margin
 
     def stopping_time(self, i: int) -> float:
         """Return the time of arm i's motion to rest from its last command [s]."""
         with self._lock:
-            return float(stopping_time_of(self._plan, self._arm(i)[0]))
-
-
-def _reasons(own: ArmState) -> list[str]:
-    """Return all reasons of an arm's last command, in words."""
-    codes = [
-        own.asked.reason,
-        Reason.Q_NOT_FINITE * own.is_blind,
-        Reason.RESYNCHRONISED * own.asked.resynchronised,
-        Reason.CUT * own.asked.is_cut,
-        Reason.PERIOD_EXCEEDED * own.is_late,
-        Reason.SINGULAR * own.is_singular,
-    ]
-    return [WORDS[code] for code in codes if code]
+            return self._arm(i).stopping_time
 
 
 def _numbers(name: str, value: ArrayLike, shape: Sequence[int]) -> Matrix:

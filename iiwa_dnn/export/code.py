@@ -20,11 +20,11 @@ from iiwa_dnn.compiling.sources import Module, TranslationError, c_name
 from iiwa_dnn.compiling.translator import Function, Translator
 from iiwa_dnn.control.arms import (
     ArmState,
-    Request,
     arm_state,
     halt_arm,
     margin_of,
     motion_of,
+    place_arm,
     rest_arm,
     send_arm,
     step_arm,
@@ -34,8 +34,9 @@ from iiwa_dnn.control.command import log_of
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.cycle import ControlPlan, PathColumn, sample_targets, take_step
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.shield import Reason, Shield
-from iiwa_dnn.control.shields import arm_plan, limit_words
+from iiwa_dnn.control.requests import Reason, Request
+from iiwa_dnn.control.shield import Shield
+from iiwa_dnn.control.shields import limit_words
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
@@ -165,17 +166,17 @@ def _about(robot: Robot, dt: float, code: _Code) -> dict[str, Any]:
 
 def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
     """Translate a shield, whose twists are those of one frame; returns what `code_of` does."""
-    plan, memory = arm_plan(shield, frame)
+    plan, *_, memory, _ = shield.layout(frame)
     code = _Code("NULL", "NULL", "NULL", "NULL")
     joint = plan.joint._replace(step=code.numbered(plan.joint.step))
     twist = plan.twist._replace(step=code.numbered(plan.twist.step))
     text = code.initializer("plan", plan._replace(joint=joint, twist=twist))
     kernels = (
         *(arm_state, rest_arm, halt_arm, send_arm, step_arm),
-        *(motion_of, margin_of, stopping_time_of),
+        *(place_arm, motion_of, margin_of, stopping_time_of),
     )
     calls = {source_of(each).__name__: code.kernel(each) for each in kernels}
-    breaks = ArmState.of(memory, *plan.sizes.tolist()).obstacles.tolist()
+    centers = ArmState.of(memory, *plan.sizes).obstacles.ravel().tolist()
     arrays = plan.joint.step.arrays
     n, m, _ = arrays.sizes[:3]
     taken = 8 * n * (n + m + 10) + 2 * plan.twist.width
@@ -197,10 +198,10 @@ def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
             f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)
         )
         or "none",
-        "places": ", ".join(map(repr, breaks or [0.0])),
+        "places": ", ".join(map(repr, centers or [0.0])),
         "memory": -(-memory.size // 8) * 8,
         "scratch": taken,
-        "sides": int(plan.sizes[-1]),
+        "sides": plan.sizes.limiting,
         "limit_count": len(names),
         "names": ",\n".join(f"        {name}" for name in names),
         "requests": "\n".join(f"    SHIELD_REQUEST_{own.name} = {own}," for own in Request),
@@ -299,10 +300,9 @@ class _Code:
 
     def _value(self, path: str, own: Any) -> Value | str:
         """Write values outside of the struct as constants; return their address or initializer."""
-        field = self._fields.get(path.rpartition(".")[2])
-        if field:
-            return f"{{{', '.join([field, *map(str, own.shape)])}}}"
         if isinstance(own, np.ndarray):
+            if field := self._fields.get(path.rpartition(".")[2]):
+                return f"{{{', '.join([field, *map(str, own.shape)])}}}"
             # In C no array is empty.
             numbers = (own if own.size else np.zeros(1, own.dtype)).ravel().tolist()
             table = self._translator.constant(path.replace(".", "_"), numbers, own.shape)

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.arms import Request
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import by_frame
-from iiwa_dnn.control.shield import TWIST, Reason, Shield
+from iiwa_dnn.control.requests import TWIST, Reason, Request
+from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.control.shields import Shields
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.export.code import TEMPLATES, code_of, filled, shield_code

@@ -26,10 +26,6 @@ SERIES = {"compiling/trigonometry.py": {"SINE", "COSINE", "HALF_PI", "sin_cos(an
 """Tables of coefficients, and the pair of a sine and a cosine."""
 
 
-PENDING = {"control/arms.py": 17}
-"""Files whose numbers have no names yet, and how many there are at most."""
-
-
 def is_bare(node: ast.expr | None) -> bool:
     """Test whether an index has a number, or a constant in capitals, in place of a name."""
     match node:
@@ -69,9 +65,6 @@ def test_every_number_of_a_kernel_has_a_name() -> None:
         file = str(path.relative_to(ROOT))
         found = bare_indices(ast.parse(path.read_text(encoding="utf-8")))
         found.subtract(dict.fromkeys(SERIES.get(file, ()), found.total()))
-        if file in PENDING:
-            assert found.total() <= PENDING[file]
-            continue
         reached = {name for name, count in found.items() if count > 0}
         assert reached <= SPATIAL.get(file, set()), file
         total += sum(found[name] for name in reached)

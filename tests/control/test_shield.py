@@ -260,7 +260,7 @@ def test_margin_and_stopping_time_are_those_of_closed_forms() -> None:
         ({"dq": np.zeros(6)}, "dq: must have shape"),
         ({"twist": np.zeros(7)}, "twist: must have shape"),
         ({"position": "home"}, "position: must be numbers"),
-        ({"dq": np.zeros(7), "twist": np.zeros(6)}, "pass exactly one of dq, twist, position"),
+        ({"dq": np.zeros(7), "twist": np.zeros(6)}, "dq, twist, position: pass exactly one"),
         ({"dq": np.zeros(7), "q": np.full(7, np.nan)}, "q: must be finite"),
         ({"twist": np.zeros(6), "frame": "bogus"}, "no frame 'bogus'"),
     ],
@@ -329,22 +329,22 @@ def test_a_warm_shield_takes_its_first_steps_as_any_other() -> None:
 
 def test_threads_may_share_a_shield() -> None:
     """Each command keeps the acceleration from the one before it, whoever asked for it."""
-    shield = d.Shield(ROBOT, DT)
+    shield = d.Shield(ROBOT, DT, tracking_error=np.pi)
     shield.step(START, np.zeros(7))
     found: list[d.control.shield.ShieldCommand] = []
 
     def ask(sign: float) -> None:
         for k in range(300):
             request = {"dq": np.full(7, sign)} if k % 2 else {"twist": np.full(6, sign)}
-            found.append(shield.step(shield._state.positions, **request))
+            found.append(shield.step(START, **request))
 
     threads = [threading.Thread(target=ask, args=(sign,)) for sign in (-1.0, 1.0, 0.3)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    found.sort(key=lambda command: command.t)
-    assert len({command.t for command in found}) == 900
+    found.sort(key=lambda command: command.arm.state.time)
+    assert len({command.arm.state.time for command in found}) == 900
     for before, after in itertools.pairwise(found):
         np.testing.assert_array_equal(after.command.motion_state[1], before.dq)
         assert np.abs(after.dq - before.dq).max() <= 10.0 * DT + 1e-12

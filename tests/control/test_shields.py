@@ -11,7 +11,7 @@ import pytest
 
 import iiwa_dnn
 from iiwa_dnn import InvalidInputError, Robot, Shield, Shields, Sphere, load_robot
-from iiwa_dnn.control.shield import Reason
+from iiwa_dnn.control.requests import Reason
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 

@@ -66,7 +66,9 @@ void shield_halt(struct shield *s)
 
 void shield_place(struct shield *s, const double *centers)
 {
-    memcpy(shield_state(s).obstacles.data, centers, 3 * SHIELD_OBSTACLES * sizeof *centers);
+    const control_arms_ArmPlan plan = shield_plan();
+    const Matrix places = {(double *)centers, SHIELD_OBSTACLES, 3};
+    @place_arm@&plan, shield_memory(s), places);
 }
 
 void shield_send(struct shield *s, const double *dq, double period)
@@ -137,15 +139,15 @@ int shield_active_limits(const struct shield *s, int *codes)
 {
     const control_arms_ArmState state = shield_state(s);
     const double flags[] = { /* from SHIELD_Q_NOT_FINITE on */
-        state.at->is_blind, state.asked.at->resynchronised, state.asked.at->is_cut,
+        state.at->is_blind, state.at->is_resynchronised, state.at->is_cut,
         state.at->is_late, state.at->is_singular,
     };
     int count = 0;
     if (!shield_is_clipped(s)) {
         return 0;
     }
-    if (state.asked.at->reason != 0.0) {
-        codes[count++] = (int)state.asked.at->reason;
+    if (state.at->reason != 0.0) {
+        codes[count++] = (int)state.at->reason;
     }
     for (int k = SHIELD_Q_NOT_FINITE; k <= SHIELD_SINGULAR; k++) {
         if (flags[k - SHIELD_Q_NOT_FINITE] != 0.0) {
