@@ -482,9 +482,14 @@ class Shield:
         """
         start = Configuration(self.robot, q)
         with self._lock:
-            for frame in checks.names("frames", frames):
-                self.layout(frame)
             self._warn_of_start(start, stacklevel=3)
+            kept = self._kept
+            try:  # steps that do not count
+                self._step(start.q, Request.VELOCITY, np.zeros(self.robot.dof), None, None, None)
+                for frame in checks.names("frames", frames):
+                    self._step(start.q, Request.TWIST, np.zeros(TWIST), frame, None, None)
+            finally:
+                self._kept = kept
 
     def step(
         self,

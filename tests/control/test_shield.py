@@ -461,3 +461,38 @@ def test_a_sent_command_that_is_none_is_refused_and_changes_nothing() -> None:
         with pytest.raises(d.InvalidInputError, match="dq"):
             shield.send(wrong)
     np.testing.assert_array_equal(shield.step(q).dq, twin.step(q).dq)
+
+
+def test_a_shield_that_is_reset_repeats_its_motion_to_the_last_bit() -> None:
+    """The networks began from the states that an earlier motion had left."""
+    shield = d.Shield(SMOOTH, DT, [BALL])
+    runs = []
+    for _ in range(2):
+        shield.reset()
+        random = np.random.default_rng(0)
+        q = START
+        for k in range(300):
+            if k % 30 == 0:
+                kind = ("twist", "dq", "position")[k // 30 % 3]
+                request = {kind: random.standard_normal(6 if kind == "twist" else 7)}
+            q = shield.step(q, **request).next_q
+        runs.append(q)
+    np.testing.assert_array_equal(runs[1], runs[0])
+
+
+def test_a_command_that_was_handed_out_never_changes() -> None:
+    shield = d.Shield(SMOOTH, DT, [BALL])
+    q = START
+    kept = []
+    for k in range(60):
+        command = shield.step(q, np.full(7, 5.0 * (-1) ** (k // 20)))
+        own = (command.clipped, command.active_limits, command.margin, command.stopping_time)
+        kept.append((command, own, command.command.qp.data.copy()))
+        q = command.next_q
+    shield.halt()
+    shield.step(q)
+    shield.reset()
+    for command, own, data in kept:
+        found = (command.clipped, command.active_limits, command.margin, command.stopping_time)
+        assert found == own
+        np.testing.assert_array_equal(command.command.qp.data, data)

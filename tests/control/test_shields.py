@@ -233,3 +233,23 @@ def test_what_is_for_one_shield_is_refused() -> None:
         Shields(PLAIN, 2, delay=0.01)
     with pytest.raises(iiwa_dnn.NotFoundError):
         Shields(PLAIN, 2, frame="elbow")
+
+
+@pytest.mark.usefixtures("kernels_kinematics")
+def test_obstacles_that_move_do_so_for_many_arms_too() -> None:
+    """They stood still in the step of many arms; a place that is given is where they are now."""
+    ball = Sphere([0.36, 0.35, 0.64], 0.05, velocity=[0.0, -0.3, 0.0])
+    shield = Shield(SMOOTH, DT, [ball])
+    arms = Shields(SMOOTH, 2, dt=DT, obstacles=[ball])
+    q = START
+    for k in range(400):
+        request = np.full(7, 0.5 * (-1) ** (k // 50))
+        now = np.array([ball.center]) + k * DT * np.array([ball.velocity])
+        told = {"obstacles": now} if k == 200 else {}
+        many = arms.step(np.tile(q, (2, 1)), np.tile(request, (2, 1)), **told)
+        command = shield.step(q, request)
+        np.testing.assert_allclose(
+            many.dq, np.tile(command.dq, (2, 1)), atol=0.0 if k < 200 else 1e-9
+        )
+        q = command.next_q
+    assert arms.margin(0).distance == pytest.approx(command.margin.distance, abs=1e-9)
