@@ -125,7 +125,7 @@ step, log = Shield.step, []
 def recorded(shield, q, **request):
     begin = time.perf_counter()
     command = step(shield, q, **request)
-    log.append((*q, time.perf_counter() - begin, bool(request)))
+    log.append((*q, time.perf_counter() - begin, bool(request), *command.dq))
     return command
 Shield.step = recorded
 """
