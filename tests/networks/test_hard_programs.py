@@ -22,16 +22,6 @@ def test_badly_scaled_programs_converges(kind: str) -> None:
         assert iiwa_dnn.solve_problem(problem, tol=1e-6).is_optimal(1.1e-6), seed
 
 
-def test_variables_in_other_units_converges() -> None:
-    for seed in range(20):
-        rng = np.random.default_rng([9, seed])
-        qp, x = programs.strictly_convex(rng, 6, 1e3, spoilt=False)
-        d = 10.0 ** rng.uniform(-5.0, 5.0, 6)
-        P = qp.P * np.outer(d, d)
-        scaled = QP(P, qp.q * d, qp.G * d, qp.h, qp.A * d, qp.b, qp.lb / d, qp.ub / d)
-        np.testing.assert_allclose(d * DNNSolver().solve(scaled).x, x, atol=1e-6)
-
-
 # The cost is 1e8 and more: gaps of 1e-8 and 1e-6 are one rounding.
 @pytest.mark.parametrize(("P", "G", "h"), [(1e8, -1.0, -1.0), (1.0, -1e-5, -1.0)])
 def test_one_variable_and_one_row_of_another_scale(P: float, G: float, h: float) -> None:
