@@ -2,9 +2,14 @@
 
 import gc
 import os
+import signal
 
 import pytest
 from hypothesis import settings
+
+# What a shell starts in the background ignores Ctrl-C, and so would the commands of tests.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # What is imported stays; looking through it again and again took a sixteenth of the whole time.
 gc.disable()
