@@ -64,8 +64,8 @@ def make_controller(robot, q, radius, period):
 
 def make_shield(robot, q):
     """Return a shield for whatever is requested, from q (7,) [rad]."""
-    # Positions are always the robot's own: it goes on where a command is lost.
-    shield = iiwa_dnn.Shield(robot, dt=DT, obstacles=[], tracking_error=0.0)
+    # The robot judges where the arm is; where commands are lost, it is not where they lead.
+    shield = iiwa_dnn.Shield(robot, dt=DT, obstacles=[], tracking_error=1e-3)
     shield.limits.append(iiwa_dnn.TipSpeedLimit(2.5))  # [m/s]
     shield.warm_up(q, [robot.tip])
     return shield
@@ -144,8 +144,10 @@ def main(
     t = 0.0
     late = 0
     while True:
-        q = np.array(state.q_d)
-        command = driver.step(q, **source.newest()) if source else driver.step(q, t)
+        if source:
+            command = driver.step(np.array(state.q), **source.newest())
+        else:
+            command = driver.step(np.array(state.q_d), t)
         velocities = franka.JointVelocities(command.dq.tolist())
         velocities.motion_finished = bool(ended) and not command.dq.any()  # at rest
         motion.writeOnce(velocities)
