@@ -39,7 +39,7 @@ from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot.kinematics import Placement, Twist
 from iiwa_dnn.robot.kinematics_kernel import ModelTables, write_kinematics
 from iiwa_dnn.schemes.limits import (
-    MotionNumbers,
+    MotionConstants,
     Periods,
     Rates,
     arriving,
@@ -172,7 +172,7 @@ class ArmPlan(NamedTuple):
     robot: ModelTables
     joint: ArmProgram
     twist: ArmProgram
-    motion: MotionNumbers
+    motion: MotionConstants
     lower: Vector
     upper: Vector
     velocities: Matrix
@@ -519,7 +519,7 @@ def _write_constants(
 ) -> None:
     """Write stated periods and the places of the obstacles among a program's constants."""
     if periods.vary and program.rates >= 0:
-        limits = MotionNumbers.of(block_constants(arrays, program.rates))
+        limits = MotionConstants.of(block_constants(arrays, program.rates))
         limits.dt = periods.dt
         limits.hold = periods.hold
         limits.longest = periods.longest
@@ -555,7 +555,7 @@ def _write_twist(plan: ArmPlan, own: ArmState, arrays: ProgramArrays, log: StepL
 
 @compiled
 def come_nearer(
-    own: ArmState, motion: MotionState, limits: MotionNumbers, periods: Periods, dq: Vector
+    own: ArmState, motion: MotionState, limits: MotionConstants, periods: Periods, dq: Vector
 ) -> None:
     """Write the next velocities dq (n,) [rad/s] on the quickest path to the request that counts.
 

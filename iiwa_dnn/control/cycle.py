@@ -53,10 +53,10 @@ from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import MEET
 from iiwa_dnn.schemes.limits import (
     JointLimits,
+    MotionConstants,
     MotionLimits,
-    MotionNumbers,
     Periods,
-    PositionNumbers,
+    PositionConstants,
     check_ranges,
     checked_longest,
     constant_periods,
@@ -186,7 +186,7 @@ class ControlLayout:
             check_ranges(yielding.limits, 1.0 / (longest or dt))
         if longest is not None:
             for constants in program.constants_of(JointLimits):
-                limits = PositionNumbers.of(constants)
+                limits = PositionConstants.of(constants)
                 limits.gain = min(limits.gain, 1.0 / longest)
         self._varies = longest is not None
         self.set_periods(dt, constant_periods(dt))
@@ -209,7 +209,7 @@ class ControlLayout:
         self.plan.network.settings.duration = dt * self._rate
         if periods.vary:
             for constants in self.program.constants_of(MotionLimits):
-                limits = MotionNumbers.of(constants)
+                limits = MotionConstants.of(constants)
                 limits.dt, limits.hold, limits.longest, limits.fraction, _ = periods
 
 

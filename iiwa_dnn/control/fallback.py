@@ -48,7 +48,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry, row_dot
 from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, copied, data_size, qp_views
 from iiwa_dnn.qp.residuals import cost_size, within
-from iiwa_dnn.schemes.limits import MotionNumbers, Periods
+from iiwa_dnn.schemes.limits import MotionConstants, Periods
 from iiwa_dnn.schemes.program import add_soft
 
 MAX_LINEAR_SOLVES = 60
@@ -106,7 +106,7 @@ class Yielding(NamedTuple):
     """
 
     weights: Vector
-    limits: MotionNumbers
+    limits: MotionConstants
     tolerance: float
     budget: int
     scenes: IntVector

@@ -18,7 +18,7 @@ from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Placement, Twist
 from iiwa_dnn.schemes import PoseTask, Task
-from iiwa_dnn.schemes.limits import MotionNumbers
+from iiwa_dnn.schemes.limits import MotionConstants
 from iiwa_dnn.schemes.step import (
     TARGET_SIZE,
     FrameConstants,
@@ -164,7 +164,7 @@ class TwistTask(PoseTask):
 
 @compiled
 def cut_twist(
-    twist: Vector, jacobian: Matrix, placement: Placement, support: Vector, limits: MotionNumbers
+    twist: Vector, jacobian: Matrix, placement: Placement, support: Vector, limits: MotionConstants
 ) -> bool:
     """Cut a twist (6,) in place to `CUT` times what the joints can do.
 

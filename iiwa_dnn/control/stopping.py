@@ -34,12 +34,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from iiwa_dnn.checks import Vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.fallback import Yielding
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import Triple
 from iiwa_dnn.robot.kinematics import Placement
-from iiwa_dnn.schemes.limits import MotionNumbers
+from iiwa_dnn.schemes.limits import MotionConstants
 from iiwa_dnn.schemes.program import ProgramArrays, block_constants
 from iiwa_dnn.schemes.scene import (
     Pair,
@@ -121,7 +121,7 @@ def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float
 
 @compiled
 def least_periods(
-    x: Vector, before: Vector, limits: MotionNumbers, dt: float, cubic: bool, vary: bool
+    x: Vector, before: Vector, limits: MotionConstants, dt: float, cubic: bool, vary: bool
 ) -> float:
     """Compute the number of periods in which velocities go to zero together.
 
@@ -158,7 +158,9 @@ def least_periods(
 
 
 @compiled
-def stretched(x: Vector, before: Vector, limits: MotionNumbers, dt: float, periods: float) -> float:
+def stretched(
+    x: Vector, before: Vector, limits: MotionConstants, dt: float, periods: float
+) -> float:
     """Stretch a motion to rest of so many periods until its next velocities keep all limits.
 
     They are those of acceleration and jerk. Arguments as of `least_periods`.
@@ -240,7 +242,7 @@ def end_displacement(motion: Motion, x: float, b: float, dt: float) -> float:
 
 
 @compiled
-def keeps_joint_limits(motion: Motion, q: Vector, limits: MotionNumbers, dt: float) -> bool:
+def keeps_joint_limits(motion: Motion, q: Vector, limits: MotionConstants, dt: float) -> bool:
     """Test whether joints at q (n,) [rad] keep position and velocity limits on a motion to rest."""
     for i in range(q.size):
         x = motion.first[i]
@@ -262,7 +264,7 @@ def keeps_joint_limits(motion: Motion, q: Vector, limits: MotionNumbers, dt: flo
 
 @compiled
 def keeps_varying_limit(
-    motion: Motion, q: Vector, limits: MotionNumbers, dt: float, i: int
+    motion: Motion, q: Vector, limits: MotionConstants, dt: float, i: int
 ) -> bool:
     """Test whether joint i of those at q (n,) [rad] keeps its position-dependent velocity limit."""
     at = q[i]
@@ -330,7 +332,7 @@ def keeps_distances(
 
 @compiled
 def _along(
-    motion: Motion, jacobian: Matrix, support: Matrix, k: int, point: Triple, normal: Triple
+    motion: Motion, jacobian: Matrix, support: Matrix, k: int, point: Vector3, normal: Vector3
 ) -> tuple[float, float]:
     """Compute first velocity and b along a normal (3,) of a point (3,) of pair k's second body."""
     x = 0.0

@@ -46,7 +46,7 @@ from iiwa_dnn.qp.layout import QPViews, copied
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.limits import MotionNumbers, braking, constant_periods
+from iiwa_dnn.schemes.limits import MotionConstants, braking, constant_periods
 from iiwa_dnn.schemes.program import (
     ProgramArrays,
     ProgramLayout,
@@ -87,7 +87,7 @@ def make_yielding(program: ProgramLayout, tol: float, dt: float, alike: bool) ->
         dt: Control period [s].
         alike: Whether the network of the steps is that of the fallback programs.
     """
-    limits = MotionNumbers.zeros(0)
+    limits = MotionConstants.zeros(0)
     if program.rate_limits is not None:
         limits = program.rate_limits.constants(program.robot)
     parts = program.parts
@@ -217,7 +217,7 @@ def _note_decision(
 
 
 @compiled
-def _widen_bounds(qp: QPViews, limits: MotionNumbers, q: Vector) -> None:
+def _widen_bounds(qp: QPViews, limits: MotionConstants, q: Vector) -> None:
     """Replace bounds that acceleration limits have narrowed by those of position and velocity."""
     for i in range(limits.velocity.size):
         fastest = limits.velocity[i]

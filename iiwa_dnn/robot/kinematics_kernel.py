@@ -27,13 +27,6 @@ CYCLE = (0, 1, 2, 0, 1)
 """Axes, so that those after one are the next two."""
 
 
-class JointKind(Record):
-    """Kind of a joint: 1 and 0 if it slides, 0 and 1 if it turns."""
-
-    slides: float
-    turns: float
-
-
 class PrincipalAxes(Record):
     """Placement of a body's principal axes, and roots of its mass along and its moment about each.
 
@@ -52,7 +45,7 @@ class ModelTables(NamedTuple):
     Attributes:
         parents: For each joint the number of the one that carries it, from 1; 0: the world, (n,).
         joints: `Placement` of each joint at 0 in the frame of its parent, (n, 12).
-        kinds: `JointKind` of each joint, (n, 2).
+        slides: 1 for a joint that slides, 0 for one that turns, (n,).
         frames: For each frame its row among the placements, (k,).
         carriers: For each frame the joint that carries it, (k,).
         offsets: `Placement` of each frame in its joint's, (k, 12).
@@ -64,7 +57,7 @@ class ModelTables(NamedTuple):
 
     parents: IntVector
     joints: Matrix
-    kinds: Matrix
+    slides: Array
     frames: IntVector
     carriers: IntVector
     offsets: Matrix
@@ -91,7 +84,7 @@ def model_tables(robot: Robot, frames: Sequence[int], dynamics: bool = False) ->
                 for j in moving
             ]
         ),
-        np.asarray(axes.any(axis=2), dtype=np.float64),
+        np.asarray(axes[:, 0].any(axis=1), dtype=np.float64),
         np.array(frames, dtype=np.int64),
         np.array([model.frames[k].parentJoint for k in frames], dtype=np.int64),
         np.array([_flat(turn.actInv(frame.placement)) for frame, turn in carriers]),
@@ -138,11 +131,11 @@ def write_kinematics(
         world.axes[i, i] = 1.0
     start = Placement.of(np.empty(Placement.width()))
     for j in range(q.size):
-        kind = JointKind.of(model.kinds[j])
+        slides = model.slides[j]
         here = Placement.of(placed[j + 1])
         compose(Placement.of(placed[model.parents[j]]), Placement.of(model.joints[j]), start)
-        _move(start, kind, q[j], here)
-        _write_twist(here, AXIS, kind.slides, kind.turns, Twist.of(jacobian[j]))
+        _move(start, slides, q[j], here)
+        _write_twist(here, AXIS, slides, Twist.of(jacobian[j]))
     for k in range(model.frames.size):
         carrier = Placement.of(placed[model.carriers[k]])
         frame = Placement.of(placements[model.frames[k]])
@@ -169,9 +162,9 @@ def _turn_into(axes: Matrix, v: Array, turned: Array) -> None:
 
 
 @compiled
-def _move(start: Placement, kind: JointKind, q: float, moved: Placement) -> None:
+def _move(start: Placement, slides: float, q: float, moved: Placement) -> None:
     """Write the placement at position q of a joint from that at 0."""
-    sine, cosine = sin_cos(kind.turns * q)
+    sine, cosine = sin_cos((1.0 - slides) * q)
     for i in range(3):
         x = start.axes[0, i]
         y = start.axes[1, i]
@@ -179,17 +172,16 @@ def _move(start: Placement, kind: JointKind, q: float, moved: Placement) -> None
         moved.axes[0, i] = x * cosine + y * sine
         moved.axes[1, i] = y * cosine - x * sine
         moved.axes[2, i] = z
-        moved.position[i] = start.position[i] + z * (kind.slides * q)
+        moved.position[i] = start.position[i] + z * (slides * q)
 
 
 @compiled
-def _write_twist(
-    placement: Placement, axis: int, slides: float, turns: float, twist: Twist
-) -> None:
-    """Write the twist about the world's origin of sliding along and turning about an axis.
+def _write_twist(placement: Placement, axis: int, slides: float, twist: Twist) -> None:
+    """Write the twist about the world's origin of sliding along (1) or turning about (0) an axis.
 
     The axis is one of a placement, by its number.
     """
+    turns = 1.0 - slides
     direction = placement.axes[axis]
     position = placement.position
     for i in range(3):
@@ -218,7 +210,7 @@ def _write_inertia(model: ModelTables, placed: Matrix, jacobian: Matrix, inertia
         compose(Placement.of(placed[body + 1]), principal.placement, own)
         for k in range(principal.roots.size):
             along = 1.0 if k < 3 else 0.0
-            _write_twist(own, k % 3, 1.0 - along, along, line)
+            _write_twist(own, k % 3, 1.0 - along, line)
             for j in range(body + 1):
                 twist = Twist.of(jacobian[j])
                 speed = 0.0

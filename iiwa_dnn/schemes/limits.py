@@ -115,7 +115,7 @@ class Rates(NamedTuple):
     lag: float
 
 
-class MotionNumbers(Record):
+class MotionConstants(Record):
     """Limits of n joints on their motion, as `MotionLimits` gives them.
 
     The first numbers are those of `Periods` that a step states; they are 0 where periods are
@@ -146,7 +146,7 @@ class MotionNumbers(Record):
     lag: Vector = part()
 
 
-class PositionNumbers(Record):
+class PositionConstants(Record):
     """Constants of `JointLimits` for n joints.
 
     Attributes:
@@ -166,7 +166,7 @@ class PositionNumbers(Record):
     slope: Vector = part()
 
 
-class TipSpeedNumbers(Record):
+class TipSpeedConstants(Record):
     """Constants of `TipSpeedLimit`: index of the frame, limit [m/s] and gain [1/s]."""
 
     frame: int
@@ -242,7 +242,7 @@ def joint_limits(
 ) -> None:
     """Tighten the bounds to those of `JointLimits`, whose constants these are."""
     dof = step.q.size
-    limits = PositionNumbers.of(constants)
+    limits = PositionConstants.of(constants)
     gain = min(limits.gain, step.rate)
     for i in range(dof):
         above = limits.upper[i] - step.q[i]
@@ -381,7 +381,7 @@ def own_rate_limits(robot: Robot) -> tuple[RateLimits, ...]:
 
 
 @compiled
-def joint_rates(limits: MotionNumbers, i: int) -> Rates:
+def joint_rates(limits: MotionConstants, i: int) -> Rates:
     """Return the rates of joint i."""
     return Rates(
         limits.velocity[i],
@@ -404,7 +404,7 @@ def motion_limits(
     """
     if not step.rate < np.inf:
         return
-    limits = MotionNumbers.of(constants)
+    limits = MotionConstants.of(constants)
     periods = constant_periods(1.0 / step.rate)
     if limits.dt > 0.0:
         periods = Periods(limits.dt, limits.hold, limits.longest, limits.fraction, True)
@@ -431,8 +431,8 @@ class MotionLimits(Limit):
     limits: tuple[RateLimits, ...] = ()
     couplings: tuple[JointCouplingTask, ...] = ()
 
-    def constants(self, robot: Robot) -> MotionNumbers:
-        """Return `MotionNumbers`, whose stated periods are 0.
+    def constants(self, robot: Robot) -> MotionConstants:
+        """Return `MotionConstants`, whose stated periods are 0.
 
         Raises:
             InvalidInputError: A limit does not fit the robot, or a joint's range is too short to
@@ -460,12 +460,12 @@ class MotionLimits(Limit):
         distance = 0.5 * offset * lag
         stated = [np.zeros(4), lower + distance, upper - distance]
         numbers = np.concatenate([*stated, *rates, braking, steepness, lag])
-        limits = MotionNumbers.of(numbers)
+        limits = MotionConstants.of(numbers)
         check_ranges(limits, np.inf)
         return limits
 
 
-def check_ranges(limits: MotionNumbers, rate: float) -> None:
+def check_ranges(limits: MotionConstants, rate: float) -> None:
     """Raise InvalidInputError if a joint's range is too short to reverse in.
 
     Args:
@@ -488,7 +488,7 @@ def check_ranges(limits: MotionNumbers, rate: float) -> None:
         raise InvalidInputError("jerk", problem, limits.jerk)
 
 
-def largest_gain(limits: MotionNumbers, rate: float) -> float:
+def largest_gain(limits: MotionConstants, rate: float) -> float:
     """Compute the feedback gain up to which a loop with these limits is stable [1/s].
 
     It is one over the loop's delay: a period, and the mean time that an acceleration takes to turn
@@ -803,7 +803,7 @@ def tip_speed_bounds(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
     """Tighten the bounds to those of `TipSpeedLimit`, whose constants these are."""
-    own = TipSpeedNumbers.of(constants)
+    own = TipSpeedConstants.of(constants)
     frame = own.frame
     gain = min(own.gain, step.rate)
     point = triple(Placement.of(step.placements[frame]).position)

@@ -27,12 +27,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from iiwa_dnn.checks import Vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import Triple
 from iiwa_dnn.references.rotations import combined, dot, triple
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
@@ -136,8 +136,8 @@ class Contact(NamedTuple):
         distance: Distance of the bodies [m], negative where they meet.
     """
 
-    second: Triple
-    normal: Triple
+    second: Vector3
+    normal: Vector3
     distance: float
 
 
@@ -399,7 +399,7 @@ def place_bodies(scene: SceneViews, placements: Matrix, placed: Matrix) -> None:
 
 
 @compiled
-def ends_of(scene: SceneViews, placed: Matrix, body: int) -> tuple[Triple, Triple]:
+def ends_of(scene: SceneViews, placed: Matrix, body: int) -> tuple[Vector3, Vector3]:
     """Return the ends of a segment among the bodies in the world [m], (3,) each."""
     place = Placement.of(placed[body])
     center = triple(place.position)
@@ -433,7 +433,7 @@ def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
 
 
 @compiled
-def height_of(end: Triple, contact: Contact) -> float:
+def height_of(end: Vector3, contact: Contact) -> float:
     """Compute by how much an end of a pair's segment is farther away than the contact [m].
 
     No end is below the nearest point, but rounding would hold an arm that is too near.
@@ -511,7 +511,7 @@ def second_order(support: Matrix, radii: Matrix, k: int, travel: Vector) -> floa
 
 
 @compiled
-def beyond(x: Triple, half: Triple) -> Triple:
+def beyond(x: Vector3, half: Vector3) -> Vector3:
     """Return the vector to a point from the nearest one of a box."""
     return (
         x[0] - min(max(x[0], -half[0]), half[0]),
@@ -521,7 +521,7 @@ def beyond(x: Triple, half: Triple) -> Triple:
 
 
 @compiled
-def nearest_parameter(a: Triple, u: Triple, half: Triple) -> float:
+def nearest_parameter(a: Vector3, u: Vector3, half: Vector3) -> float:
     """Compute the s in [0, 1] of the point of a segment that is nearest to a box.
 
     Half the derivative of the squared distance grows with s: its root is found by regula falsi,
@@ -551,7 +551,7 @@ def nearest_parameter(a: Triple, u: Triple, half: Triple) -> float:
 
 
 @compiled
-def depth(x: Triple, half: Triple) -> tuple[float, float, float, float]:
+def depth(x: Vector3, half: Vector3) -> tuple[float, float, float, float]:
     """Compute how far a point is from leaving a box by its nearest face, negative inside.
 
     Returns:

@@ -9,7 +9,7 @@ import pytest
 import iiwa_dnn as d
 from helpers_simulation import driven
 from iiwa_dnn.control import stopping
-from iiwa_dnn.schemes.limits import MotionNumbers
+from iiwa_dnn.schemes.limits import MotionConstants
 from iiwa_dnn.schemes.scene import second_order
 from judge_limits import breaches
 
@@ -18,10 +18,10 @@ ACCELERATION = (d.AccelerationLimits(),)
 JERK = (d.AccelerationLimits(), d.JerkLimits(500.0))
 
 
-def limits_of(jerk: float) -> MotionNumbers:
+def limits_of(jerk: float) -> MotionConstants:
     """Limits of three joints."""
     numbers = np.repeat([-3.0, 3.0, 3.0, 10.0, jerk, 10.0, np.inf, 0.0], 3)
-    return MotionNumbers.of(np.concatenate([np.zeros(4), numbers]))
+    return MotionConstants.of(np.concatenate([np.zeros(4), numbers]))
 
 
 def way_to_rest(x: np.ndarray, before: np.ndarray, jerk: float, dt: float) -> np.ndarray:

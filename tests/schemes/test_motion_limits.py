@@ -12,7 +12,7 @@ from helpers_kinematics import PAPER_Q0, Array
 from helpers_simulation import heart, paper_robot, paper_start
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.schemes.limits import (
-    MotionNumbers,
+    MotionConstants,
     braking,
     check_ranges,
     constant_periods,
@@ -27,12 +27,12 @@ INF = math.inf
 Limits = tuple[float, float, float]
 
 
-def motion_numbers(
+def motion_constants(
     lower: float, upper: float, speed: float, acceleration: float, jerk: float
-) -> MotionNumbers:
+) -> MotionConstants:
     """Limits of one joint, without a position-dependent velocity limit."""
     own = [lower, upper, speed, acceleration, jerk, acceleration, INF, 0.0]
-    return MotionNumbers.of(np.array([*[0.0] * 4, *own]))
+    return MotionConstants.of(np.array([*[0.0] * 4, *own]))
 
 
 @compiled
@@ -134,7 +134,7 @@ def test_a_range_that_is_taken_is_long_enough(speed, acceleration, jerk, dt, upp
     limits = (speed, acceleration, jerk)
     while True:
         try:
-            check_ranges(motion_numbers(-upper, upper, *limits), 1.0 / dt)
+            check_ranges(motion_constants(-upper, upper, *limits), 1.0 / dt)
             break
         except d.InvalidInputError:
             upper *= 1.02
@@ -290,7 +290,7 @@ def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
 )
 @pytest.mark.parametrize("dt", [1e-3, 4e-3])
 def test_a_loop_is_stable_up_to_the_largest_gain(limits: Any, dt: float) -> None:
-    gain = largest_gain(motion_numbers(-1.0, 1.0, *limits), 1.0 / dt)
+    gain = largest_gain(motion_constants(-1.0, 1.0, *limits), 1.0 / dt)
     calm = np.zeros(int(30.0 / dt))
     noise = 1e-4 * np.random.default_rng(0).standard_normal(calm.size)
     for start in (1e-3, 0.1, 2.0):
