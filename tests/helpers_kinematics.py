@@ -81,7 +81,7 @@ def pose_jacobian(
 
 def example_urdf(name: str) -> Path:
     """Path of a URDF in the package example-robot-data; skips the test if it is not installed."""
-    path = Path(pin.__file__).parents[4] / "fraction" / "example-robot-data" / "robots" / name
+    path = Path(pin.__file__).parents[4] / "share" / "example-robot-data" / "robots" / name
     if not path.is_file():
         pytest.skip(f"needs the package example-robot-data, which has no {name} here")
     return path

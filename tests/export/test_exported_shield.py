@@ -88,7 +88,7 @@ def test_a_shield_of_many_joints_stays_within_its_memory(tmp_path: Path) -> None
     robot = robot_from_dh([(0.1, 0.0, 0.0, 0.0)] * 20, lower=-2.0, upper=2.0, velocity=1.0)
     export.c99(Shield(robot.with_limits(acceleration=10.0), 1e-3), tmp_path)
     said = run("make", "CFLAGS=-O1 -fsanitize=address", "LDFLAGS=-fsanitize=address", cwd=tmp_path)
-    assert said.strip().endswith(SAME)
+    assert SAME in said
 
 
 def test_a_shield_with_delay_is_refused(tmp_path: Path) -> None:

@@ -336,7 +336,8 @@ def test_a_robots_own_rates_are_those_that_it_has() -> None:
     for name, expected in kinds.items():
         robot = d.load_robot(name)
         assert tuple(map(type, own_rate_limits(robot))) == expected
-        motion = d.Shield(robot).motion
+        shield = d.Shield(robot)
+        motion = shield.layout(robot.tip).plan.motion
         rates = [motion.acceleration, motion.jerk]
         np.testing.assert_array_equal(rates, [robot.ddq_max, robot.dddq_max])
     assert own_rate_limits(d.load_robot("iiwa7").with_limits(acceleration=np.inf)) == ()
