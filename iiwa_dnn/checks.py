@@ -164,9 +164,7 @@ def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     try:
         # A list as objects: as numbers, its booleans would be 0 and 1.
         given = value if isinstance(value, np.ndarray) else np.array(value, dtype=object)
-        is_object = given.dtype == object
-        booleans = is_object and not {bool, np.bool_}.isdisjoint(map(type, given.flat))
-        if booleans or given.dtype.kind in "bc" or is_masked(value):
+        if _has_booleans(given) or given.dtype.kind in "bc" or is_masked(value):
             raise TypeError
         numbers = np.array(given, dtype=np.float64, order="C")
     except (TypeError, ValueError, OverflowError) as error:
@@ -177,6 +175,10 @@ def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
         raise InvalidInputError(argument, f"must have shape {wanted}, not {numbers.shape}", value)
     numbers.setflags(write=False)
     return numbers
+
+
+def _has_booleans(given: NDArray[Any]) -> bool:
+    return given.dtype == object and not {bool, np.bool_}.isdisjoint(map(type, given.flat))
 
 
 def is_masked(value: object) -> bool:

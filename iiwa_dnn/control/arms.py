@@ -106,7 +106,7 @@ class ArmState(Record):
         motion: `MotionState`.
         network: State of the network that answers twists.
         fallback: States of the networks of fallback programs, for requests of joints.
-        twist_relaxed: The same for twists.
+        twist_fallback: The same for twists.
         obstacles: Places of the obstacles at time 0 [m], (k, 3).
         limiting: For each joint the kind of the bound that limits it, below 0 for a lower one, or
             0; then 1 for each row that limits the command, (n + m,).
@@ -132,8 +132,8 @@ class ArmState(Record):
     request: Vector = part("request")
     motion: Vector = part("motion")
     network: Vector = part("network")
-    fallback: Vector = part("relaxed")
-    twist_relaxed: Vector = part("relaxed")
+    fallback: Vector = part("fallback")
+    twist_fallback: Vector = part("fallback")
     obstacles: Matrix = part("obstacles", 3)
     limiting: Vector = part("limiting")
 
@@ -181,7 +181,7 @@ class ArmPlan(NamedTuple):
 
 
 class ArmInput(NamedTuple):
-    """What an arm is given for a step.
+    """Hold what an arm is given for a step.
 
     Attributes:
         q: Measured joint positions [rad], (n,).
@@ -496,7 +496,7 @@ def _answer(
         settings.coupled,
         settings.alike,
     )
-    fallback = own.twist_relaxed if is_twist else own.fallback
+    fallback = own.twist_fallback if is_twist else own.fallback
     step = ControlPlan(
         arrays, program.step.network, program.step.paths, yielding, fallback, program.step.policy
     )
@@ -701,7 +701,7 @@ def stopping_time_of(plan: ArmPlan, memory: Vector) -> float:
 
 
 class ArmInputs(NamedTuple):
-    """What N arms are given for a step.
+    """Hold what N arms are given for a step.
 
     Attributes:
         q: Measured joint positions [rad], (N, n).

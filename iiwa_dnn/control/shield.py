@@ -602,7 +602,7 @@ class Shield:
         if seen != last:
             own = ArmState.of(memory, *layout.plan.sizes)
             own.network[:] = 0.0
-            own.twist_relaxed[:] = 0.0
+            own.twist_fallback[:] = 0.0
         if self._halted:
             halt_arm(layout.plan, memory)
         return Kept(memory, seen, sent.copy() if self.delay > 0.0 else sent)

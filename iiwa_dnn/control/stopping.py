@@ -355,6 +355,20 @@ def _write_coefficients(
 
 
 @compiled
+def _write_before(dq: Vector, last: Vector, ratio: float, before: Vector) -> None:
+    """Write the command before dq that has, over another period, the acceleration since the last.
+
+    Args:
+        dq: The command [rad/s], (dof,).
+        last: Last command [rad/s], (dof,).
+        ratio: That period in control periods.
+        before: The command before, is written, (dof,).
+    """
+    for i in range(dq.size):
+        before[i] = dq[i] - ratio * (dq[i] - last[i])
+
+
+@compiled
 def stopping_time(
     arrays: ProgramArrays, q: Vector, last: Vector, least: Vector, yielding: Yielding, dq: Vector
 ) -> float:
@@ -376,13 +390,12 @@ def stopping_time(
     limits = yielding.limits
     dt = yielding.periods.longest
     ratio = dt / yielding.periods.dt
+    vary = yielding.periods.vary
     before = last.copy()
     coefficient = np.zeros(dq.size)
-    if yielding.periods.vary:
-        for i in range(dq.size):
-            before[i] = dq[i] - ratio * (dq[i] - before[i])
+    if vary:
+        _write_before(dq, last, ratio, before)
     support = limits.lower.size > 0
-    vary = yielding.periods.vary
     periods = least_periods(dq, before, limits, dt, yielding.cubic, vary) if support else 1.0
     if periods == np.inf:
         return -1.0

@@ -112,7 +112,7 @@ def mark_active(qp: QPViews, s: Vector, rates: Vector, active: Vector) -> None:
 
 
 class ProjectionConstants(Record):
-    """Whether x goes through its bounds."""
+    """Hold a projection network's constant: whether x goes through its bounds."""
 
     projects: bool
 
