@@ -140,7 +140,7 @@ class CrossCheck:
         steps = points[:, :n] - references[:, :n]
         gaps = np.abs(steps).max(axis=1, initial=0.0)
         for i in np.flatnonzero(gaps > self.tolerance):
-            gaps[i] = solution_gap(qps[i], references[i], residuals[i], steps[i], self.tolerance)
+            gaps[i] = solution_gap(qps[i], references[i], points[i, :n], self.tolerance)
         return steps, gaps, residuals, judge
 
     def _ask(self, solve: Any, qp: QP) -> tuple[Vector, float]:

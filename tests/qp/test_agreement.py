@@ -9,7 +9,13 @@ from scipy.linalg import null_space
 
 from iiwa_dnn import QP, Agreement, CrossCheck, DNNSolver, solve_problem
 from iiwa_dnn.qp import crosscheck
-from iiwa_dnn.qp.agreement import feasibility_gaps, normalised, objective_gaps, stacked
+from iiwa_dnn.qp.agreement import (
+    feasibility_gaps,
+    normalised,
+    objective_gaps,
+    solution_gap,
+    stacked,
+)
 
 PROXQP = CrossCheck()
 DAQP = CrossCheck(("daqp",))
@@ -217,15 +223,22 @@ def test_a_slight_row_or_cost_counts_by_its_own_size() -> None:
         assert not agrees(check, cost, np.array([0.5]))
 
 
-def test_a_difference_that_the_references_residual_explains_is_none(monkeypatch) -> None:
-    """Curvature 1e-5: at a residual of 1e-9, the reference knows x to 1e-4."""
+def test_a_reference_is_polished_before_it_blames_an_answer(monkeypatch) -> None:
+    """Curvature 1e-5: at a residual of 1e-9, the reference is 1e-4 from the solution (1, 1)."""
     qp = QP(np.diag([1.0, 1e-5]), [-1.0, -1e-5])
     point = np.array([1.0, 1.0001, 0.0, 0.0])
     monkeypatch.setattr(crosscheck, "reference_solver", lambda *_: lambda qp: point)
     assert agrees(PROXQP, qp, np.array([1.0, 1.0]))
-    assert not agrees(PROXQP, qp, np.array([1.0, 1.001]))
+    assert not agrees(PROXQP, qp, np.array([1.0, 1.00002]))
     off = np.array([1.00001, 1.0])
-    assert PROXQP.check(qp, off).solution_gap == pytest.approx(1e-4)  # all of it, once it is one
+    assert PROXQP.check(qp, off).solution_gap == pytest.approx(1e-5, rel=1e-6)
+
+
+def test_a_reference_is_not_polished_onto_a_row_that_is_not_active() -> None:
+    """A row with a multiplier in the reference's answer that it has not in the solution (1, 1)."""
+    qp = QP(np.eye(2), [-1.0, -1.0], G=[[1.0, 0.0]], h=[1.00002])
+    reference = np.array([1.0, 1.0, 2e-6, 0.0, 0.0])
+    assert solution_gap(qp, reference, np.array([1.0, 1.00001]), 1e-6) == pytest.approx(1e-5)
 
 
 def test_the_objective_of_a_proven_answer_is_within_what_the_bound_allows() -> None:
