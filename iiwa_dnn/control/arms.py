@@ -61,12 +61,26 @@ class ArmSettings(Record):
         timeout: Time for which a request counts [s].
         tracking_error: Difference from which on the arm is resynchronised to measured positions
             [rad].
+        delay: Time by which the arm is behind its commands [s].
     """
 
     dt: float
     longest: float
     timeout: float
     tracking_error: float
+    delay: float
+
+
+class SentCommand(Record):
+    """Command that was sent to n joints, and may not show in the measured positions yet.
+
+    Attributes:
+        period: Time for which it is held [s]; 0: there is none.
+        dq: Joint velocity [rad/s], (n,).
+    """
+
+    period: float
+    dq: Vector = part()
 
 
 class ArmSizes(NamedTuple):
@@ -79,6 +93,7 @@ class ArmSizes(NamedTuple):
     fallback: int
     obstacles: int
     limiting: int
+    sent: int
 
 
 class ArmState(Record):
@@ -110,6 +125,7 @@ class ArmState(Record):
         obstacles: Places of the obstacles at time 0 [m], (k, 3).
         limiting: For each joint the kind of the bound that limits it, below 0 for a lower one, or
             0; then 1 for each row that limits the command, (n + m,).
+        sent: `SentCommand` of the commands that cover the delay, the last first, (k (1 + n),).
     """
 
     time: float
@@ -136,6 +152,7 @@ class ArmState(Record):
     twist_fallback: Vector = part("fallback")
     obstacles: Matrix = part("obstacles", 3)
     limiting: Vector = part("limiting")
+    sent: Vector = part("sent")
 
 
 class ArmProgram(NamedTuple):
@@ -210,6 +227,7 @@ def arm_state(plan: ArmPlan, memory: Vector) -> ArmState:
         plan.sizes.fallback,
         plan.sizes.obstacles,
         plan.sizes.limiting,
+        plan.sizes.sent,
     )
 
 
@@ -265,7 +283,7 @@ def send_arm(plan: ArmPlan, memory: Vector, dq: Vector, period: float) -> None:
     own.age += own.period
     own.period = period
     own.spacing = own.spacing if own.spacing > 0.0 else period
-    _go_on(own, motion)
+    _go_on(own, plan.settings, motion)
 
 
 @compiled
@@ -340,6 +358,9 @@ def _take_period(plan: ArmPlan, own: ArmState, periods: Periods, elapsed: float)
             own.positions[i] += (elapsed - own.period) * motion.last[i]
         own.time = own.time + elapsed - own.period
         own.period = elapsed
+        if own.sent.size > 0:
+            last = _sent_command(own, 0)
+            last.period = elapsed
     if own.spacing > 0.0 and periods.dt != own.spacing:
         ratio = periods.dt / own.spacing
         for i in range(motion.last.size):
@@ -352,20 +373,68 @@ def _take_period(plan: ArmPlan, own: ArmState, periods: Periods, elapsed: float)
 def _take_positions(own: ArmState, settings: ArmSettings, given: ArmInput) -> None:
     """Take measured positions over at the first step, if they are far, or if nobody states periods.
 
-    Then nobody says for how long the last command was held.
+    Then nobody says for how long the last command was held. What commands have moved that do not
+    show yet is added to the measured positions.
     """
+    q = given.q[: own.positions.size].copy()
+    _add_pending(own, settings.delay, q)
     far = 0
     beyond = 0
-    for i in range(own.positions.size):
-        far += not abs(given.q[i] - own.positions[i]) <= settings.tracking_error
-        beyond += not abs(given.q[i]) <= LARGEST
+    for i in range(q.size):
+        far += not abs(q[i] - own.positions[i]) <= settings.tracking_error
+        beyond += not abs(q[i]) <= LARGEST
     unstated = settings.longest > 0.0 and max(given.dt, given.elapsed) == 0.0
     own.is_blind = beyond > 0
     own.is_resynchronised = False
     if not own.is_blind and (far > 0 or unstated or not own.has_begun):
         own.is_resynchronised = own.has_begun and not unstated
         own.has_begun = True
-        copied(own.positions, given.q[: own.positions.size])
+        copied(own.positions, q)
+
+
+@compiled
+def _sent_command(own: ArmState, k: int) -> SentCommand:
+    """View the command that was sent k commands before the last one."""
+    width = 1 + own.positions.size
+    return SentCommand.of(own.sent[k * width : (k + 1) * width])
+
+
+@compiled
+def _add_pending(own: ArmState, delay: float, q: Vector) -> None:
+    """Add the displacement by the commands of the last `delay` [s] to positions q (n,) [rad]."""
+    age = 0.0
+    for k in range(own.sent.size // (1 + q.size)):
+        command = _sent_command(own, k)
+        pending = min(max(delay - age, 0.0), command.period)
+        for i in range(q.size):
+            q[i] += pending * command.dq[i]
+        age += command.period
+
+
+@compiled
+def _note_sent(own: ArmState, period: float, dq: Vector) -> None:
+    """Note a command as the last one that was sent.
+
+    Args:
+        own: The arm.
+        period: Control period [s]; two commands that last no longer together become one.
+        dq: The command [rad/s], (n,).
+    """
+    last = _sent_command(own, 0)
+    before = _sent_command(own, 1)
+    both = last.period + before.period
+    if min(last.period, before.period) > 0.0 and both <= period:
+        for i in range(dq.size):
+            displacement = last.period * last.dq[i] + before.period * before.dq[i]
+            before.dq[i] = displacement / both
+        before.period = both
+    else:
+        width = 1 + dq.size
+        for k in range(own.sent.size - width):
+            place = own.sent.size - 1 - k
+            own.sent[place] = own.sent[place - width]
+    last.period = own.period
+    copied(last.dq, dq)
 
 
 @compiled
@@ -418,13 +487,15 @@ def answer_request(
         own.action = _answer(plan, plan.twist, own, given, jacobian, placements, row)
     elif own.answered != Request.NONE:
         own.action = _answer(plan, plan.joint, own, given, jacobian, placements, row)
-    _go_on(own, motion_of(plan, own))
+    _go_on(own, plan.settings, motion_of(plan, own))
     return own.action
 
 
 @compiled
-def _go_on(own: ArmState, motion: MotionState) -> None:
+def _go_on(own: ArmState, settings: ArmSettings, motion: MotionState) -> None:
     """Lead positions and clock to the end of the last command's period."""
+    if own.sent.size > 0:
+        _note_sent(own, settings.dt, motion.last)
     for i in range(own.positions.size):
         own.positions[i] += own.period * motion.last[i]
     own.time += own.period

@@ -89,22 +89,6 @@ from iiwa_dnn.schemes.scene import Body, scene_views
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 
-def pending_displacement(sent: Matrix, delay: float) -> tuple[Vector, Matrix]:
-    """Compute the displacement by the commands of the last `delay` seconds.
-
-    Args:
-        sent: Periods [s] and commands [rad/s], the last first, (k, 1 + n).
-        delay: The time [s].
-
-    Returns:
-        The displacement, (n,) [rad], and the rows that it needs.
-    """
-    periods = sent[:, 0]
-    ages = np.cumsum(periods) - periods
-    displacement: Vector = np.clip(delay - ages, 0.0, periods) @ sent[:, 1:]
-    return displacement, sent[ages < delay]
-
-
 def one_request(
     dq: ArrayLike | None, twist: ArrayLike | None, position: ArrayLike | None
 ) -> tuple[Request, ArrayLike | None]:
@@ -172,6 +156,8 @@ def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
         fallback=joint.plan.fallback.size,
         obstacles=len(centers),
         limiting=n + m,
+        # Two commands in a row last longer than a period, or are one.
+        sent=(1 + robot.dof) * (1 + 2 * math.ceil(shield.delay / shield.dt)) * (shield.delay > 0.0),
     )
     plan = ArmPlan(
         model_tables(robot, [*frames]),
@@ -348,20 +334,6 @@ class ShieldCommand(NamedTuple):
         return f"<ShieldCommand dq = {dq} rad/s; clipped = {self.clipped}>"
 
 
-class Kept(NamedTuple):
-    """All that one step leaves for the next; none of it is overwritten.
-
-    Attributes:
-        memory: Memory of the arm, (k,).
-        frame: Frame of the last twist.
-        sent: Periods [s] and commands [rad/s] that are pending, the last first, (k, 1 + n).
-    """
-
-    memory: Vector
-    frame: str
-    sent: Matrix
-
-
 class Shield:
     """The limits of a robot, kept for whoever drives it.
 
@@ -420,12 +392,14 @@ class Shield:
             longest=longest_period or 0.0,
             timeout=timeout if timeout == math.inf else checks.positive("timeout", timeout),
             tracking_error=checks.not_negative("tracking_error", tracking_error),
+            delay=self.delay,
         )
         self.limits: list[Limit] = [JointLimits(), *own_rate_limits(robot)]
         if obstacles is not None:
             self.limits.append(CollisionAvoidance(obstacles, distance=distance, left_out=left_out))
         self._periods = constant_periods(self.dt)
         self._warned: set[str] = set()
+        self._kept: tuple[Vector, str]  # memory of the arm, never overwritten; frame of twists
         self._begin()
         self.reset()
 
@@ -450,28 +424,42 @@ class Shield:
                 self._layouts[frame] = lay_out_arm(self, frame)
             return self._layouts[frame]
 
-    def reset(self) -> None:
-        """Forget requests, a halt and the commands: the arm is where it is measured next."""
+    def reset(self, q: ArrayLike | None = None) -> None:
+        """Forget requests, a halt and the commands: the arm stands at joint positions.
+
+        Args:
+            q: The positions [rad], (n,); None: where the arm is measured next.
+        """
+        none = np.zeros(0)
+        at = none if q is None else checks.joint_positions("q", q, self.robot.dof)
         with self._lock:
             tip = self.robot.tip
-            self._kept = Kept(self.layout(tip).memory, tip, np.zeros((0, 1 + self.robot.dof)))
+            layout = self.layout(tip)
+            memory = layout.memory.copy()
+            rest_arm(layout.plan, memory, at)
+            self._kept = (memory, tip)
             self._halted = False
 
     def halt(self) -> None:
         """Brake from now on, whatever is requested, until `reset`."""
         self._halted = True
 
-    def send(self, dq: ArrayLike) -> None:
-        """Count a velocity dq (n,) [rad/s] as sent for a control period, in place of a step's.
+    def send(self, dq: ArrayLike, dt: float | None = None) -> None:
+        """Count a velocity as sent, in place of a step's command.
+
+        Args:
+            dq: Joint velocity [rad/s], (n,).
+            dt: Period for which it is held [s]; None: the control period.
 
         Raises:
-            InvalidInputError: `dq` has another size, or is not finite.
+            InvalidInputError: `dq` has another size, or is not finite; or `dt` is not above 0.
         """
         command = checks.finite_array("dq", dq, (self.robot.dof,))
+        period = self.dt if dt is None else checks.positive("dt", dt)
         with self._lock:
-            memory, frame, sent = self._next(Request.NONE, None)
-            send_arm(self._layouts[frame].plan, memory, command, self.dt)
-            self._kept = Kept(memory, frame, self._with_sent(sent, self.dt, command))
+            memory, frame = self._next(Request.NONE, None)
+            send_arm(self._layouts[frame].plan, memory, command, period)
+            self._kept = (memory, frame)
 
     def warm_up(self, q: ArrayLike, frames: Sequence[str] = ()) -> None:
         """Lay the programs out ahead, so that the first step is as quick as the others.
@@ -546,9 +534,7 @@ class Shield:
         periods = self._stated_periods(dt, elapsed)
         if "start" not in self._warned:
             self._warn_of_start(Configuration(self.robot, measured), stacklevel=4)
-        memory, seen, sent = self._next(kind, frame)
-        if self.delay > 0.0:
-            measured, sent = self._ahead(measured, sent, elapsed)
+        memory, seen = self._next(kind, frame)
         layout = self._layouts[seen]
         given = ArmInput(measured, kind, asked, dt or 0.0, elapsed or 0.0)
         answered = take_input(layout.plan, memory, given)
@@ -562,10 +548,9 @@ class Shield:
         )
         if action == INVALID:
             checks.joint_positions("q", positions, positions.size)
-        command = row[step.log_layout.dq]
-        self._kept = Kept(memory, seen, self._with_sent(sent, dt or self.dt, command))
+        self._kept = (memory, seen)
         arm = Arm(layout.plan, memory, step.log_layout.names)
-        return ShieldCommand(command, arm, row, step.log_layout, periods)
+        return ShieldCommand(row[step.log_layout.dq], arm, row, step.log_layout, periods)
 
     def _asked(self, kind: Request, request: ArrayLike) -> Vector:
         """Return a request of a kind as numbers, which may be NaN."""
@@ -584,18 +569,9 @@ class Shield:
             warn_of_period(stated, longest)
         return periods
 
-    def _ahead(
-        self, measured: Vector, sent: Matrix, elapsed: float | None
-    ) -> tuple[Vector, Matrix]:
-        """Lead measured positions on by the commands that are under way; return these too."""
-        if elapsed is not None:
-            sent[:1, 0] = elapsed
-        displacement, sent = pending_displacement(sent, self.delay)
-        return measured + displacement, sent
-
-    def _next(self, kind: Request, frame: str | None) -> Kept:
-        """Return a copy of what the last step has left, for a request of a kind."""
-        memory, last, sent = self._kept
+    def _next(self, kind: Request, frame: str | None) -> tuple[Vector, str]:
+        """Return a copy of the arm's memory, and the frame of twists, for a request of a kind."""
+        memory, last = self._kept
         memory = memory.copy()
         seen = frame or self.robot.tip if kind is Request.TWIST else last
         layout = self._layouts.get(seen) or self.layout(seen)
@@ -605,11 +581,7 @@ class Shield:
             own.twist_fallback[:] = 0.0
         if self._halted:
             halt_arm(layout.plan, memory)
-        return Kept(memory, seen, sent.copy() if self.delay > 0.0 else sent)
-
-    def _with_sent(self, sent: Matrix, period: float, dq: Vector) -> Matrix:
-        """Return commands that are under way, and one more if the arm is behind them."""
-        return np.vstack([np.append(period, dq), sent]) if self.delay > 0.0 else sent
+        return memory, seen
 
     def _warn_of_start(self, start: Configuration, stacklevel: int) -> None:
         """Warn once of settings or a start posture that are most likely wrong."""

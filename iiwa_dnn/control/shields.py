@@ -107,7 +107,7 @@ class Shields:
             count: Number of arms.
             frame: Frame of the twists that will be requested; None stands for the tip.
             threads: Threads of a step; None: as many as there are processors.
-            settings: As for `Shield`, without `delay`.
+            settings: As for `Shield`.
 
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
@@ -123,8 +123,6 @@ class Shields:
         return own
 
     def _set(self, shield: Shield, count: int, frame: str | None, threads: int | None) -> None:
-        if shield.delay > 0.0:
-            raise InvalidInputError("delay", "is for one shield", shield.delay)
         self._shield = copy.deepcopy(shield)
         self.robot = robot = shield.robot
         self.count = checks.integer("count", count, 1)

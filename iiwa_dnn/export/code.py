@@ -193,6 +193,7 @@ def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
         "frame": frame,
         "longest": repr(shield.longest_period or 0.0),
         "timeout": repr(shield.settings.timeout),
+        "delay": repr(shield.delay),
         "obstacles": len(obstacles),
         "obstacle_names": ", ".join(
             f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)

@@ -3,6 +3,7 @@
 import copy
 import json
 import keyword
+import math
 import os
 import re
 import subprocess
@@ -179,11 +180,8 @@ def shield_texts(shield: Shield, frame: str | None, q0: ArrayLike | None) -> dic
     """Return the texts of a shield, and vectors of a run with requests of all kinds.
 
     Raises:
-        InvalidInputError: It has a `delay`.
         NotFoundError: There is no such frame.
     """
-    if shield.delay > 0.0:
-        raise InvalidInputError("shield", "with delay has no C", shield)
     robot = shield.robot
     tip = frame or robot.tip
     texts = shield_code(shield, tip)
@@ -199,6 +197,8 @@ def shield_texts(shield: Shield, frame: str | None, q0: ArrayLike | None) -> dic
 def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
     """Run a shield on requests of all kinds that jump, are held, too old, or not finite.
 
+    The arm follows its commands, late by the shield's `delay`.
+
     Returns:
         Rows of the joint positions, kind of the request, stated period [s], the request, the
         command and its reason.
@@ -206,6 +206,8 @@ def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
     random = np.random.default_rng(0)
     arms = Shields.of(shield, 1, frame)
     kinds = [Request.VELOCITY, Request.TWIST, Request.POSITION, Request.NONE]
+    late = math.ceil(shield.delay / shield.dt)
+    path = [q] * (1 + late)
     rows = []
     request: Vector = np.zeros(width)
     kind = Request.NONE
@@ -227,7 +229,8 @@ def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
         )
         own = [q, [float(kind), period], request, command.dq[0], [float(command.reason[0])]]
         rows.append(np.concatenate(own))
-        q = command.next_q[0] + (0.05 if k == 300 else 0.0)
+        path.append(command.next_q[0])
+        q = path[1 + k] + (0.05 if k == 300 else 0.0)
     return np.array(rows)
 
 

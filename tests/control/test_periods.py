@@ -256,6 +256,28 @@ def test_drives_that_are_late_pass_no_limit(late: int, jitter: bool) -> None:
     assert np.ptp(path, axis=0).min() > 0.3
 
 
+def test_commands_of_short_periods_cover_the_delay() -> None:
+    """The measured positions are those of a plant that is late, to the change within a period."""
+    random = np.random.default_rng(0)
+    robot = PLAIN.with_limits(acceleration=10.0)
+    settings = {"delay": 5.3e-3, "longest_period": LONGEST, "tracking_error": 2e-5}
+    shield = d.Shield(robot, DT, **settings)
+    times = [0.0]
+    path = [np.array(robot.start_posture())]
+    elapsed = DT
+    for k in range(2000):
+        if k % 100 == 0:
+            request = random.uniform(-1.0, 1.0, 7)
+        late = times[-1] - shield.delay
+        measured = np.array([np.interp(late, times, joint) for joint in np.transpose(path)])
+        command = shield.step(measured, request, elapsed=elapsed)
+        assert "resynchronised to measured positions" not in command.reasons
+        elapsed = random.choice([0.02, 0.3, 0.6, 2.0]) * DT
+        times.append(times[-1] + elapsed)
+        path.append(path[-1] + elapsed * command.dq)
+    assert np.ptp(path, axis=0).min() > 0.1
+
+
 def test_a_blocked_arm_is_found_and_goes_on_from_where_it_is_and_what_is_under_way() -> None:
     shield = d.Shield(PLAIN.with_limits(acceleration=np.inf), 1e-3, delay=0.02)
     q = np.array(PLAIN.start_posture())

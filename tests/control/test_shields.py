@@ -61,14 +61,16 @@ def periods(k: int, longest: float | None) -> dict[str, float]:
 
 
 @pytest.mark.usefixtures("kernels_kinematics")
-@pytest.mark.parametrize("longest", [None, 3e-3])
+@pytest.mark.parametrize(("longest", "delay"), [(None, 0.0), (None, 0.02), (3e-3, 4e-3)])
 @pytest.mark.parametrize("kind", ["dq", "twist", "position"])
-def test_each_arm_is_a_shield(kind: str, longest: float | None) -> None:
+def test_each_arm_is_a_shield(kind: str, longest: float | None, delay: float) -> None:
     settings: dict[str, Any] = {
         "dt": DT,
         "obstacles": [BALL],
         "timeout": 0.02,
         "longest_period": longest,
+        "delay": delay,
+        "tracking_error": 0.01,
     }
     shield = Shield(SMOOTH, **settings)
     shields = Shields(SMOOTH, 3, **settings)
@@ -227,9 +229,7 @@ def test_an_arm_with_a_ball_takes_at_most_8000_bytes() -> None:
     assert Shields(SMOOTH, 1, dt=DT, obstacles=[BALL])._memories.nbytes <= 8000
 
 
-def test_what_is_for_one_shield_is_refused() -> None:
-    with pytest.raises(InvalidInputError, match="delay"):
-        Shields(PLAIN, 2, delay=0.01)
+def test_a_frame_that_is_none_is_refused() -> None:
     with pytest.raises(iiwa_dnn.NotFoundError):
         Shields(PLAIN, 2, frame="elbow")
 

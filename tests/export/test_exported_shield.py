@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_export import WARNINGS, needs, run
-from iiwa_dnn import InvalidInputError, Shield, Sphere, export, load_robot, robot_from_dh
+from iiwa_dnn import Shield, Sphere, export, load_robot, robot_from_dh
 
 SMOOTH = load_robot("iiwa7").with_limits(acceleration=10.0, jerk=500.0)
 START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
@@ -18,7 +18,7 @@ pytestmark = needs("gcc", "make")
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    shield = Shield(SMOOTH, 1e-3, [BALL], timeout=0.02)
+    shield = Shield(SMOOTH, 1e-3, [BALL], timeout=0.02, delay=4e-3)
     return export.c99(shield, tmp_path_factory.mktemp("shield"), START)
 
 
@@ -89,8 +89,3 @@ def test_a_shield_of_many_joints_stays_within_its_memory(tmp_path: Path) -> None
     export.c99(Shield(robot.with_limits(acceleration=10.0), 1e-3), tmp_path)
     said = run("make", "CFLAGS=-O1 -fsanitize=address", "LDFLAGS=-fsanitize=address", cwd=tmp_path)
     assert SAME in said
-
-
-def test_a_shield_with_delay_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InvalidInputError, match="shield: with delay has no C"):
-        export.c99(Shield(SMOOTH, 1e-3, delay=0.01), tmp_path)

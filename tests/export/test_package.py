@@ -39,6 +39,7 @@ SETTINGS: dict[str, Any] = {
     "obstacles": [BALL],
     "timeout": 0.02,
     "longest_period": LONGEST,
+    "delay": 4.3e-3,
 }
 
 

@@ -21,6 +21,7 @@ extern "C" {
 #define SHIELD_FRAME "@frame@"         /* frame of twists */
 #define SHIELD_DT @dt@                 /* control period [s] */
 #define SHIELD_LONGEST_PERIOD @longest@ /* longest one where periods vary [s]; 0: they do not */
+#define SHIELD_DELAY @delay@           /* time by which the arm is behind its commands [s] */
 #define SHIELD_OBSTACLES @obstacles@   /* obstacles: @obstacle_names@ */
 #define SHIELD_LIMITS @limit_count@    /* codes of reasons and limits */
 #define SHIELD_DIGEST "@digest@"       /* of the code and its tables */
