@@ -116,6 +116,7 @@ class LogLayout(NamedTuple):
         sizes: Sizes of the programs.
         width: Length of a log.
         dq: Columns of the command.
+        next_q: Columns of the joint positions after it.
         names: Names of the limits; None where nobody asks for them.
         periods: Control periods of the steps; commands keep those of theirs.
         reasons: Reasons beside limits for which the command differs from the answer.
@@ -124,6 +125,7 @@ class LogLayout(NamedTuple):
     sizes: ProgramSizes
     width: int
     dq: slice
+    next_q: slice
     names: Any
     periods: Periods
     reasons: tuple[str, ...] = ()
@@ -185,7 +187,8 @@ def lay_out_log(sizes: ProgramSizes, names: LimitNames | None, dt: float) -> Log
     """Lay out the logs of steps of a constant period [s]."""
     columns = StepLog.columns(*log_sizes(sizes))
     width = columns["targets"].stop
-    return LogLayout(sizes, width, columns["dq"], names, constant_periods(dt))
+    commands = (columns["dq"], columns["next_q"])
+    return LogLayout(sizes, width, *commands, names, constant_periods(dt))
 
 
 def _active(multipliers: Matrix, slacks: Matrix, tol: float) -> Matrix:
@@ -226,7 +229,7 @@ class Command:
     @property
     def next_q(self) -> Vector:
         """Joint positions at the end of the period, q + dt dq [rad], (n,), a view."""
-        return self.log.next_q
+        return self.data[self._layout.next_q]
 
     @property
     def fraction(self) -> float:
