@@ -82,10 +82,7 @@ from iiwa_dnn.schemes import (
     Task,
     TipSpeedLimit,
 )
-from iiwa_dnn.simulation import (
-    MujocoPlant,
-    simulate,
-)
+from iiwa_dnn.simulation import MujocoPlant, RunSettings, simulate
 
 __version__ = version("iiwa-dnn")
 
@@ -149,6 +146,7 @@ __all__ = [
     "RemoteCenterTask",
     "Residuals",
     "Robot",
+    "RunSettings",
     "Scheme",
     "Shield",
     "Shields",

@@ -5,11 +5,11 @@ The keys of the tables are the arguments of the package's functions and classes.
 
 from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from functools import partial, reduce
 from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from iiwa_dnn import (
     AccelerationLimits,
@@ -26,15 +26,18 @@ from iiwa_dnn import (
     Lissajous,
     MujocoPlant,
     NotFoundError,
+    Reference,
     Robot,
+    RunSettings,
+    Scheme,
     Tilting,
     TipSpeedLimit,
     Waypoints,
     checks,
     load_robot,
-    simulate,
 )
 from iiwa_dnn.app.words import WORDS
+from iiwa_dnn.checks import Array
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.files import one_line, parse_toml, read_toml
 from iiwa_dnn.schemes.limits import RateLimits, own_rate_limits
@@ -150,7 +153,17 @@ def _merge(first: Tables, second: Tables, name: str = "") -> Tables:
     return {**first, **second, **inner}
 
 
-def build(tables: Tables) -> Tables:
+class Arguments(NamedTuple):
+    """Arguments of `simulate`."""
+
+    robot: Robot
+    scheme: Scheme
+    reference: Reference
+    q0: Array
+    settings: RunSettings
+
+
+def build(tables: Tables) -> Arguments:
     """Return the arguments of `simulate`, and write defaults that depend on others into the tables.
 
     Raises:
@@ -173,9 +186,9 @@ def build(tables: Tables) -> Tables:
     run = tables["run"]
     is_paper = (robot.name, name, plant.exact) == ("iiwa7", "heart", True)
     run.setdefault("dt", 1e-4 if is_paper else 1e-3)
-    made = {"robot": robot, "scheme": scheme, "reference": reference, "q0": q0, "plant": plant}
-    known = [key for key in signature(simulate).parameters if key not in (*made, "progress")]
-    return {**made, **objects(known, "run", run)}
+    known = [each.name for each in fields(RunSettings) if each.name != "plant"]
+    settings = RunSettings(plant=plant, **objects(known, "run", run))
+    return Arguments(robot, scheme, reference, q0, settings)
 
 
 def call(

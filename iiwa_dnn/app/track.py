@@ -5,7 +5,6 @@ import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +20,7 @@ from iiwa_dnn import (
     simulate,
 )
 from iiwa_dnn.app.command_line import check_folder, write_settings
-from iiwa_dnn.app.settings import Tables, build, read_tables
+from iiwa_dnn.app.settings import Arguments, Tables, build, read_tables
 from iiwa_dnn.app.words import ExportWords, RunWords
 from iiwa_dnn.errors import RunInterrupted
 from iiwa_dnn.results.pictures import save_pictures
@@ -30,7 +29,6 @@ from iiwa_dnn.results.report import save_run, summary
 from iiwa_dnn.robot.mujoco_model import prepare_renderer
 from iiwa_dnn.robot.robot import model_limits
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.simulation import count_steps
 from iiwa_dnn.studies.paper import published
 
 OUTPUTS = (
@@ -54,7 +52,7 @@ def track(options: RunWords) -> int:
     draw_more = None
     if options.plots and tables["plant"]["name"] == "mujoco":
         prepare_renderer()  # what it needs is asked for before the run
-        draw_more = partial(save_pictures, arguments["robot"])
+        draw_more = partial(save_pictures, arguments.robot)
     claim = partial(check_folder, folder, tables, options.overwrite)
     record, interrupt = _simulate(arguments, claim, options.quiet)
     for name in OUTPUTS:  # those of an earlier run
@@ -72,7 +70,7 @@ def track(options: RunWords) -> int:
     return 1 if reasons else 0
 
 
-def _read(options: Any) -> tuple[Tables, Tables]:
+def _read(options: Any) -> tuple[Tables, Arguments]:
     """Read the tables and the arguments of a command; if it is quiet, warnings are not shown."""
     if options.quiet:
         warnings.simplefilter("ignore", UserWarning)
@@ -81,13 +79,13 @@ def _read(options: Any) -> tuple[Tables, Tables]:
 
 
 def _simulate(
-    arguments: Tables, claim: Callable[[], None], quiet: bool
+    arguments: Arguments, claim: Callable[[], None], quiet: bool
 ) -> tuple[Record, RunInterrupted | None]:
     """Simulate beside a progress bar; return the record, and the interrupt that cut it short.
 
     The folder is claimed once all arguments are found to be right.
     """
-    steps = count_steps(arguments["reference"], arguments["dt"], arguments.get("duration"))
+    steps = arguments.settings.steps(arguments.reference)
     # Hidden if standard error is no terminal.
     with tqdm(total=steps, unit="step", disable=quiet or None) as bar:
 
@@ -97,7 +95,7 @@ def _simulate(
             bar.update(done)
 
         try:
-            return simulate(**arguments, progress=proceed), None
+            return simulate(*arguments, progress=proceed), None
         except RunInterrupted as interrupt:
             return interrupt.record, interrupt
 
@@ -108,19 +106,19 @@ def physics(options: RunWords) -> int:
     return track(replace(options, plant=options.plant or "mujoco", out=options.out or usual))
 
 
-def _export_package(options: ExportWords, tables: Tables, arguments: Tables) -> int:
+def _export_package(options: ExportWords, tables: Tables, arguments: Arguments) -> int:
     """Write a shield with the robot, obstacles and period of the settings as a package."""
-    avoidance = avoidance_of(arguments["scheme"])
+    avoidance = avoidance_of(arguments.scheme)
     shield = Shield(
-        arguments["robot"],
-        dt=arguments["dt"],
+        arguments.robot,
+        dt=arguments.settings.dt,
         obstacles=avoidance.obstacles if avoidance else None,
         distance=avoidance.distance if avoidance else 0.02,
     )
     folder = options.out or Path(options.python)
     check_folder(folder, tables, options.overwrite)
     write_settings(folder, tables)
-    q0 = arguments["q0"]
+    q0 = arguments.q0
     exports.python(shield, folder, options.python, q0=q0, platforms=options.platforms)
     if not options.quiet:
         print(f"written to {folder}; to install it: pip install ./{folder}")
@@ -135,14 +133,15 @@ def export(options: ExportWords) -> int:
     tables, arguments = _read(options)
     if options.python:
         return _export_package(options, tables, arguments)
-    if "filter_window" in arguments:
+    run = arguments.settings
+    if run.filter_window > 1:
         raise InvalidInputError("filter_window", "is no part of a controller and is not exported")
-    known = signature(Controller).parameters
-    controller = Controller(**{key: arguments[key] for key in arguments if key in known})
+    kept = {name: getattr(run, name) for name in ("dt", "mode", "policy", "solver")}
+    controller = Controller(arguments.robot, arguments.scheme, arguments.reference, **kept)
     folder = options.out or Path("controller")
     check_folder(folder, tables, options.overwrite)
     write_settings(folder, tables)
-    exports.c99(controller, folder, arguments["q0"])
+    exports.c99(controller, folder, arguments.q0)
     robot = controller.robot
     lower, upper, _ = model_limits(robot.model)
     if (robot.q_lower < lower).any() or (robot.q_upper > upper).any():

@@ -1,5 +1,6 @@
 """Many small programs of one shape."""
 
+from inspect import signature
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +15,8 @@ from iiwa_dnn.qp.solution import Solution
 
 _AXES = dict(zip(FIELDS, (2, 1, 2, 1, 2, 1, 1, 1), strict=True))
 """Axes of each field of one program."""
+
+_PROGRAM = signature(QP)
 
 
 class BatchSolution(NamedTuple):
@@ -42,37 +45,23 @@ class BatchSolution(NamedTuple):
 
 
 def solve_batch(
-    P: ArrayLike,
-    q: ArrayLike,
-    G: ArrayLike | None = None,
-    h: ArrayLike | None = None,
-    A: ArrayLike | None = None,
-    b: ArrayLike | None = None,
-    lb: ArrayLike | None = None,
-    ub: ArrayLike | None = None,
-    tol: float = 1e-9,
+    *fields: ArrayLike | None, tol: float = 1e-9, **named: ArrayLike | None
 ) -> BatchSolution:
     """Solve k programs one after another, each from a cold start.
 
     A program with a wrong value spoils no other: it is not found.
 
     Args:
-        P: Cost matrices, (k, n, n), or (n, n) for one that all share. The same holds for the
-            others: without its leading axis an array is shared by all programs.
-        q: Cost vectors, (k, n) or (n,).
-        G: Inequality rows, (k, m, n) or (m, n).
-        h: Their right-hand sides, (k, m) or (m,).
-        A: Equality rows, (k, p, n) or (p, n).
-        b: Their right-hand sides, (k, p) or (p,).
-        lb: Lower bounds, (k, n) or (n,).
-        ub: Upper bounds, (k, n) or (n,).
+        fields: Fields of the programs in the order of `QP`: P, q, G, h, A, b, lb, ub. Each is that
+            of one program, which all share, or has a first axis of k more, as (k, n, n) for P.
         tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
+        named: Fields by their names.
 
     Raises:
         InvalidInputError: An array has the wrong shape. The message names the argument.
     """
     checks.positive("tol", tol)
-    given = zip(FIELDS, (P, q, G, h, A, b, lb, ub), strict=True)
+    given = _PROGRAM.bind(*fields, **named).arguments.items()
     arrays = {name: real_array(name, value) for name, value in given if value is not None}
     stacks = {name: array for name, array in arrays.items() if array.ndim > _AXES[name]}
     count = max((len(stack) for stack in stacks.values()), default=1)

@@ -94,5 +94,12 @@ class Target:
         """Desired angular velocity [rad/s], shape (3,)."""
         return checks.read_only(self.data[..., 15:])
 
+    def __repr__(self) -> str:
+        if self.data.ndim > 1:
+            return f"<{len(self.data)} targets>"
+        parts = (self.position, pin.log3(self.rotation), *np.split(self.data[12:], 2))
+        p, turn, v, rate = (np.round(part, 4).tolist() for part in parts)
+        return f"Target(position={p} m, turned by {turn} rad, moving at {v} m/s, {rate} rad/s)"
+
     def __getitem__(self, i: int) -> Target:
         return Target.from_data(self.data[i])

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
@@ -58,6 +59,10 @@ class Configuration(FrameState):
         super().__init__(*_kinematics(robot, checked, robot.tip_id))
         object.__setattr__(self, "robot", robot)
         object.__setattr__(self, "q", checked)
+
+    def __repr__(self) -> str:
+        q, position = (np.round(each, 4).tolist() for each in (self.q, self.position))
+        return f"Configuration({self.robot.name}, q={q} rad, {self.robot.tip} at {position} m)"
 
     if not TYPE_CHECKING:  # else a checker of types takes any name
 

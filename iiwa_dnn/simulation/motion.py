@@ -11,7 +11,6 @@ E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I"
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
-from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.program import Vector
 
@@ -25,7 +24,6 @@ def check_motion(motion: str, one_clock: bool, at_end: bool) -> None:
     Network or physics that advance by one control period a step have one clock; `at_end` are tasks
     that track the target one control period ahead.
     """
-    checks.one_of("motion", motion, tuple(MOTIONS))
     problem = "must be euler in continuous mode and in physics: they have one clock"
     if at_end:
         problem = "must be euler with tasks that track the next target"

@@ -1,33 +1,19 @@
 """Noise, filter, estimator and clip: from the plant's encoders to the controller, and back."""
 
 from dataclasses import asdict
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.clipping import clip_command
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
+from iiwa_dnn.control.estimation import JointEstimator
 from iiwa_dnn.control.filters import MovingAverage
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.qp.program import Matrix
-
-NoiseEntry = Literal["velocity", "network", "measurement"]
-NOISE_ENTRIES: tuple[NoiseEntry, ...] = ("velocity", "network", "measurement")
-"""Signals that noise may be added to; it has the unit of that signal.
-
-``velocity`` [rad/s]: the joint velocity that the controller commands, before the filter: the
-paper's section IV. ``network`` [rad/s]: x of the network's state after each step's answer was
-taken, so the network has one control step to work it off; a network that converges at every step
-forgets it. ``measurement`` [rad]: the joint positions that the controller sees; the robot, and the
-record, keep the true ones.
-"""
-
-LARGEST = 1e3
-"""The largest noise that is accepted, [rad/s] or [rad]: far more overflows."""
+from iiwa_dnn.simulation.settings import RunSettings
 
 
 def gaussian_noise(sigma: float, steps: int, joints: int, seed: int) -> Matrix:
@@ -41,16 +27,7 @@ def gaussian_noise(sigma: float, steps: int, joints: int, seed: int) -> Matrix:
 
     Returns:
         Noise in the unit of `sigma`, of shape (steps, joints).
-
-    Raises:
-        InvalidInputError: `sigma` is negative, not finite or above ``LARGEST``, or `seed` is
-            negative.
     """
-    if checks.not_negative("noise", sigma) > LARGEST:
-        raise InvalidInputError("noise", f"must be at most {LARGEST:g}, not {sigma:g}", sigma)
-    checks.integer("seed", seed, 0)
-    if sigma == 0.0:
-        return np.zeros((steps, joints))
     return sigma * np.random.default_rng(seed).standard_normal((steps, joints))
 
 
@@ -63,50 +40,29 @@ class SignalChain:
         misleads: Whether the controller may see another posture than the robot has.
     """
 
-    def __init__(
-        self,
-        noise: float | ArrayLike,
-        entry: NoiseEntry,
-        window: int,
-        model: NoiseModel | None,
-        shape: tuple[int, int],
-        dt: float,
-        seed: int,
-    ) -> None:
-        """Draw the noise of a run.
-
-        Args:
-            noise: Standard deviation of white noise [rad/s] or [rad], or the noise, (steps, n).
-            entry: Signal that it is added to (`NOISE_ENTRIES`).
-            window: Samples of the moving average of the velocity; 1: no filter.
-            model: Noise model of a Kalman filter of the joint positions, whose bias is taken off
-                the command; None: the controller sees the measured positions.
-            shape: Number of steps, and of joints n.
-            dt: Control period [s].
-            seed: Seed of the noise.
+    def __init__(self, run: RunSettings, shape: tuple[int, int]) -> None:
+        """Draw the noise of a run of so many steps and joints n, (steps, n).
 
         Raises:
-            InvalidInputError: An argument is out of range; the message names it.
+            InvalidInputError: Noise that is given has another shape or is not finite.
         """
         steps, joints = shape
-        checks.one_of("noise_at", entry, NOISE_ENTRIES)
-        checks.integer("filter_window", window, 1)
-        if model is not None:
-            checks.instance("estimator", model, NoiseModel)
-        if isinstance(noise, np.ndarray):
-            self._noise = checks.finite_array("noise", noise, shape)
-            size = float(np.sqrt(np.mean(noise**2)))
+        model = run.estimator
+        if isinstance(run.noise, np.ndarray):
+            self._noise = checks.finite_array("noise", run.noise, shape)
+            size: Any = float(np.sqrt(np.mean(run.noise**2)))
         else:
-            size = noise  # type: ignore[assignment]
-            self._noise = gaussian_noise(size, steps, joints, seed)
+            size = run.noise
+            self._noise = gaussian_noise(size, steps, joints, run.seed)
+        window = run.filter_window
         self.settings: dict[str, Any] = {
             "noise": size,
-            "noise_at": entry,
+            "noise_at": run.noise_at,
             "filter_window": window,
             "estimator": None if model is None else {"name": "kalman", **asdict(model)},
         }
-        self._entry = entry if self._noise.any() else None
-        self._estimator = None if model is None else JointEstimator(model, dt)
+        self._entry = run.noise_at if self._noise.any() else None
+        self._estimator = None if model is None else JointEstimator(model, run.dt)
         # A window longer than the run never fills; so none is too long for the memory.
         self._average = MovingAverage(min(window, steps))
         self._known = MovingAverage(min(window, steps))

@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache
 from importlib.metadata import version
 from typing import Any
 
 from numpy.typing import ArrayLike
 
-from iiwa_dnn import checks
 from iiwa_dnn.control.command import log_of
-from iiwa_dnn.control.controller import Controller, Mode
-from iiwa_dnn.control.estimation import NoiseModel
+from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import References, beyond_reach, by_frame
-from iiwa_dnn.control.policies import Policy
-from iiwa_dnn.errors import InvalidInputError, RunInterrupted
-from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.errors import RunInterrupted
 from iiwa_dnn.qp.check_pool import CheckPool
-from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.results.record import OWN_LIMITS, RATES, Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.robot import model_limits
@@ -27,18 +23,15 @@ from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.limits import MotionLimits, RateLimits
 from iiwa_dnn.simulation.loop import Loop
-from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
-from iiwa_dnn.simulation.noise import NoiseEntry, SignalChain
-from iiwa_dnn.simulation.plants import IdealPlant, Plant
+from iiwa_dnn.simulation.motion import MOTIONS, check_motion
+from iiwa_dnn.simulation.noise import SignalChain
 from iiwa_dnn.simulation.recorder import Recorder
+from iiwa_dnn.simulation.settings import RunSettings
 
 COMPLETED = "completed"
 
 BLOCK = 1000
 """Steps between two hand-overs to the record and to the check."""
-
-MAX_STEPS = 20_000_000
-"""Largest number of steps of a run, for memory: a record takes 0.4 kB a step."""
 
 _PACKAGES = ("iiwa-dnn", "numpy", "pin", "qpsolvers", "proxsuite", "osqp")
 
@@ -50,51 +43,26 @@ def simulate(
     scheme: Scheme,
     reference: References,
     q0: ArrayLike,
+    settings: RunSettings | None = None,
     *,
-    dt: float = 1e-4,
-    duration: float | None = None,
-    mode: Mode = "converged",
-    motion: Motion = "euler",
-    policy: Policy = "slow",
-    plant: Plant | None = None,
-    check: CrossCheck | None = None,
-    solver: DNNSolver | None = None,
-    noise: float | ArrayLike = 0.0,
-    noise_at: NoiseEntry = "velocity",
-    filter_window: int = 1,
-    estimator: NoiseModel | None = None,
-    seed: int = 0,
     progress: Callable[[int], object] = lambda steps: None,
+    **changes: Any,
 ) -> Record:
     """Simulate a robot that follows a reference, each step's program solved and checked.
 
-    The same seed gives the same record, bit for bit, but for the last digits of the gap to ProxQP,
-    which does not repeat itself.
+    The settings of the run are a `RunSettings`, or its attributes by their names, as in
+    ``simulate(robot, scheme, reference, q0, dt=1e-3, duration=10.0)``. The same seed gives the same
+    record, bit for bit, but for the last digits of the gap to ProxQP, which does not repeat itself.
 
     Args:
         robot: The robot, n joints, with the limits that the scheme keeps.
         scheme: Builds the programs; if it has no home, `q0` becomes it.
         reference: Path of the tip, or paths by frame name; anchored by the caller.
         q0: Joint positions at the start [rad], (n,).
-        dt: Control period [s].
-        duration: Length of the run [s], rounded to whole steps; None takes the reference's.
-        mode: ``"converged"``: the network converges at every step; ``"continuous"``: it advances by
-            one control period (`iiwa_dnn.Controller`).
-        motion: ``"euler"``, ``"midpoint"`` or ``"rk4"``; ``continuous`` and physics take ``euler``.
-        policy: Action at a step without solution (`iiwa_dnn.Controller`).
-        plant: The arm that moves; None: the ideal one (`MujocoPlant` has masses and motors).
-        check: Reference solvers; None asks ProxQP, ``CrossCheck(())`` nobody.
-        solver: The network, its integrators and their tolerance; it is reset before the run. None
-            takes the paper's network.
-        noise: Standard deviation of white noise on each joint, in the unit of the signal that it
-            is added to; or the noise itself, (steps, n).
-        noise_at: ``"velocity"``, commanded; ``"network"``, its x; ``"measurement"``, read joints.
-        filter_window: Samples of the moving average of the velocity; 1: no filter.
-        estimator: Noise model of a Kalman filter of the joint positions, whose bias is taken off
-            the command; None: the controller sees the measured positions.
-        seed: Seed of the noise and of the plant.
+        settings: Settings of the run.
         progress: Called with 0 when the arguments are found to be right, then now and then with the
             number of steps taken since the last call.
+        changes: Attributes of the settings that differ.
 
     Returns:
         The record of the run, of every step, or of those until a policy or the plant ended it.
@@ -105,39 +73,37 @@ def simulate(
     """
     began = time.perf_counter()
     start = Configuration(robot, q0)
-    plant = IdealPlant() if plant is None else plant
-    checks.offers("plant", plant, "start", "read", "move")
-    check = checks.instance("check", CrossCheck() if check is None else check, CrossCheck)
+    run = replace(settings, **changes) if settings else RunSettings(**changes)
     controller = Controller(
         robot,
         scheme,
         reference,
-        dt=dt,
-        mode=mode,
-        policy=policy,
-        solver=DNNSolver() if solver is None else solver,
+        dt=run.dt,
+        mode=run.mode,
+        policy=run.policy,
+        solver=run.solver,
     )
     controller.solver.reset()
-    steps = count_steps(reference, dt, duration)
+    steps = run.steps(reference)
     controller.anchor(start)
     controller.warn_of_start(start, 0.0, own=True, stacklevel=3)
-    check_motion(motion, mode == "continuous" or not plant.exact, controller.scheme.sample == "end")
-    chain = SignalChain(
-        noise, noise_at, filter_window, estimator, (steps, robot.dof), controller.dt, seed
-    )
-    settings = {
-        **_settings(controller, start, _duration(reference, dt, duration)),
+    plant = run.plant
+    one_clock = run.mode == "continuous" or not plant.exact
+    check_motion(run.motion, one_clock, controller.scheme.sample == "end")
+    chain = SignalChain(run, (steps, robot.dof))
+    entries = {
+        **_settings(controller, start, run.duration_of(reference)),
         **chain.settings,
-        "motion": motion if plant.exact else "physics",
-        "seed": seed,
-        "check": check.settings(),
-        **plant.start(robot, start.q, controller.dt, seed),
+        "motion": run.motion if plant.exact else "physics",
+        "seed": run.seed,
+        "check": run.check.settings(),
+        **plant.start(robot, start.q, controller.dt, run.seed),
     }
-    loop = Loop(controller, plant, chain, MOTIONS[motion], start.q)
+    loop = Loop(controller, plant, chain, MOTIONS[run.motion], start.q)
     recorder = Recorder(steps, controller, loop.q)
     progress(0)
-    stages = MOTIONS[motion].stages
-    pool = CheckPool(check, steps * stages)
+    stages = MOTIONS[run.motion].stages
+    pool = CheckPool(run.check, steps * stages)
     interrupt = _take(steps, loop, recorder, pool, progress)
     agreement = pool.finish().worst_of(stages)
     columns = recorder.finish(len(agreement.judge))  # without what was on its way to the check
@@ -149,7 +115,7 @@ def simulate(
         **columns,
         **agreement._asdict(),
         settings={
-            **settings,
+            **entries,
             "status": "interrupted" if interrupt else _status(recorder, controller, loop.fault),
             "infeasible_step": recorder.infeasible,
         },
@@ -188,29 +154,6 @@ def _take(
             hand_over()
         return interrupt
     return None
-
-
-def count_steps(reference: References | None, dt: float, duration: float | None = None) -> int:
-    """Count the whole steps of dt [s] in a run of a duration [s]; None takes the reference's.
-
-    Raises:
-        InvalidInputError: There are no steps or too many, or a time is not above 0.
-    """
-    length = _duration(reference, dt, duration)
-    steps = length / dt
-    if not 0.5 < steps <= MAX_STEPS:
-        by_dt = steps > 1.0 and dt < 1e-6
-        problem = f"{steps:.3g} steps of {dt:g} s; there must be from 1 to {MAX_STEPS:,}"
-        raise InvalidInputError("dt" if by_dt else "duration", problem, dt if by_dt else duration)
-    return max(1, round(steps))
-
-
-def _duration(reference: References | None, dt: float, duration: float | None) -> float:
-    """Return the duration of a run [s]."""
-    checks.positive("dt", dt)
-    if duration is None:
-        duration = max((path.duration for path in by_frame(reference, "").values()), default=dt)
-    return checks.positive("duration", duration)
 
 
 def _settings(controller: Controller, start: Configuration, duration: float) -> dict[str, Any]:

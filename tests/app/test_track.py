@@ -87,16 +87,16 @@ def test_words_and_tables_reach_the_run(tmp_path: Path) -> None:
 def test_defaults_are_the_papers_experiment(words, dt, tmp_path, monkeypatch) -> None:
     asked: dict[str, Any] = {}
 
-    def take(**arguments: Any) -> None:
-        arguments["progress"](0)
-        asked.update(arguments)
+    def take(robot: Any, scheme: Any, reference: Any, q0: Any, run: Any, progress: Any) -> None:
+        progress(0)
+        asked.update(robot=robot, scheme=scheme, reference=reference, q0=q0, run=run)
         raise IiwaDnnError("seen enough")
 
     monkeypatch.setattr(command, "simulate", wraps(command.simulate)(take))
     monkeypatch.setattr(command, "check_folder", lambda folder, *_: asked.update(folder=folder))
     monkeypatch.chdir(tmp_path)
     assert call("track", *words) == 2
-    assert asked["dt"] == dt
+    assert asked["run"].dt == dt
     assert asked["folder"] == Path("runs") / ("circle" if words else "heart")
     assert not list(tmp_path.iterdir())
     degrees = [170, 120, 170, 120, 170, 120, 175]  # of the data sheet, not the paper's 2.5 rad
@@ -111,7 +111,7 @@ def test_defaults_are_the_papers_experiment(words, dt, tmp_path, monkeypatch) ->
     np.testing.assert_allclose(first, dh_pose(PAPER_Q0)[0], rtol=0, atol=1e-12)
     if not words:
         assert (asked["reference"].scale, asked["reference"].period) == (3.45e-3, 10.0)
-    assert "check" not in asked  # the run's own default: ProxQP
+    assert asked["run"].check.solvers == ("proxqp",)
 
 
 def test_a_robots_own_limits(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 
 from iiwa_dnn import QP
 from iiwa_dnn.networks import NoiseSuppressingNetwork
-from iiwa_dnn.networks.zeroing import EPSILON
+from iiwa_dnn.networks.kkt_residual import EPSILON
 
 GAMMA, ETA = 30.0, 20.0
 

@@ -16,8 +16,8 @@ from iiwa_dnn.networks.activations import (
     PowerSigmoid,
     PredefinedTime,
 )
+from iiwa_dnn.networks.kkt_residual import evaluate, system_size
 from iiwa_dnn.networks.tracking import EULER, FIFD, TAYLOR3, TAYLOR4, TAYLOR5, TrackingSolver
-from iiwa_dnn.networks.zeroing import evaluate, system_size
 
 SETTLING = [
     SIGN_BI_POWER, FixedTime(0.3, 1.0 / 0.3, 0.5, 0.5), FixedTime(), FixedTime(0.4, 1.7, 2.0, 0.5),

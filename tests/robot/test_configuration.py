@@ -79,6 +79,12 @@ def test_a_name_that_is_none_is_answered_with_those_that_are(iiwa7: Robot, q: Ar
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(conf)).q, q)
 
 
+def test_it_says_what_it_holds(iiwa7: Robot) -> None:
+    shown = repr(Configuration(iiwa7, np.zeros(7)))  # stretched upwards: 0.34 + 0.4 + 0.4 + 0.126
+    tip = "iiwa7_flange at [0.0, 0.0, 1.266] m"
+    assert shown == f"Configuration(iiwa7, q={[0.0] * 7} rad, {tip})"
+
+
 def test_positions_in_degrees_are_asked_about(iiwa7: Robot) -> None:
     home = iiwa7.start_posture()
     assert iiwa7.outside(np.degrees(home)).endswith("are the positions in degrees?")

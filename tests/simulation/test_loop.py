@@ -116,6 +116,17 @@ def test_the_same_call_saves_the_same_bytes(case, solvers, tmp_path) -> None:
     assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
 
 
+def test_settings_are_taken_by_name_or_as_one_object() -> None:
+    names = {"dt": 1e-3, "duration": 0.02, "noise": 1e-3, "seed": 4, "check": UNCHECKED}
+    settings = d.RunSettings(**names | {"seed": 5})
+    one = d.simulate(paper_robot(), d.DoubleIndicator(), heart(), PAPER_Q0, settings, seed=4)
+    other = d.simulate(paper_robot(), d.DoubleIndicator(), heart(), PAPER_Q0, **names)
+    np.testing.assert_array_equal(one.q, other.q)
+    assert one.settings == other.settings
+    with pytest.raises(TypeError, match="polcy"):
+        run(polcy="slow")
+
+
 def test_cyclic_motion_comes_back_and_minimum_energy_drifts() -> None:
     # One whole heart, drawn in 2 s.
     whole = {"reference": heart(period=2.0), "duration": None}

@@ -9,7 +9,6 @@ import pytest
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import UNCHECKED, heart, paper_robot
-from iiwa_dnn.simulation import gaussian_noise
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
 from iiwa_dnn.simulation.plants.torque_control import TorqueGains
 
@@ -58,11 +57,6 @@ REFUSED: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
         simulate,
         {"scheme": tracking(None), "reference": {TIP: heart(), ELBOW: heart()}},
     ),
-    *[
-        ("seed", gaussian_noise, {"sigma": sigma, "steps": 10, "joints": 7, "seed": bad})
-        for sigma in (0.0, 0.01)
-        for bad in (-1, 1.5, np.nan, None, "lucky")
-    ],
     ("mass_error", Disturbances, {"mass_error": 1.0}),
     ("mass_error", Disturbances, {"mass_error": -0.1}),
     ("encoder_bits", Disturbances, {"encoder_bits": 60}),
