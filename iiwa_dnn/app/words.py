@@ -68,7 +68,7 @@ WORDS: dict[str, tuple[str, Any, str, str]] = {
         "scheme.sample",
         str | None,
         "WORD",
-        "target of a step: paper, at its start, or next, at its end (paper)",
+        "target of a step: that at its start or at its end (start)",
     ),
     "joint_limit": (
         "limits.position",
