@@ -1,6 +1,7 @@
 """How Sphinx builds these pages: ``make docs``."""
 
 import shutil
+import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
 
@@ -13,6 +14,11 @@ version = release = installed_version("iiwa-dnn")
 HERE = Path(__file__).parent
 shutil.rmtree(HERE / "notebooks", ignore_errors=True)
 shutil.copytree(HERE.parent / "notebooks", HERE / "notebooks")
+
+sys.path.insert(0, str(HERE))
+from api_pages import write_pages  # noqa: E402
+
+write_pages(HERE / "api")
 
 extensions = [
     "myst_nb",
@@ -29,7 +35,11 @@ myst_heading_anchors = 3
 myst_links_external_new_tab = False
 default_role = "py:obj"
 autodoc_member_order = "bysource"
-autodoc_typehints = "none"  # ArrayLike would be a line of its own for each kind of array
+autodoc_preserve_defaults = True
+_ALIASES = (
+    "ArrayLike Array IntArray CodeArray Vector Matrix IntVector Mode Motion Policy checks".split()
+)
+autodoc_type_aliases = {name: name for name in _ALIASES}
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 # The classes say it in their docstrings; the field's own comment would say it twice.

@@ -18,6 +18,7 @@ from pathlib import Path
 import pytest
 import tyro
 
+import iiwa_dnn
 from helpers_export import compile_quickly
 from iiwa_dnn.app.main import CONFIG
 from iiwa_dnn.app.words import ExportWords, RunWords
@@ -79,6 +80,17 @@ def test_the_commands_of_a_page_are_understood_and_none_is_refused_its_folder(pa
             out = Path("runs") / ("physics" if words[0] == "physics" else Path(name).stem)
             owner = owners.setdefault(options.out or out, words)
             assert owner == words, f"{path.name}: iiwa-dnn {line}"
+
+
+def test_every_public_name_stands_on_one_page_of_the_api(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(ROOT / "docs")
+    pages = importlib.import_module("api_pages")
+    shown = [name for room in pages.ROOMS for name, _ in pages.members(iiwa_dnn, room)]
+    assert len(shown) == len(set(shown))
+    modules = {"iiwa_dnn.export"}
+    assert {f"iiwa_dnn.{name}" for name in iiwa_dnn.__all__} - modules <= set(shown)
+    linked = re.findall(r"^api/(\w+)$", (ROOT / "docs/api.md").read_text(), re.MULTILINE)
+    assert linked == list(pages.ROOMS)
 
 
 def test_the_table_of_equations_names_what_exists() -> None:
