@@ -17,9 +17,7 @@ from iiwa_dnn.compiling.library import compiled, released
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.command import ACTIVE, StepLog, log_of
-from iiwa_dnn.control.controller import SLACK
 from iiwa_dnn.control.cycle import INVALID, ControlPlan, take_step
-from iiwa_dnn.control.fallback import Yielding
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.requests import (
     CUT,
@@ -27,15 +25,16 @@ from iiwa_dnn.control.requests import (
     TWIST,
     Reason,
     Request,
+    RequestConstants,
     cut_twist,
     falls_short,
+    write_frame_jacobian,
 )
-from iiwa_dnn.control.state import MotionState
+from iiwa_dnn.control.state import MotionState, change_spacing, count_as_sent
 from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, row_dot
 from iiwa_dnn.qp.layout import IntVector, QPViews, copied
-from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot.kinematics import Placement, Twist
 from iiwa_dnn.robot.kinematics_kernel import ModelTables, write_kinematics
 from iiwa_dnn.schemes.limits import (
@@ -44,9 +43,9 @@ from iiwa_dnn.schemes.limits import (
     Rates,
     arriving,
     braking,
-    constant_periods,
     joint_bounds,
     joint_rates,
+    periods_of,
 )
 from iiwa_dnn.schemes.program import ProgramArrays, block_constants, bound_kind, program_views
 from iiwa_dnn.schemes.scene import Body, scene_views, write_distances
@@ -102,7 +101,6 @@ class ArmState(Record):
     Attributes:
         time: Time of the arm's clock [s].
         period: Period that counts for the last command [s].
-        spacing: Period over which accelerations count [s]; 0 before the first step.
         age: Time since the request came [s].
         reason: `Reason` why it is one to rest.
         kind: `Request` of the last request.
@@ -130,7 +128,6 @@ class ArmState(Record):
 
     time: float
     period: float
-    spacing: float
     age: float
     reason: int
     kind: int
@@ -155,29 +152,15 @@ class ArmState(Record):
     sent: Vector = part("sent")
 
 
-class ArmProgram(NamedTuple):
-    """Step of one kind of request.
-
-    Attributes:
-        step: Layout of the control step.
-        width: Length of its log.
-        rates: Number of the block of acceleration and jerk limits; -1: there is none.
-        scene: Number of the block of the watched pairs; -1: there is none.
-    """
-
-    step: ControlPlan
-    width: int
-    rates: int
-    scene: int
-
-
 class ArmPlan(NamedTuple):
     """Layout and settings that all arms of a kind share.
 
     Attributes:
         robot: Tables of the robot, n joints.
-        joint: Step for requests of joint velocities and positions.
-        twist: Step for requests of a frame's twist.
+        step: Layout of the control step.
+        request: Number of the block of the request.
+        scene: Number of the block of the watched pairs; -1: there is none.
+        width: Length of the log of a step.
         motion: Limits of the joints.
         lower: Lower position limits [rad], (n,).
         upper: Upper position limits [rad], (n,).
@@ -187,8 +170,10 @@ class ArmPlan(NamedTuple):
     """
 
     robot: ModelTables
-    joint: ArmProgram
-    twist: ArmProgram
+    step: ControlPlan
+    request: int
+    scene: int
+    width: int
     motion: MotionConstants
     lower: Vector
     upper: Vector
@@ -234,7 +219,7 @@ def arm_state(plan: ArmPlan, memory: Vector) -> ArmState:
 @compiled
 def motion_of(plan: ArmPlan, own: ArmState) -> MotionState:
     """View the state of an arm's motion."""
-    sizes = plan.joint.step.arrays.sizes
+    sizes = plan.step.arrays.sizes
     return MotionState.of(own.motion, sizes.joints, sizes.pairs)
 
 
@@ -277,12 +262,9 @@ def send_arm(plan: ArmPlan, memory: Vector, dq: Vector, period: float) -> None:
     """Count a velocity dq (n,) [rad/s] as sent for a period [s], in place of a step's command."""
     own = arm_state(plan, memory)
     motion = motion_of(plan, own)
-    copied(motion.before, motion.last)
-    copied(motion.last, dq[: motion.last.size])
-    motion.stopping_periods = 0.0
+    count_as_sent(motion, dq, period)
     own.age += own.period
     own.period = period
-    own.spacing = own.spacing if own.spacing > 0.0 else period
     _go_on(own, plan.settings, motion)
 
 
@@ -299,11 +281,11 @@ def step_arm(plan: ArmPlan, memory: Vector, given: ArmInput) -> int:
     if take_input(plan, memory, given) == INVALID:
         return INVALID
     own = arm_state(plan, memory)
-    base = plan.joint.step.arrays
+    base = plan.step.arrays
     jacobian = np.empty((own.positions.size, 6))
     placements = np.empty((base.placements.shape[0], 12))
     write_kinematics(plan.robot, own.positions, jacobian, placements, base.inertia)
-    row = np.empty(max(plan.joint.width, plan.twist.width))
+    row = np.empty(plan.width)
     answer_request(plan, memory, given, jacobian, placements, row)
     return first_reason(own)
 
@@ -322,11 +304,13 @@ def take_input(plan: ArmPlan, memory: Vector, given: ArmInput) -> int:
     fits = stated < np.inf and min(given.dt, given.elapsed) == 0.0
     if not fits or (given.elapsed > 0.0 and settings.longest == 0.0):
         return INVALID
-    _take_period(plan, own, _stated_periods(settings, given), given.elapsed)
-    own.is_late = 0.0 < settings.longest * (1.0 + SLACK) < stated
+    periods = _periods_of(settings, given)
+    if given.elapsed > 0.0:
+        _count_as_elapsed(own, motion_of(plan, own), given.elapsed)
+    own.is_late = periods.exceeded
     _take_positions(own, settings, given)
     _take_request(own, settings, given)
-    own.period = given.dt if given.dt > 0.0 else settings.dt
+    own.period = periods.expected
     own.answered = Request.VELOCITY
     if own.reason == Reason.NONE and not own.is_blind:
         own.answered = own.kind
@@ -336,37 +320,21 @@ def take_input(plan: ArmPlan, memory: Vector, given: ArmInput) -> int:
 
 
 @compiled
-def _stated_periods(settings: ArmSettings, given: ArmInput) -> Periods:
-    """Return `limits.stated_periods`, where 0 is a period that is not stated."""
-    longest = settings.longest
-    hold = given.dt if given.dt > 0.0 else settings.dt
-    if longest == 0.0:
-        return constant_periods(hold)
-    if given.dt > 0.0:
-        return Periods(hold, hold, longest, 1.0, True)
-    if given.elapsed > 0.0:
-        return Periods(given.elapsed, longest, longest, 1.0, True)
-    return Periods(hold, hold, hold, hold / longest, True)
+def _periods_of(settings: ArmSettings, given: ArmInput) -> Periods:
+    """Return the periods that a step states."""
+    return periods_of(settings.dt, settings.longest, given.dt, given.elapsed)
 
 
 @compiled
-def _take_period(plan: ArmPlan, own: ArmState, periods: Periods, elapsed: float) -> None:
-    """Count the last command as held for `elapsed` [s], if that is stated; go on in periods."""
-    motion = motion_of(plan, own)
-    if elapsed > 0.0:
-        for i in range(motion.last.size):
-            own.positions[i] += (elapsed - own.period) * motion.last[i]
-        own.time = own.time + elapsed - own.period
-        own.period = elapsed
-        if own.sent.size > 0:
-            last = _sent_command(own, 0)
-            last.period = elapsed
-    if own.spacing > 0.0 and periods.dt != own.spacing:
-        ratio = periods.dt / own.spacing
-        for i in range(motion.last.size):
-            motion.before[i] = motion.last[i] - ratio * (motion.last[i] - motion.before[i])
-        motion.stopping_periods = motion.stopping_periods / ratio
-    own.spacing = periods.dt
+def _count_as_elapsed(own: ArmState, motion: MotionState, elapsed: float) -> None:
+    """Count the last command as held for `elapsed` [s]."""
+    for i in range(motion.last.size):
+        own.positions[i] += (elapsed - own.period) * motion.last[i]
+    own.time = own.time + elapsed - own.period
+    own.period = elapsed
+    if own.sent.size > 0:
+        last = _sent_command(own, 0)
+        last.period = elapsed
 
 
 @compiled
@@ -483,10 +451,8 @@ def answer_request(
         The action that was taken, or `INVALID`.
     """
     own = arm_state(plan, memory)
-    if own.answered == Request.TWIST:
-        own.action = _answer(plan, plan.twist, own, given, jacobian, placements, row)
-    elif own.answered != Request.NONE:
-        own.action = _answer(plan, plan.joint, own, given, jacobian, placements, row)
+    if own.answered != Request.NONE:
+        own.action = _answer(plan, own, given, jacobian, placements, row)
     _go_on(own, plan.settings, motion_of(plan, own))
     return own.action
 
@@ -520,16 +486,15 @@ def first_reason(own: ArmState) -> int:
 @compiled
 def _answer(
     plan: ArmPlan,
-    program: ArmProgram,
     own: ArmState,
     given: ArmInput,
     jacobian: Matrix,
     placements: Matrix,
     row: Vector,
 ) -> int:
-    """Answer a request by the program of its kind, and keep its command; return the action."""
-    periods = _stated_periods(plan.settings, given)
-    base = program.step.arrays
+    """Answer a request by the program of a step, and keep its command; return the action."""
+    timing = _periods_of(plan.settings, given)
+    base = plan.step.arrays
     arrays = ProgramArrays(
         base.sizes,
         base.table,
@@ -538,65 +503,54 @@ def _answer(
         placements,
         base.support,
         base.inertia,
-        1.0 / own.period,
         base.tip,
     )
-    _write_constants(plan, program, own, periods, arrays)
+    if plan.scene >= 0:
+        _place_obstacles(plan, own, own.time, block_constants(arrays, plan.scene))
     motion = motion_of(plan, own)
-    numbers = row[: program.width]
-    log = log_of(numbers, base.sizes)
+    change_spacing(motion, timing.dt)
+    log = log_of(row, base.sizes)
+    log.targets.reshape(log.targets.size)[:] = 0.0
     is_twist = own.answered == Request.TWIST
     state = own.network if is_twist else np.zeros(own.network.size)
+    request = RequestConstants.of(block_constants(arrays, plan.request))
+    request.is_twist = is_twist
     if is_twist:
-        _write_twist(plan, own, arrays, log)
+        copied(request.asked, own.request)
+        own.is_cut = _cut_to_joints(plan, request, arrays)
     else:
-        come_nearer(own, motion, plan.motion, periods, state)
-        targets = log.targets.reshape(log.targets.size)
-        targets[:] = 0.0
-        copied(targets, state[: own.positions.size])
-    settings = program.step.yielding
-    yielding = Yielding(
-        settings.weights,
-        settings.limits,
-        settings.tolerance,
-        settings.budget,
-        settings.scenes,
-        own.period,
-        periods,
-        settings.cubic,
-        settings.coupled,
-        settings.alike,
-    )
-    fallback = own.twist_fallback if is_twist else own.fallback
+        come_nearer(own, motion, plan.motion, timing, state)
+        copied(request.asked, state[: own.positions.size])
     step = ControlPlan(
-        arrays, program.step.network, program.step.paths, yielding, fallback, program.step.policy
+        arrays,
+        plan.step.network,
+        plan.step.paths,
+        plan.step.yielding,
+        own.twist_fallback if is_twist else own.fallback,
+        plan.step.policy,
+        False,
+        timing,
     )
     next_motion_state = np.empty(own.motion.size)
-    action = take_step(
-        numbers, step, own.positions, own.motion, next_motion_state, state, own.time, False
-    )
+    action = take_step(row, step, own.positions, own.motion, next_motion_state, state, own.time)
     if action == INVALID:  # positions that have been led beyond all limits
         motion.last[:] = 0.0
         return action
     copied(own.motion, next_motion_state)
     motion.yields = False  # a request that can be had again is had at once
-    _note_limits(plan, own, log, step, action)
+    qp = program_views(log.program, base.sizes)
+    own.is_singular = is_twist and falls_short(qp, request.asked)
+    _note_limits(plan, own, log, timing, action)
     return action
 
 
 @compiled
-def _write_constants(
-    plan: ArmPlan, program: ArmProgram, own: ArmState, periods: Periods, arrays: ProgramArrays
-) -> None:
-    """Write stated periods and the places of the obstacles among a program's constants."""
-    if periods.vary and program.rates >= 0:
-        limits = MotionConstants.of(block_constants(arrays, program.rates))
-        limits.dt = periods.dt
-        limits.hold = periods.hold
-        limits.longest = periods.longest
-        limits.fraction = periods.fraction
-    if program.scene >= 0:
-        _place_obstacles(plan, own, own.time, block_constants(arrays, program.scene))
+def _cut_to_joints(plan: ArmPlan, request: RequestConstants, arrays: ProgramArrays) -> bool:
+    """Cut the twist of a request to what joints can do; return whether it was larger."""
+    rows = np.empty((TWIST, plan.sizes.n))
+    placement = Placement.of(arrays.placements[request.frame])
+    write_frame_jacobian(arrays.jacobian, placement, arrays.support[request.frame], rows)
+    return cut_twist(request.asked[: Twist.width()], rows, plan.motion)
 
 
 @compiled
@@ -608,20 +562,6 @@ def _place_obstacles(plan: ArmPlan, own: ArmState, t: float, constants: Vector) 
         body = Body.of(bodies[first + k])
         for i in range(body.center.size):
             body.center[i] = own.obstacles[k, i] + t * plan.velocities[k, i]
-
-
-@compiled
-def _write_twist(plan: ArmPlan, own: ArmState, arrays: ProgramArrays, log: StepLog) -> None:
-    """Write the requested twist, cut to what joints can do, as the target of its frame."""
-    twist = own.request[: Twist.width()].copy()
-    placement = Placement.of(arrays.placements[arrays.tip])
-    support = arrays.support[arrays.tip]
-    own.is_cut = cut_twist(twist, arrays.jacobian, placement, support, plan.motion)
-    for k in range(len(log.targets)):
-        target = TargetData.of(log.targets[k])
-        target.numbers[:] = 0.0
-        copied(target.linear_velocity, Twist.of(twist).linear)
-        copied(target.angular_velocity, Twist.of(twist).angular)
 
 
 @compiled
@@ -671,11 +611,9 @@ def come_nearer(
 
 
 @compiled
-def _note_limits(
-    plan: ArmPlan, own: ArmState, log: StepLog, step: ControlPlan, action: int
-) -> None:
+def _note_limits(plan: ArmPlan, own: ArmState, log: StepLog, periods: Periods, action: int) -> None:
     """Note which bounds and rows keep the command from the request, and whether they do."""
-    qp = program_views(log.program, step.arrays.sizes)
+    qp = program_views(log.program, plan.step.arrays.sizes)
     n = own.positions.size
     own.limiting[:] = 0.0
     differs = 0
@@ -685,7 +623,6 @@ def _note_limits(
         if side != 0.0:
             rates = joint_rates(plan.motion, i)
             bounds = (log.lower[i], log.upper[i])
-            periods = step.yielding.periods
             code = bound_kind(bounds, log.last[i], log.before[i], side, rates, periods)
             own.limiting[i] = code if side > 0.0 else -code
             limits += 1
@@ -694,10 +631,6 @@ def _note_limits(
         if _side_of_row(log, qp, j, action) != 0.0:
             own.limiting[n + j] = 1.0
             limits += 1
-    own.is_singular = False
-    if own.answered == Request.TWIST:
-        for k in range(len(log.targets)):
-            own.is_singular = falls_short(qp, TargetData.of(log.targets[k]))
     reason = first_reason(own)
     own.is_clipped = limits > 0 or reason != Reason.NONE
     if own.answered == Request.VELOCITY and reason == Reason.NONE:
@@ -743,12 +676,12 @@ def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
     for i in range(q.size):
         joint = min(joint, min(q[i] - plan.lower[i], plan.upper[i] - q[i]))
     distance = np.inf
-    if plan.joint.scene >= 0:
-        base = plan.joint.step.arrays
+    if plan.scene >= 0:
+        base = plan.step.arrays
         jacobian = np.empty((q.size, 6))
         placements = np.empty((base.placements.shape[0], 12))
         write_kinematics(plan.robot, q, jacobian, placements, base.inertia)
-        constants = block_constants(base, plan.joint.scene).copy()
+        constants = block_constants(base, plan.scene).copy()
         _place_obstacles(plan, own, own.time - own.period, constants)
         scene = scene_views(constants, q.size)
         distances = np.empty(len(scene.pairs))
@@ -766,9 +699,10 @@ def stopping_time_of(plan: ArmPlan, memory: Vector) -> float:
     support = 0.0
     for i in range(motion.last.size):
         support = 1.0 if motion.last[i] != 0.0 else support
-    cubic = plan.joint.step.yielding.cubic
-    periods = least_periods(motion.last, motion.before, plan.motion, own.spacing, cubic, False)
-    return own.spacing * max(periods, support)
+    cubic = plan.step.yielding.cubic
+    dt = motion.spacing
+    periods = least_periods(motion.last, motion.before, plan.motion, dt, cubic, False)
+    return dt * max(periods, support)
 
 
 class ArmInputs(NamedTuple):

@@ -14,7 +14,7 @@ from iiwa_dnn.naming import DONE, active_limits, describe
 from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.layout import Sizes, data_size, offsets
-from iiwa_dnn.schemes.limits import Periods, constant_periods
+from iiwa_dnn.schemes.limits import Periods
 from iiwa_dnn.schemes.program import ACCELERATION, LimitNames, ProgramSizes
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -23,6 +23,8 @@ PLACEMENT = 12
 
 ACTIVE = 1e-9
 """Multiplier above which a bound or row counts as active."""
+
+EXCEEDED = "period exceeded"
 
 SINGULAR = "a singular posture, or tasks that contradict each other"
 DAMPED = 4.0
@@ -118,8 +120,6 @@ class LogLayout(NamedTuple):
         dq: Columns of the command.
         next_q: Columns of the joint positions after it.
         names: Names of the limits; None where nobody asks for them.
-        periods: Control periods of the steps; commands keep those of theirs.
-        reasons: Reasons beside limits for which the command differs from the answer.
     """
 
     sizes: ProgramSizes
@@ -127,8 +127,6 @@ class LogLayout(NamedTuple):
     dq: slice
     next_q: slice
     names: Any
-    periods: Periods
-    reasons: tuple[str, ...] = ()
 
     def targets(self, data: Vector) -> Matrix:
         """Return the targets of a log, (k, 18), its last numbers, a view."""
@@ -183,12 +181,11 @@ class LogLayout(NamedTuple):
         return slacks
 
 
-def lay_out_log(sizes: ProgramSizes, names: LimitNames | None, dt: float) -> LogLayout:
-    """Lay out the logs of steps of a constant period [s]."""
+def lay_out_log(sizes: ProgramSizes, names: LimitNames | None) -> LogLayout:
+    """Lay out the logs of steps."""
     columns = StepLog.columns(*log_sizes(sizes))
     width = columns["targets"].stop
-    commands = (columns["dq"], columns["next_q"])
-    return LogLayout(sizes, width, *commands, names, constant_periods(dt))
+    return LogLayout(sizes, width, columns["dq"], columns["next_q"], names)
 
 
 def _active(multipliers: Matrix, slacks: Matrix, tol: float) -> Matrix:
@@ -205,15 +202,17 @@ class Command:
         data: The numbers of its `log`, (width,), which the properties are views of.
         dq: Joint velocity [rad/s], (n,), within the limits.
         action: The action taken; ``Action.NONE`` where the network's answer was taken.
+        periods: Periods of the step.
     """
 
-    __slots__ = ("_layout", "action", "data", "dq")
+    __slots__ = ("_layout", "action", "data", "dq", "periods")
 
-    def __init__(self, data: Vector, layout: LogLayout, action: Action = Action.NONE) -> None:
-        """Take a log (width,), which is not copied, its layout and the action taken."""
+    def __init__(self, data: Vector, layout: LogLayout, action: Action, periods: Periods) -> None:
+        """Take a log (width,), which is not copied, its layout, the action and the periods."""
         self.data = data
         self.dq = data[layout.dq]
         self.action = action
+        self.periods = periods
         self._layout = layout
 
     @property
@@ -224,7 +223,7 @@ class Command:
     @property
     def reasons(self) -> tuple[str, ...]:
         """Reasons beside limits for a command that need not be what is asked."""
-        return self._layout.reasons
+        return (EXCEEDED,) if self.periods.exceeded else ()
 
     @property
     def next_q(self) -> Vector:
@@ -260,7 +259,7 @@ class Command:
         """Return the codes of the bounds on some sides, as `LimitNames.codes` does, (n,)."""
         layout = self._layout
         found: NDArray[np.int8] = layout.names.codes(
-            self.bounds, sides, self.motion_state, layout.periods
+            self.bounds, sides, self.motion_state, self.periods
         )
         return found
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.command import EXCEEDED, Command
 from iiwa_dnn.control.cycle import INVALID, ControlLayout, take_step
 from iiwa_dnn.control.paths import (
     References,
@@ -26,7 +26,7 @@ from iiwa_dnn.control.paths import (
     target_warnings,
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
-from iiwa_dnn.control.state import ControllerState
+from iiwa_dnn.control.state import ControllerState, MotionState, count_as_sent
 from iiwa_dnn.control.stopping import stopping_time
 from iiwa_dnn.control.yielding import BRAKE
 from iiwa_dnn.errors import InvalidInputError
@@ -36,17 +36,12 @@ from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
-from iiwa_dnn.schemes.limits import stated_periods
+from iiwa_dnn.schemes.limits import Periods, stated_periods
 from iiwa_dnn.schemes.program import ProgramLayout, targets_of
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
-
-EXCEEDED = "period exceeded"
-
-SLACK = 1e-9
-"""Relative excess of a period that is rounding."""
 
 _FLOAT = np.dtype(np.float64)
 
@@ -243,11 +238,9 @@ class Controller:
         fraction = checks.not_negative("fraction", fraction)
         with self._turn():
             state = self._state
-            state.dt = state.dt or self.dt
             motion = state.next_motion.duplicate()
-            motion.before[:] = state.motion.last
-            motion.last[:] = sent
-            motion.stopping_periods = 0.0
+            motion.last[:] = state.motion.last
+            count_as_sent(motion, sent, self.dt)
             motion.path_lag = state.motion.path_lag + self.dt * (1.0 - fraction)
             state.numbers = motion.numbers
 
@@ -261,10 +254,15 @@ class Controller:
     ) -> Command:
         control_layout = self._derived
         state = self._state
-        if control_layout is None or not state.begun:
+        if control_layout is None or not state.warned:
             control_layout = self._prepare(q, t, target is None)
-        if dt is not elapsed or not self.dt == control_layout.steady == state.dt:
-            self._take_periods(control_layout, dt, elapsed)
+        plan = control_layout.plan if target is None else control_layout.given
+        if control_layout.varies or not dt is elapsed is None:
+            plan = plan._replace(timing=periods_of_step(self, state.warned, dt, elapsed))
+            plan.network.settings.duration = plan.timing.expected * control_layout.lag
+            if elapsed is not None:
+                state.book(elapsed)
+        periods = plan.timing
         log_layout = control_layout.log_layout
         program = control_layout.program
         if not _is_plain(q, control_layout.shape):
@@ -272,49 +270,25 @@ class Controller:
         program.kinematics.update(q)
         data = np.empty(log_layout.width)
         numbers = state.numbers
-        samples = control_layout.samples and target is None
-        if not samples:
-            log_layout.targets(data)[:] = self.targets(
-                self._clock(t, target), target, control_layout.dt
-            )
+        if not plan.samples:
+            clock = t - state.motion.path_lag if target is None else t
+            log_layout.targets(data)[:] = self.targets(clock, target, periods.expected)
         if program.refreshed:
-            program.refresh(q, state.motion.last, log_layout.targets(data), t, control_layout.dt)
+            last = state.motion.last
+            program.refresh(q, last, log_layout.targets(data), t, periods.expected)
         next_numbers = np.empty(control_layout.width)
         if state.halted:
             motion = state.motion.duplicate()
             motion.halts = True
             numbers = motion.numbers
         network = self.solver.state_for(program.sizes) if control_layout.has_network else data[:0]
-        action = take_step(data, control_layout.plan, q, numbers, next_numbers, network, t, samples)
+        action = take_step(data, plan, q, numbers, next_numbers, network, t)
         if action == INVALID:
             checks.finite("t", t)
             checks.joint_positions("q", q, self.robot.dof)
             checks.finite_array("target", log_layout.targets(data), (-1, TARGET_SIZE))
         state.next_numbers = next_numbers
-        return Command(data, log_layout, _ACTIONS[action])
-
-    def _take_periods(
-        self, control_layout: ControlLayout, dt: float | None, elapsed: float | None
-    ) -> None:
-        """Take the periods that a step states; one that is too long is a reason."""
-        longest = self.longest_period
-        if elapsed is None and dt == control_layout.steady == self._state.dt:
-            return
-        periods = stated_periods(self.dt, longest, dt, elapsed)
-        self._state.set_period(periods.dt)
-        if elapsed is not None:
-            self._state.book(elapsed)
-        found = dt or elapsed or 0.0
-        exceeded = exceeds(found, longest)
-        hold = self.dt if dt is None else periods.hold
-        control_layout.set_periods(hold, periods, (EXCEEDED,) if exceeded else ())
-        if exceeded and not self._state.exceeded:
-            self._state.exceeded = True
-            warn_of_period(found, longest)
-
-    def _clock(self, t: float, target: Any) -> float:
-        """Return the time of the reference's clock at time t [s]; of a given target t itself."""
-        return t - self._state.motion.path_lag if target is None else t
+        return Command(data, log_layout, _ACTIONS[action], periods)
 
     def is_clear(self, q: Vector, dq: Vector) -> bool:
         """Test whether a velocity is safe to send; always True with limits on acceleration or jerk.
@@ -331,9 +305,11 @@ class Controller:
                 return True
             control_layout.program.kinematics.update(q)
             least = self._state.next_motion.least
-            rest = np.zeros(q.size)
-            own = control_layout.plan.yielding
-            return bool(stopping_time(control_layout.plan.arrays, q, rest, least, own, dq) >= 0.0)
+            at = MotionState.zeros(*self._state.sizes)
+            at.q[:] = q
+            plan = control_layout.plan
+            rest = stopping_time(plan.arrays, at, least, plan.yielding, plan.timing, dq)
+            return bool(rest >= 0.0)
 
     def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlLayout:
         """Anchor the scheme, and at the first step warn of a start that is most likely wrong.
@@ -343,7 +319,7 @@ class Controller:
         checks.finite("t", t)
         start = Configuration(self.robot, checks.joint_positions("q", q, self.robot.dof))
         self.anchor(start)
-        if not self._state.begun:
+        if not self._state.warned:
             self.warn_of_start(start, t, own, stacklevel=5)
         return self.control_layout
 
@@ -398,7 +374,7 @@ class Controller:
             own: Whether the targets are the reference's.
             stacklevel: That of the warnings.
         """
-        self._state.begun = True
+        self._state.warned.add("start")
         program = self.program
         found = [
             *setup_warnings(program, start, self.dt, self.mode),
@@ -476,15 +452,27 @@ class Controller:
             return self.program.qp_at(q, motion.last, motion.before, targets, self.dt, t, least)
 
 
-def exceeds(period: float, longest: float | None) -> bool:
-    """Test whether a period [s] is above the longest one, if there is one."""
-    return longest is not None and period > longest * (1.0 + SLACK)
+def periods_of_step(
+    loop: Any, warned: set[str], dt: float | None, elapsed: float | None
+) -> Periods:
+    """Return the periods of a step; warn of one above the longest.
 
+    Args:
+        loop: A controller or shield.
+        warned: What it has warned of; whoever calls a step is warned once.
+        dt: Period for which the command will be held [s], if it is stated.
+        elapsed: Time since the last step [s], if it is stated.
 
-def warn_of_period(period: float, longest: float | None) -> None:
-    """Warn whoever has called a step of a period [s] above the longest one."""
-    problem = f"a period of {period:g} s is above the longest, {longest:g} s"
-    warnings.warn(f"{problem}: limits may be passed", stacklevel=5)
+    Raises:
+        InvalidInputError: A period is not above 0, or another one than the loop's may be stated.
+    """
+    longest = loop.longest_period
+    periods = stated_periods(loop.dt, longest, dt, elapsed)
+    if periods.exceeded and EXCEEDED not in warned:
+        warned.add(EXCEEDED)
+        problem = f"a period of {periods.dt:g} s is above the longest, {longest:g} s"
+        warnings.warn(f"{problem}: limits may be passed", stacklevel=5)
+    return periods
 
 
 def _is_plain(q: Any, shape: tuple[int, ...]) -> bool:

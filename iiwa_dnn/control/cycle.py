@@ -25,7 +25,7 @@ from iiwa_dnn.control.command import (
     note_command,
 )
 from iiwa_dnn.control.fallback import Yielding, fallback_size
-from iiwa_dnn.control.state import MotionState
+from iiwa_dnn.control.state import MotionState, change_spacing
 from iiwa_dnn.control.yielding import (
     BRAKE,
     NOMINAL,
@@ -54,20 +54,22 @@ from iiwa_dnn.schemes.collisions import MEET
 from iiwa_dnn.schemes.limits import (
     JointLimits,
     MotionConstants,
-    MotionLimits,
     Periods,
     PositionConstants,
     check_ranges,
     checked_longest,
     constant_periods,
+    state_periods,
 )
 from iiwa_dnn.schemes.program import (
     LimitNames,
     ProgramArrays,
     ProgramLayout,
     assemble,
+    block_constants,
     program_views,
 )
+from iiwa_dnn.schemes.step import StepViews
 
 FEASIBLE_BUDGET = 60.0
 """Linear solves after which a program with acceleration or jerk limits counts as infeasible."""
@@ -91,12 +93,10 @@ class Paths(NamedTuple):
     Attributes:
         table: A row for each, (k, 4), by `PathColumn`.
         constants: Base and constants of each, (size,).
-        period: Control period [s].
     """
 
     table: IntMatrix
     constants: Vector
-    period: float
 
 
 class ControlPlan(NamedTuple):
@@ -109,6 +109,8 @@ class ControlPlan(NamedTuple):
         yielding: What fallback programs need beside them.
         fallback: States of the networks of fallback programs, (`fallback_size`,), warm starts.
         policy: Action that the policy asks for at a step without a solution; `BRAKE`: none.
+        samples: Whether the paths are asked for the targets.
+        timing: Periods of the step.
     """
 
     arrays: ProgramArrays
@@ -117,6 +119,8 @@ class ControlPlan(NamedTuple):
     yielding: Yielding
     fallback: Vector
     policy: int
+    samples: bool
+    timing: Periods
 
 
 class ControlLayout:
@@ -127,12 +131,12 @@ class ControlLayout:
         log_layout: Layout of the logs that are written.
         shape: Shape of joint positions, (dof,).
         width: Length of the states from step to step, `MotionState`.
-        dt: Period that the next command is for [s].
-        steady: The same where periods do not vary, else NaN.
-        plan: Arrays and settings that stay the same from step to step.
+        varies: Whether periods vary, or the network advances by them.
+        lag: Part of a period by which the network advances in continuous mode; 0 where it solves.
+        plan: Arrays and settings that stay the same from step to step. Its paths are sampled if
+            all references are compiled, and no part is refreshed by the targets of a step.
+        given: The same for steps that are given targets.
         has_network: Whether the network is compiled.
-        samples: Whether the compiled step samples the targets: all references are compiled, and no
-            part is refreshed by the targets of a step.
     """
 
     def __init__(
@@ -160,11 +164,11 @@ class ControlLayout:
         """
         checked_longest(longest, dt)
         self.program = program
-        arrays = program.arrays(dt)
+        arrays = program.arrays
         sizes = arrays.sizes
         self.shape = (sizes.joints,)
         self.width = MotionState.width(sizes.joints, sizes.pairs)
-        self.log_layout = lay_out_log(sizes, LimitNames(program), dt)
+        self.log_layout = lay_out_log(sizes, LimitNames(program))
         lags = policy == BRAKE
         # A subclass that solves in a way of its own is asked, not bypassed.
         own = (
@@ -172,45 +176,33 @@ class ControlLayout:
         )
         self.has_network = own is not None
         network = own or _asked(solver, program.sizes, lags * dt)
-        self._rate = network.settings.duration / dt  # 0 where the network solves
+        self.lag = network.settings.duration / dt
+        self.varies = lags or longest is not None
         if program.rate_limits is not None:
             # A program that a few linear solves do not solve most likely has no solution.
             network.settings.budget = min(network.settings.budget, FEASIBLE_BUDGET)
         paths = _compiled_paths(references, program.target_frames, dt)
-        self.samples = paths is not None and not program.reads_targets
-        yielding = make_yielding(program, solver.tol, dt, self.has_network)
+        samples = paths is not None and not program.reads_targets
+        yielding = make_yielding(program, solver.tol, self.has_network)
         fallback = np.zeros(fallback_size(program.sizes))
-        none = Paths(np.zeros((0, len(PathColumn)), dtype=np.int64), np.zeros(0), dt)
-        self.plan = ControlPlan(arrays, network, paths or none, yielding, fallback, policy)
+        none = Paths(np.zeros((0, len(PathColumn)), dtype=np.int64), np.zeros(0))
+        self.plan = ControlPlan(
+            arrays,
+            network,
+            paths or none,
+            yielding,
+            fallback,
+            policy,
+            samples,
+            constant_periods(dt),
+        )
+        self.given = self.plan._replace(samples=False)
         if program.rate_limits is not None:
             check_ranges(yielding.limits, 1.0 / (longest or dt))
         if longest is not None:
             for constants in program.constants_of(JointLimits):
                 limits = PositionConstants.of(constants)
                 limits.gain = min(limits.gain, 1.0 / longest)
-        self._varies = longest is not None
-        self.set_periods(dt, constant_periods(dt))
-
-    def set_periods(self, dt: float, periods: Periods, reasons: tuple[str, ...] = ()) -> None:
-        """Change the control periods without laying the programs out anew.
-
-        Args:
-            dt: Period that the next command is for [s].
-            periods: Periods as limits count them.
-            reasons: Reasons why limits may be passed in them.
-        """
-        self.dt = dt
-        self.steady = math.nan if self._varies else dt
-        self.log_layout = self.log_layout._replace(periods=periods, reasons=reasons)
-        arrays = self.plan.arrays._replace(rate=1.0 / dt)
-        paths = self.plan.paths._replace(period=dt)
-        yielding = self.plan.yielding._replace(dt=dt, periods=periods)
-        self.plan = self.plan._replace(arrays=arrays, paths=paths, yielding=yielding)
-        self.plan.network.settings.duration = dt * self._rate
-        if periods.vary:
-            for constants in self.program.constants_of(MotionLimits):
-                limits = MotionConstants.of(constants)
-                limits.dt, limits.hold, limits.longest, limits.fraction, _ = periods
 
 
 def _asked(solver: DNNSolver, sizes: Sizes, duration: float) -> CompiledAnswer:
@@ -233,18 +225,13 @@ def _compiled_paths(
         return None
     if any(isinstance(path, FeedForward) and path.dt != dt for path in seen):
         return None
-    return _laid_out(paths, seen, dt)
-
-
-def _laid_out(paths: Sequence[Reference], seen: Sequence[Reference], dt: float) -> Paths:
-    """Lay out compiled paths, with or without feed-forward."""
     constants = [np.concatenate([path.base, path.constants]) for path in paths]
     stops = np.cumsum([own.size for own in constants])
     rows = [
         (enter_path.address(path.compiled), path is not other, stop - own.size, stop)
         for path, other, own, stop in zip(paths, seen, constants, stops, strict=True)
     ]
-    return Paths(np.array(rows, dtype=np.int64), np.concatenate(constants), dt)
+    return Paths(np.array(rows, dtype=np.int64), np.concatenate(constants))
 
 
 def ask(
@@ -280,7 +267,6 @@ def take_step(
     next_numbers: Vector,
     state: Vector,
     t: float,
-    samples: bool,
 ) -> int:
     """Take a control step: its nominal program, or what the policy asks for.
 
@@ -291,51 +277,59 @@ def take_step(
         data: The log, (width,), with the targets unless they are sampled.
         plan: What the step is laid out with.
         q: Joint positions [rad], (dof,), that the kinematics are at.
-        numbers: The state of the motion, `MotionState`, (k,); its joint positions are overwritten.
+        numbers: The state of the motion, `MotionState`, (k,), to which these positions and periods
+            are written.
         next_numbers: The same for the next step, (k,), overwritten.
         state: The network's state, (size,), advanced.
         t: Time [s].
-        samples: Whether the references are asked for the targets.
 
     Returns:
         The action that was taken, or `INVALID`.
     """
     arrays = plan.arrays
+    timing = plan.timing
     sizes = arrays.sizes
     log = log_of(data, sizes)
     motion_state = MotionState.of(numbers, sizes.joints, sizes.pairs)
     next_motion_state = MotionState.of(next_numbers, sizes.joints, sizes.pairs)
-    if samples:
-        sample_targets(plan.paths, t - motion_state.path_lag, log.targets)
+    if plan.samples:
+        sample_targets(plan.paths, t - motion_state.path_lag, timing.expected, log.targets)
     finite = math.isfinite(t)
     for i in range(q.size):
         finite = finite and abs(q[i]) <= LARGEST
     if not finite or not all_finite(data, data.size - log.targets.size, data.size):
         return INVALID
     copied(motion_state.q, q)
+    change_spacing(motion_state, timing.dt)
+    if timing.vary and plan.yielding.rates >= 0:
+        state_periods(MotionConstants.of(block_constants(arrays, plan.yielding.rates)), timing)
     copied(next_numbers, numbers)
     copied(next_motion_state.before, motion_state.last)
     next_motion_state.stopping_periods = 0.0
     next_motion_state.yields = False
-    assemble(
-        log.program,
-        arrays,
+    step = StepViews(
+        t,
+        1.0 / timing.expected,
         q,
         motion_state.last,
         motion_state.before,
-        next_motion_state.least,
+        arrays.jacobian,
+        arrays.placements,
+        arrays.support,
+        arrays.inertia,
         log.targets,
-        t,
+        next_motion_state.least,
     )
+    assemble(log.program, arrays, step)
     _note_instant(log, arrays, motion_state, next_motion_state)
     halted = motion_state.halts or largest_entry(log.least) == MEET
     if not motion_state.yields and not halted and _answer(log, arrays, plan.network, state):
-        note_command(log, next_motion_state, log.point, plan.yielding.dt)
-        if guard_step(arrays, motion_state, next_motion_state, plan.yielding):
+        note_command(log, next_motion_state, log.point, timing.expected)
+        if guard_step(arrays, motion_state, next_motion_state, plan.yielding, timing):
             return NONE
     policy = BRAKE if halted else plan.policy
     return yield_step(
-        log, arrays, motion_state, next_motion_state, plan.yielding, plan.fallback, policy
+        log, arrays, motion_state, next_motion_state, plan.yielding, timing, plan.fallback, policy
     )
 
 
@@ -399,8 +393,11 @@ def status_of(stats: SolveStats, settings: AnswerSettings, state: Vector) -> int
 
 
 @compiled
-def sample_targets(paths: Paths, t: float, targets: Matrix) -> None:
-    """Write the targets (k, 18) of all paths at time t [s]; the constants begin with their base."""
+def sample_targets(paths: Paths, t: float, dt: float, targets: Matrix) -> None:
+    """Write the targets (k, 18) of all paths at time t [s], for a control period of dt [s].
+
+    The constants of each begin with its base.
+    """
     for k in range(len(paths.table)):
         entry = paths.table[k]
         address = entry[PathColumn.ADDRESS]
@@ -412,5 +409,5 @@ def sample_targets(paths: Paths, t: float, targets: Matrix) -> None:
         enter_path(address, t, move, target)
         if entry[PathColumn.FEED_FORWARD] != 0:
             then = TargetData.of(base.copy())
-            enter_path(address, t + paths.period, move, then)
-            set_mean_twist(target, then, paths.period)
+            enter_path(address, t + dt, move, then)
+            set_mean_twist(target, then, dt)

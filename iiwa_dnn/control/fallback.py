@@ -48,7 +48,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry, row_dot
 from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, copied, data_size, qp_views
 from iiwa_dnn.qp.residuals import cost_size, within
-from iiwa_dnn.schemes.limits import MotionConstants, Periods
+from iiwa_dnn.schemes.limits import MotionConstants
 from iiwa_dnn.schemes.program import add_soft
 
 MAX_LINEAR_SOLVES = 60
@@ -97,9 +97,8 @@ class Yielding(NamedTuple):
         limits: Acceleration and jerk limits; of no joints where there are none.
         tolerance: Tolerance of the answers.
         budget: Linear solves after which a program counts as one without a solution.
+        rates: Block of these limits; -1: there is none.
         scenes: Blocks of the scenes that braking keeps away from, (scenes,).
-        dt: Period that the command is for [s].
-        periods: Periods as limits count them.
         cubic: Whether the jerk of a joint is limited.
         coupled: Whether joints follow others.
         alike: Whether the network of the steps is that of the fallback programs.
@@ -109,9 +108,8 @@ class Yielding(NamedTuple):
     limits: MotionConstants
     tolerance: float
     budget: int
+    rates: int
     scenes: IntVector
-    dt: float
-    periods: Periods
     cubic: bool
     coupled: bool
     alike: bool
@@ -263,7 +261,7 @@ def relax_task(qp: QPViews, weights: Vector, retreat: float) -> None:
     for j in range(qp.b.size):
         if weights[j] > 0.0:
             qp.b[j] *= shrink
-            add_soft(qp, qp.A[j : j + 1], qp.b[j : j + 1], weights[j] * weights[j])
+            add_soft(qp.P, qp.q, qp.A[j : j + 1], qp.b[j : j + 1], weights[j] * weights[j])
             qp.A[j, :] = 0.0
             qp.b[j] = 0.0
         else:

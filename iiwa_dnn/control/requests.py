@@ -1,4 +1,4 @@
-"""Requests of a shield: their kinds, the tasks that answer them, and the cut of a twist."""
+"""Requests of a shield: their kinds, their cost, and the cut of a twist."""
 
 from __future__ import annotations
 
@@ -8,25 +8,18 @@ from enum import IntEnum
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.compiling.records import Record
-from iiwa_dnn.control.controller import EXCEEDED
+from iiwa_dnn.compiling.records import Record, part
+from iiwa_dnn.control.command import EXCEEDED
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import cholesky_factor, factor_solve
+from iiwa_dnn.qp.dense import cholesky_factor, factor_solve, largest_entry
 from iiwa_dnn.qp.layout import QPViews
 from iiwa_dnn.references.rotations import triple
-from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Placement, Twist
-from iiwa_dnn.schemes import PoseTask, Task
+from iiwa_dnn.schemes import Cost
 from iiwa_dnn.schemes.limits import MotionConstants
-from iiwa_dnn.schemes.step import (
-    TARGET_SIZE,
-    FrameConstants,
-    StepViews,
-    point_rate,
-    write_spin,
-    write_velocity,
-)
+from iiwa_dnn.schemes.program import add_soft
+from iiwa_dnn.schemes.step import StepViews, point_rate
 
 DAMPING = 0.02
 """Lambda of a twist's program [m/rad]: near a singular pose the joints do not race."""
@@ -89,110 +82,106 @@ class Reason(IntEnum):
     SINGULAR = 9
 
 
-class JointsConstants(Record):
-    """Number of the first joint of a `JointVelocityTask`, from 0."""
+class RequestConstants(Record):
+    """Request of a step, and the frame that a twist is of.
 
-    first: int
+    Attributes:
+        frame: Index of the frame.
+        is_twist: Whether the request is a twist; else it is joint velocities.
+        asked: Its numbers, (max(n, 6),).
+    """
+
+    frame: int
+    is_twist: bool
+    asked: Vector = part()
 
 
 @compiled
-def velocity_rows(
-    step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
+def add_request(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
+    """Add the cost of a request: of joint velocities w, or of a twist v with the damping.
+
+    W leaves v as it is and weighs what is beside it.
+    """
+    own = RequestConstants.of(constants)
+    n = q.size
+    for i in range(n):
+        P[i, i] += DAMPING * DAMPING if own.is_twist else 1.0
+        q[i] -= 0.0 if own.is_twist else own.asked[i]
+    if not own.is_twist:
+        return
+    v = own.asked[: Twist.width()]
+    A = np.empty((TWIST, n))
+    placement = Placement.of(step.placements[own.frame])
+    write_frame_jacobian(step.jacobian, placement, step.support[own.frame], A)
+    square = 0.0
+    for k in range(TWIST):
+        square += v[k] * v[k]
+    for i in range(n):
+        along = 0.0
+        for k in range(TWIST):
+            along += A[k, i] * v[k]
+        fraction = (1.0 - SIDEWAYS) * along / square if square > 0.0 else 0.0
+        for k in range(TWIST):
+            A[k, i] = SIDEWAYS * A[k, i] + fraction * v[k]
+    add_soft(P, q, A, v, 1.0)
+
+
+@compiled
+def write_frame_jacobian(
+    jacobian: Matrix, placement: Placement, support: Vector, rows: Matrix
 ) -> None:
-    """Write A = I and b = w for some joints; the target (18,) begins with their velocities w."""
-    first = JointsConstants.of(constants).first
-    for i in range(b.size):
-        A[i, first + i] = 1.0
-        b[i] = target.numbers[i]
+    """Write the Jacobian of a frame, linear over angular, (6, n).
+
+    Args:
+        jacobian: `Kinematics.jacobian`, (n, 6).
+        placement: The frame's.
+        support: 1 for the joints that move it, else 0, (n,).
+        rows: The Jacobian, overwritten.
+    """
+    point = triple(placement.position)
+    for j in range(support.size):
+        linear = point_rate(jacobian, j, point)
+        angular = triple(Twist.of(jacobian[j]).angular)
+        for i in range(3):
+            rows[i, j] = support[j] * linear[i]
+            rows[3 + i, j] = support[j] * angular[i]
 
 
 @dataclass(frozen=True)
-class JointVelocityTask(Task):
-    """Velocities of some joints, a row each, which a step's target holds in place of a pose.
+class RequestCost(Cost):
+    """Distance of the command from the request, the one cost of a shield's programs.
 
     Attributes:
-        frame: The frame whose target it is.
-        first: The first of the joints, of which a target holds 18.
+        frame: Name of the frame of twists.
     """
 
-    kernel = staticmethod(velocity_rows)
-    weight = 1.0
+    kernel = staticmethod(add_request)
     frame: str
-    first: int = 0
-
-    def row_count(self, robot: Robot) -> int:
-        """Return the number of the joints."""
-        return min(TARGET_SIZE, robot.dof - self.first)
 
     def constants(self, robot: Robot) -> Vector:
-        """Return `JointsConstants`."""
-        return JointsConstants.make(first=self.first)
+        """Return `RequestConstants`, for a request to rest."""
+        rest = np.zeros(max(robot.dof, TWIST))
+        return RequestConstants.make(frame=robot.frame_id(self.frame), is_twist=False, asked=rest)
 
 
 @compiled
-def twist_rows(
-    step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
-) -> None:
-    """Write A = W J and b = W v = v; W leaves v as it is and weighs what is beside it."""
-    own = FrameConstants.of(constants[: FrameConstants.width()])
-    base = Placement.of(step.placements[own.relative_to])
-    point = triple(Placement.of(step.placements[own.frame]).position)
-    for i in range(3):
-        axis = triple(base.axes[i])
-        write_velocity(step, own, point, axis, A[i])
-        write_spin(step, own, axis, A[3 + i])
-        b[i] = target.linear_velocity[i]
-        b[3 + i] = target.angular_velocity[i]
-    square = 0.0
-    for k in range(b.size):
-        square += b[k] * b[k]
-    for i in range(A.shape[1]):
-        along = 0.0
-        for k in range(b.size):
-            along += A[k, i] * b[k]
-        fraction = (1.0 - SIDEWAYS) * along / square if square > 0.0 else 0.0
-        for k in range(b.size):
-            A[k, i] = SIDEWAYS * A[k, i] + fraction * b[k]
-
-
-@dataclass(frozen=True, kw_only=True)
-class TwistTask(PoseTask):
-    """Linear and angular velocity of a frame, which a step's target holds."""
-
-    kernel = staticmethod(twist_rows)
-
-
-@compiled
-def cut_twist(
-    twist: Vector, jacobian: Matrix, placement: Placement, support: Vector, limits: MotionConstants
-) -> bool:
+def cut_twist(twist: Vector, rows: Matrix, limits: MotionConstants) -> bool:
     """Cut a twist (6,) in place to `CUT` times what the joints can do.
 
     Args:
         twist: The twist of a frame.
-        jacobian: `Kinematics.jacobian`, (n, 6).
-        placement: The frame's.
-        support: 1 for the joints that move it, (n,).
+        rows: The frame's Jacobian, (6, n).
         limits: Limits of the joints.
 
     Returns:
         Whether it was larger.
     """
-    n = support.size
-    size = 0.0
-    for i in range(TWIST):
-        size = max(size, abs(twist[i]))
-    if size <= CUT:
-        return False
-    point = triple(placement.position)
+    size = largest_entry(twist)
     most = 1.0
     for i in range(TWIST):
         total = 0.0
-        for j in range(n):
-            linear = point_rate(jacobian, j, point)
-            angular = triple(Twist.of(jacobian[j]).angular)
-            rate = linear[i % 3] if i < 3 else angular[i % 3]
-            total += abs(support[j] * rate) * min(limits.velocity[j], FASTEST)
+        for j in range(limits.velocity.size):
+            total += abs(rows[i, j]) * min(limits.velocity[j], FASTEST)
         most = max(most, total)
     if size <= CUT * most:
         return False
@@ -202,8 +191,8 @@ def cut_twist(
 
 
 @compiled
-def falls_short(qp: QPViews, target: TargetData) -> bool:
-    """Test whether the damping alone keeps a target's twist from being fulfilled by `SHORT` of it.
+def falls_short(qp: QPViews, twist: Vector) -> bool:
+    """Test whether the damping alone keeps a twist (6,) from being fulfilled by `SHORT` of it.
 
     |W (J x - v)|^2 at the least of the cost of a twist's program, whose P is (W J)^T W J +
     DAMPING^2 I.
@@ -214,10 +203,8 @@ def falls_short(qp: QPViews, target: TargetData) -> bool:
     if cholesky_factor(K):
         factor_solve(K, qp.q, x)
     square = 0.0
-    for i in range(target.linear_velocity.size):
-        square += target.linear_velocity[i] * target.linear_velocity[i]
-    for i in range(target.angular_velocity.size):
-        square += target.angular_velocity[i] * target.angular_velocity[i]
+    for i in range(TWIST):
+        square += twist[i] * twist[i]
     missing = square
     for i in range(n):
         missing -= x[i] * (qp.q[i] + DAMPING * DAMPING * x[i])

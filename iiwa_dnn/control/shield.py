@@ -33,7 +33,6 @@ from iiwa_dnn import checks
 from iiwa_dnn.control.arms import (
     ArmInput,
     ArmPlan,
-    ArmProgram,
     ArmSettings,
     ArmSizes,
     ArmState,
@@ -47,19 +46,17 @@ from iiwa_dnn.control.arms import (
     take_input,
 )
 from iiwa_dnn.control.command import Command, LogLayout
-from iiwa_dnn.control.controller import exceeds, warn_of_period
+from iiwa_dnn.control.controller import periods_of_step
 from iiwa_dnn.control.cycle import INVALID, ControlLayout
 from iiwa_dnn.control.paths import pair_warnings, setup_warnings
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.requests import (
     ARGUMENTS,
-    DAMPING,
     REASONS,
     TWIST,
-    JointVelocityTask,
     Reason,
     Request,
-    TwistTask,
+    RequestCost,
 )
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.naming import active_limits, describe
@@ -70,23 +67,15 @@ from iiwa_dnn.robot.kinematics_kernel import model_tables
 from iiwa_dnn.schemes import (
     CollisionAvoidance,
     JointLimits,
-    KineticEnergy,
     Limit,
     Obstacle,
     Scheme,
     own_rate_limits,
 )
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.limits import (
-    MotionLimits,
-    Periods,
-    checked_longest,
-    constant_periods,
-    stated_periods,
-)
+from iiwa_dnn.schemes.limits import MotionLimits, Periods, checked_longest
 from iiwa_dnn.schemes.program import LimitNames
 from iiwa_dnn.schemes.scene import Body, scene_views
-from iiwa_dnn.schemes.step import TARGET_SIZE
 
 
 def one_request(
@@ -111,15 +100,13 @@ class ArmLayout(NamedTuple):
 
     Attributes:
         plan: Arrays and settings for kernels.
-        joint: Control step for requests of joints, whose kinematics serve all steps.
-        twist: Control step for twists.
+        step: The control step.
         memory: Memory of an arm that has not begun.
         positions: Place of the commanded joint positions in it.
     """
 
     plan: ArmPlan
-    joint: ControlLayout
-    twist: ControlLayout
+    step: ControlLayout
     memory: Vector
     positions: slice
 
@@ -131,38 +118,29 @@ def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
         NotFoundError: The robot has no frame of that name.
     """
     robot = shield.robot
-    twist_task = TwistTask(frame=frame, gain=0.0, weight=1.0)
-    damping = KineticEnergy(weight=DAMPING * DAMPING)
-    schemes = (
-        Scheme([], _velocity_tasks(robot), shield.limits),
-        Scheme([damping], [twist_task], shield.limits),
-    )
+    program = Scheme([RequestCost(frame)], [], shield.limits).program(robot)
     solver = DNNSolver(tol=1e-9)
-    joint, twist = (
-        ControlLayout(
-            scheme.program(robot), {}, solver, shield.dt, Action.RELAX, shield.longest_period
-        )
-        for scheme in schemes
-    )
-    programs = (joint.program, twist.program)
-    frames = dict.fromkeys(k for each in programs for k in each.kinematics.frame_ids)
+    longest = shield.longest_period
+    step = ControlLayout(program, {}, solver, shield.dt, Action.RELAX, longest)
     centers, velocities = _obstacles(shield)
-    n, m, _ = programs[0].sizes
+    n, m, _ = program.sizes
     sizes = ArmSizes(
         n=robot.dof,
         request=max(robot.dof, TWIST),
-        motion=joint.width,
-        network=solver.state_for(programs[0].sizes).size,
-        fallback=joint.plan.fallback.size,
+        motion=step.width,
+        network=solver.state_for(program.sizes).size,
+        fallback=step.plan.fallback.size,
         obstacles=len(centers),
         limiting=n + m,
         # Two commands in a row last longer than a period, or are one.
         sent=(1 + robot.dof) * (1 + 2 * math.ceil(shield.delay / shield.dt)) * (shield.delay > 0.0),
     )
     plan = ArmPlan(
-        model_tables(robot, [*frames]),
-        _arm_program(joint),
-        _arm_program(twist),
+        model_tables(robot, program.kinematics.frame_ids),
+        step.plan,
+        program.places_of(RequestCost)[0],
+        [*program.places_of(CollisionAvoidance), -1][0],
+        step.log_layout.width,
         MotionLimits(own_rate_limits(robot)).constants(robot),
         robot.q_lower,
         robot.q_upper,
@@ -173,23 +151,7 @@ def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
     memory = ArmState.zeros(*sizes)
     memory.obstacles[:] = centers
     rest_arm(plan, memory.numbers, np.zeros(0))
-    return ArmLayout(plan, joint, twist, memory.numbers, ArmState.columns(*sizes)["positions"])
-
-
-def _velocity_tasks(robot: Robot) -> list[JointVelocityTask]:
-    """Return tasks for all joints, each with the target of a frame."""
-    firsts = range(0, robot.dof, TARGET_SIZE)
-    others = [name for name in robot.frame_names if name != robot.tip]
-    frames = [robot.tip, *others]
-    return [JointVelocityTask(frame, first) for frame, first in zip(frames, firsts, strict=False)]
-
-
-def _arm_program(step: ControlLayout) -> ArmProgram:
-    """Return what kernels read of a control step."""
-    parts = step.program.parts
-    rates = [k for k, part in enumerate(parts) if isinstance(part, MotionLimits)]
-    scenes = [k for k, part in enumerate(parts) if isinstance(part, CollisionAvoidance)]
-    return ArmProgram(step.plan, step.log_layout.width, *(rates or [-1]), *(scenes or [-1]))
+    return ArmLayout(plan, step, memory.numbers, ArmState.columns(*sizes)["positions"])
 
 
 def _obstacles(shield: Shield) -> tuple[Matrix, Matrix]:
@@ -290,10 +252,8 @@ class ShieldCommand(NamedTuple):
     @property
     def command(self) -> Command:
         """The command with the program that was answered."""
-        own = self.arm.state
-        late = (REASONS[Reason.PERIOD_EXCEEDED],) * own.is_late
-        layout = self.layout._replace(periods=self.periods, reasons=late)
-        return Command(self.row, layout, Action(own.action))
+        action = Action(self.arm.state.action)
+        return Command(self.row, self.layout, action, self.periods)
 
     @property
     def next_q(self) -> Vector:
@@ -397,7 +357,6 @@ class Shield:
         self.limits: list[Limit] = [JointLimits(), *own_rate_limits(robot)]
         if obstacles is not None:
             self.limits.append(CollisionAvoidance(obstacles, distance=distance, left_out=left_out))
-        self._periods = constant_periods(self.dt)
         self._warned: set[str] = set()
         self._kept: tuple[Vector, str]  # memory of the arm, never overwritten; frame of twists
         self._begin()
@@ -531,43 +490,33 @@ class Shield:
         """Take a step with a request, or none."""
         measured = checks.joint_positions("q", q, self.robot.dof)
         asked = measured if request is None else self._asked(kind, request)
-        periods = self._stated_periods(dt, elapsed)
         if "start" not in self._warned:
             self._warn_of_start(Configuration(self.robot, measured), stacklevel=4)
         memory, seen = self._next(kind, frame)
         layout = self._layouts[seen]
+        periods = layout.step.plan.timing
+        if layout.step.varies or not dt is elapsed is None:
+            periods = periods_of_step(self, self._warned, dt, elapsed)
         given = ArmInput(measured, kind, asked, dt or 0.0, elapsed or 0.0)
-        answered = take_input(layout.plan, memory, given)
-        step = layout.twist if answered == Request.TWIST else layout.joint
-        kinematics = layout.joint.program.kinematics
+        take_input(layout.plan, memory, given)
+        log_layout = layout.step.log_layout
+        kinematics = layout.step.program.kinematics
         positions = memory[layout.positions]
         kinematics.update(positions)
-        row = np.empty(step.log_layout.width)
+        row = np.empty(log_layout.width)
         action = answer_request(
             layout.plan, memory, given, kinematics.jacobian, kinematics.placements, row
         )
         if action == INVALID:
             checks.joint_positions("q", positions, positions.size)
         self._kept = (memory, seen)
-        arm = Arm(layout.plan, memory, step.log_layout.names)
-        return ShieldCommand(row[step.log_layout.dq], arm, row, step.log_layout, periods)
+        arm = Arm(layout.plan, memory, log_layout.names)
+        return ShieldCommand(row[log_layout.dq], arm, row, log_layout, periods)
 
     def _asked(self, kind: Request, request: ArrayLike) -> Vector:
         """Return a request of a kind as numbers, which may be NaN."""
         size = TWIST if kind is Request.TWIST else self.robot.dof
         return checks.array(ARGUMENTS[kind], request, (size,))
-
-    def _stated_periods(self, dt: float | None, elapsed: float | None) -> Periods:
-        """Return the periods of a step; warn once of one above the longest."""
-        longest = self.longest_period
-        if longest is dt is elapsed:  # None
-            return self._periods
-        periods = stated_periods(self.dt, longest, dt, elapsed)
-        stated = dt or elapsed or 0.0
-        if exceeds(stated, longest) and "period" not in self._warned:
-            self._warned.add("period")
-            warn_of_period(stated, longest)
-        return periods
 
     def _next(self, kind: Request, frame: str | None) -> tuple[Vector, str]:
         """Return a copy of the arm's memory, and the frame of twists, for a request of a kind."""
@@ -588,7 +537,7 @@ class Shield:
         if "start" in self._warned:
             return
         self._warned.add("start")
-        program = self.layout(self.robot.tip).joint.program
+        program = self.layout(self.robot.tip).step.program
         doubtful = setup_warnings(program, start, self.dt, "converged")
         for message in (*doubtful, *pair_warnings(program, start, 0.0)):
             warnings.warn(message, stacklevel=stacklevel + 1)

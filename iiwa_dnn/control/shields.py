@@ -40,7 +40,7 @@ def limit_words(shield: Shield) -> list[str]:
     They are the reasons, then for each joint the lower and the upper bound of each of
     `naming.KINDS`, then the rows.
     """
-    settings: dict[str, Any] = shield.layout(shield.robot.tip).joint.program.settings()
+    settings: dict[str, Any] = shield.layout(shield.robot.tip).step.program.settings()
     rows = settings["rows"]
     codes = [sign * kind for kind in range(1, 1 + len(KINDS)) for sign in (-1, 1)]
     n = shield.robot.dof
@@ -285,7 +285,7 @@ class Shields:
         return self._memories[i, : self._layout.memory.size]
 
     def _arm(self, i: int) -> Arm:
-        return Arm(self._layout.plan, self._memory(i), self._layout.joint.log_layout.names)
+        return Arm(self._layout.plan, self._memory(i), self._layout.step.log_layout.names)
 
     def active_limits(self, i: int) -> tuple[str, ...]:
         """Name the active limits of arm i's last command, as `ShieldCommand.active_limits`."""

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.qp import Vector
 
@@ -14,6 +15,7 @@ class MotionState(Record):
     Attributes:
         stopping_periods: Periods until the stopping motion that is available rests; 0 if none is.
         path_lag: Time by which the reference's clock is behind [s].
+        spacing: Period over which the last change of the command counts [s]; 0 before the first.
         yields: Whether the task yielded at the last step.
         halts: Whether the arm brakes, whatever has a solution.
         q: Joint positions of this step [rad], (n,).
@@ -25,6 +27,7 @@ class MotionState(Record):
 
     stopping_periods: float
     path_lag: float
+    spacing: float
     yields: bool
     halts: bool
     q: Vector = part("joints")
@@ -32,6 +35,27 @@ class MotionState(Record):
     before: Vector = part("joints")
     wanted: Vector = part("joints")
     least: Vector = part("pairs")
+
+
+@compiled
+def change_spacing(motion: MotionState, dt: float) -> None:
+    """Count changes of the command over another period [s]; acceleration and time to rest stay."""
+    if motion.spacing > 0.0 and dt != motion.spacing:
+        ratio = dt / motion.spacing
+        for i in range(motion.last.size):
+            motion.before[i] = motion.last[i] - ratio * (motion.last[i] - motion.before[i])
+        motion.stopping_periods = motion.stopping_periods / ratio
+    motion.spacing = dt
+
+
+@compiled
+def count_as_sent(motion: MotionState, dq: Vector, dt: float) -> None:
+    """Count a velocity dq (n,) [rad/s] as the last command, held for a period [s]."""
+    for i in range(motion.last.size):
+        motion.before[i] = motion.last[i]
+        motion.last[i] = dq[i]
+    motion.stopping_periods = 0.0
+    motion.spacing = motion.spacing if motion.spacing > 0.0 else dt
 
 
 class ControllerState:
@@ -42,26 +66,22 @@ class ControllerState:
         numbers: Those of `MotionState`, (k,). A step makes new ones, which count from when the
             controller returns its command.
         next_numbers: Those after the last command that was computed.
-        dt: Control period of the last step [s]; 0 before the first.
         slowed: Fraction of the last period by which the reference's clock fell behind in it, and
         booked: that period [s], where periods vary.
         halted: Whether the arm brakes from now on; each step writes it into its state.
-        begun: Whether the start was looked at, and warned of.
-        exceeded: Whether a period above the longest was warned of.
+        warned: What was warned of: the start once it was looked at, a period above the longest.
         pairs: The watched pairs, each with its names.
     """
 
     __slots__ = (
-        "begun",
         "booked",
-        "dt",
-        "exceeded",
         "halted",
         "next_numbers",
         "numbers",
         "pairs",
         "sizes",
         "slowed",
+        "warned",
     )
 
     numbers: Vector
@@ -69,8 +89,7 @@ class ControllerState:
 
     def __init__(self, dof: int) -> None:
         """Begin with an arm of n joints that has had no command."""
-        self.begun = False
-        self.exceeded = False
+        self.warned: set[str] = set()
         self.pairs: Any = []
         self.sizes = (dof, 0)
         self.rest()
@@ -102,20 +121,9 @@ class ControllerState:
         """Forget all commands."""
         self.numbers = np.zeros(MotionState.width(*self.sizes))
         self.next_numbers = self.numbers
-        self.dt = 0.0
         self.slowed = 0.0
         self.booked = 0.0
         self.halted = False
-
-    def set_period(self, dt: float) -> None:
-        """Change the control period [s]; accelerations and the time to rest stay."""
-        if self.dt > 0.0 and dt != self.dt:
-            ratio = dt / self.dt
-            motion = self.motion.duplicate()
-            motion.before[:] = motion.last - ratio * (motion.last - motion.before)
-            motion.stopping_periods /= ratio
-            self.numbers = motion.numbers
-        self.dt = dt
 
     def book(self, elapsed: float) -> None:
         """Correct the path lag for a last command that was held for `elapsed` [s]."""

@@ -37,9 +37,10 @@ import numpy as np
 from iiwa_dnn.checks import Vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.fallback import Yielding
+from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot.kinematics import Placement
-from iiwa_dnn.schemes.limits import MotionConstants
+from iiwa_dnn.schemes.limits import MotionConstants, Periods
 from iiwa_dnn.schemes.program import ProgramArrays, block_constants
 from iiwa_dnn.schemes.scene import (
     Pair,
@@ -370,16 +371,21 @@ def _write_before(dq: Vector, last: Vector, ratio: float, before: Vector) -> Non
 
 @compiled
 def stopping_time(
-    arrays: ProgramArrays, q: Vector, last: Vector, least: Vector, yielding: Yielding, dq: Vector
+    arrays: ProgramArrays,
+    motion_state: MotionState,
+    least: Vector,
+    yielding: Yielding,
+    timing: Periods,
+    dq: Vector,
 ) -> float:
     """Compute the periods of the motion to rest from a command.
 
     Args:
         arrays: Arrays of the loop; the kinematics are at the joint positions.
-        q: Joint positions [rad], (dof,).
-        last: Last command [rad/s], (dof,).
+        motion_state: State of the motion, with these and the last command.
         least: Distance that each watched pair has to keep [m], (pairs,).
         yielding: Limits and scenes.
+        timing: Periods of the step.
         dq: The command [rad/s], (dof,).
 
     Returns:
@@ -388,13 +394,13 @@ def stopping_time(
     if len(yielding.scenes) == 0:
         return 0.0
     limits = yielding.limits
-    dt = yielding.periods.longest
-    ratio = dt / yielding.periods.dt
-    vary = yielding.periods.vary
-    before = last.copy()
+    dt = timing.longest
+    ratio = dt / timing.dt
+    vary = timing.vary
+    before = motion_state.last.copy()
     coefficient = np.zeros(dq.size)
     if vary:
-        _write_before(dq, last, ratio, before)
+        _write_before(dq, motion_state.last, ratio, before)
     support = limits.lower.size > 0
     periods = least_periods(dq, before, limits, dt, yielding.cubic, vary) if support else 1.0
     if periods == np.inf:
@@ -403,10 +409,10 @@ def stopping_time(
         _write_coefficients(dq, before, periods, vary, coefficient)
     # Where periods vary, the first may be the longest and the others as short as can be.
     uneven = UNEVEN if vary else 0.0
-    fraction = yielding.periods.fraction
+    fraction = timing.fraction
     motion = Motion(dq, coefficient, periods + vary, yielding.cubic, uneven, fraction < 1.0)
     dt = dt / fraction
-    if support and not keeps_joint_limits(motion, q, limits, dt):
+    if support and not keeps_joint_limits(motion, motion_state.q, limits, dt):
         return -1.0
     for k in range(len(yielding.scenes)):
         scene = block_constants(arrays, yielding.scenes[k])

@@ -46,7 +46,7 @@ from iiwa_dnn.qp.layout import QPViews, copied
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.limits import MotionConstants, braking, constant_periods
+from iiwa_dnn.schemes.limits import MotionConstants, MotionLimits, Periods, braking
 from iiwa_dnn.schemes.program import (
     ProgramArrays,
     ProgramLayout,
@@ -78,29 +78,25 @@ half
 of the one before: where a pair began nearer, there is but a micrometre for the motion's curve."""
 
 
-def make_yielding(program: ProgramLayout, tol: float, dt: float, alike: bool) -> Yielding:
+def make_yielding(program: ProgramLayout, tol: float, alike: bool) -> Yielding:
     """Return the constants of the fallback programs of a scheme.
 
     Args:
         program: The scheme.
         tol: Tolerance of the answers.
-        dt: Control period [s].
         alike: Whether the network of the steps is that of the fallback programs.
     """
     limits = MotionConstants.zeros(0)
     if program.rate_limits is not None:
         limits = program.rate_limits.constants(program.robot)
-    parts = program.parts
-    scenes = [k for k, part in enumerate(parts) if isinstance(part, CollisionAvoidance)]
     weights = program.row_weights
     return Yielding(
         weights,
         limits,
         tol,
         MAX_LINEAR_SOLVES,
-        np.array(scenes, dtype=np.int64),
-        dt,
-        constant_periods(dt),
+        [*program.places_of(MotionLimits), -1][0],
+        np.array(program.places_of(CollisionAvoidance), dtype=np.int64),
         bool((limits.jerk < np.inf).any()),
         bool((weights == 0.0).any()),
         alike,
@@ -114,6 +110,7 @@ def yield_step(
     motion_state: MotionState,
     next_motion_state: MotionState,
     yielding: Yielding,
+    timing: Periods,
     fallback: Vector,
     action: int,
 ) -> int:
@@ -126,6 +123,7 @@ def yield_step(
         next_motion_state: The same for the next step, overwritten but for the last commands and
             the distances that pairs keep.
         yielding: Weights, limits and settings of the fallback programs.
+        timing: Periods of the step.
         fallback: States of the networks of fallback programs, (`fallback_size`,), advanced.
         action: Action that the policy asks for; `BRAKE`: the arm goes to rest, whatever has a
             solution.
@@ -146,8 +144,10 @@ def yield_step(
     x = log.point[: qp.q.size].copy()
     limits = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, nominal.lb, nominal.ub)
     if kind != STOPPED:
-        _approach_answer(limits, motion_state, next_motion_state, yielding, log.stats, x)
-        rest = _make_stoppable(limits, arrays, motion_state, next_motion_state, yielding, log, x)
+        _approach_answer(limits, motion_state, next_motion_state, yielding, timing, log.stats, x)
+        rest = _make_stoppable(
+            limits, arrays, motion_state, next_motion_state, yielding, timing, log, x
+        )
         missing = _note_missing(log, x[: arrays.sizes.joints])
         primal, dual, gap = point_residuals(limits, log.point)
         if missing > 0:
@@ -158,16 +158,16 @@ def yield_step(
             copied(qp.ub, nominal.ub)
     if kind == STOPPED:
         copied(log.program, data)
-        rest = _brake(nominal, arrays, motion_state, yielding, log, x)
+        rest = _brake(nominal, arrays, motion_state, yielding, timing, log, x)
         _keep_verified_distances(motion_state, next_motion_state)
         log.point[:] = 0.0
         copied(log.point, x)
     log.stats.primal, log.stats.dual, log.stats.gap = point_residuals(qp, log.point)
     taken = _note_decision(log, nominal, yielding, x, kind, factor, action)
     next_motion_state.stopping_periods = rest
-    next_motion_state.path_lag += yielding.dt * (1.0 - log.fraction)
+    next_motion_state.path_lag += timing.expected * (1.0 - log.fraction)
     next_motion_state.yields = kind != NOMINAL and action != BRAKE
-    note_command(log, next_motion_state, x, yielding.dt)
+    note_command(log, next_motion_state, x, timing.expected)
     return taken
 
 
@@ -303,6 +303,7 @@ def _approach_answer(
     motion_state: MotionState,
     next_motion_state: MotionState,
     yielding: Yielding,
+    timing: Periods,
     stats: SolveStats,
     x: Vector,
 ) -> None:
@@ -313,6 +314,7 @@ def _approach_answer(
         motion_state: State of the motion.
         next_motion_state: State for the next step: the wanted velocity is noted.
         yielding: Weights, limits and settings.
+        timing: Periods of the step.
         stats: Statistics of the answer, as of `solve_warm`.
         x: The velocity, overwritten.
     """
@@ -321,15 +323,15 @@ def _approach_answer(
     copied(next_motion_state.wanted, x[: motion_state.q.size])
     # Joints that follow others have to go with them, on a straight line.
     if yielding.coupled:
-        _approach_together(motion_state, yielding, x)
+        _approach_together(motion_state, yielding, timing, x)
     else:
-        _approach_each(limits, motion_state, yielding, x)
+        _approach_each(limits, motion_state, yielding, timing, x)
     nearest_within(limits, x, yielding, stats)
 
 
 @compiled
 def _approach_each(
-    limits: QPViews, motion_state: MotionState, yielding: Yielding, x: Vector
+    limits: QPViews, motion_state: MotionState, yielding: Yielding, timing: Periods, x: Vector
 ) -> None:
     """Replace the wanted velocity x (n,) by the next command, joint by joint.
 
@@ -338,15 +340,17 @@ def _approach_each(
     """
     dof = motion_state.q.size
     for i in range(dof):
-        most = yielding.limits.acceleration[i] * yielding.periods.dt
+        most = yielding.limits.acceleration[i] * timing.dt
         change = min(max(x[i] - motion_state.wanted[i], -most), most)
         behind = motion_state.last[i] - (x[i] - change)
         rate = yielding.limits.jerk[i]
-        x[i] += braking(behind, limits.lb[i] - x[i], limits.ub[i] - x[i], rate, yielding.periods)
+        x[i] += braking(behind, limits.lb[i] - x[i], limits.ub[i] - x[i], rate, timing)
 
 
 @compiled
-def _approach_together(motion_state: MotionState, yielding: Yielding, x: Vector) -> None:
+def _approach_together(
+    motion_state: MotionState, yielding: Yielding, timing: Periods, x: Vector
+) -> None:
     """Replace the wanted velocity x (n,) by the next command on the straight line to it."""
     dof = motion_state.q.size
     now = np.empty(dof)
@@ -354,7 +358,7 @@ def _approach_together(motion_state: MotionState, yielding: Yielding, x: Vector)
     for i in range(dof):
         now[i] = motion_state.last[i] - x[i]
         before[i] = motion_state.before[i] - x[i]
-    dt = yielding.periods.dt
+    dt = timing.dt
     periods = least_periods(now, before, yielding.limits, dt, yielding.cubic, False)
     for i in range(dof):
         if periods < np.inf:
@@ -368,6 +372,7 @@ def _make_stoppable(
     motion_state: MotionState,
     next_motion_state: MotionState,
     yielding: Yielding,
+    timing: Periods,
     log: StepLog,
     x: Vector,
 ) -> float:
@@ -377,22 +382,20 @@ def _make_stoppable(
         Periods until it rests; 0 where none is asked for.
     """
     dof = motion_state.q.size
-    rest = stopping_time(arrays, motion_state.q, motion_state.last, log.least, yielding, x[:dof])
+    rest = stopping_time(arrays, motion_state, log.least, yielding, timing, x[:dof])
     if rest >= 0.0:
         return rest
     wanted = log.point[: x.size].copy()
     if yielding.limits.velocity.size > 0:
-        _approach_together(motion_state, yielding, wanted)
+        _approach_together(motion_state, yielding, timing, wanted)
         nearest_within(limits, wanted, yielding, log.stats)
     brake = np.zeros(x.size)
-    left = _brake(limits, arrays, motion_state, yielding, log, brake)
+    left = _brake(limits, arrays, motion_state, yielding, timing, log, brake)
     fraction = 1.0
     for _ in range(HALVINGS_NEAR if _is_near(arrays, yielding, log.least) else HALVINGS):
         for i in range(dof):
             x[i] = brake[i] + fraction * (wanted[i] - brake[i])
-        rest = stopping_time(
-            arrays, motion_state.q, motion_state.last, log.least, yielding, x[:dof]
-        )
+        rest = stopping_time(arrays, motion_state, log.least, yielding, timing, x[:dof])
         if rest >= 0.0:
             return rest
         fraction *= 0.5
@@ -426,6 +429,7 @@ def _brake(
     arrays: ProgramArrays,
     motion_state: MotionState,
     yielding: Yielding,
+    timing: Periods,
     log: StepLog,
     dq: Vector,
 ) -> float:
@@ -442,17 +446,17 @@ def _brake(
         return 0.0
     rest: float = motion_state.stopping_periods
     dof = motion_state.q.size
-    dt = yielding.periods.dt
+    dt = timing.dt
     periods = rest
     last = motion_state.last
     before = motion_state.before
     if rest == 0.0:
         periods = least_periods(last, before, yielding.limits, dt, yielding.cubic, False)
-    elif yielding.cubic and yielding.periods.vary:
+    elif yielding.cubic and timing.vary:
         periods = stretched(last, before, yielding.limits, dt, rest)
     if periods < np.inf:
-        _slow_down(motion_state, yielding, periods, dq)
-    if rest > 0.0 and not yielding.periods.vary:
+        _slow_down(motion_state, yielding, timing, periods, dq)
+    if rest > 0.0 and not timing.vary:
         return max(rest - 1.0, 0.0)
     lb = limits.lb.copy()
     ub = limits.ub.copy()
@@ -470,19 +474,19 @@ def _brake(
     nearest_within(braking, dq, yielding, log.stats)
     if rest > 0.0:
         return max(periods - 1.0, 0.0)
-    return max(
-        stopping_time(arrays, motion_state.q, motion_state.last, log.least, yielding, dq[:dof]), 0.0
-    )
+    return max(stopping_time(arrays, motion_state, log.least, yielding, timing, dq[:dof]), 0.0)
 
 
 @compiled
-def _slow_down(motion_state: MotionState, yielding: Yielding, periods: float, dq: Vector) -> None:
+def _slow_down(
+    motion_state: MotionState, yielding: Yielding, timing: Periods, periods: float, dq: Vector
+) -> None:
     """Write the next command (n,) on the straight path to rest in so many periods."""
     dof = motion_state.q.size
     for i in range(dof):
         last = motion_state.last[i]
         fastest = max(yielding.limits.velocity[i], abs(last))
-        change = yielding.limits.acceleration[i] * yielding.periods.dt
+        change = yielding.limits.acceleration[i] * timing.dt
         dq[i] = next_velocity(last, motion_state.before[i], periods, yielding.cubic)
         # Where the control period has changed, the curve has too.
         dq[i] = min(max(dq[i], last - change), last + change)
@@ -495,6 +499,7 @@ def guard_step(
     motion_state: MotionState,
     next_motion_state: MotionState,
     yielding: Yielding,
+    timing: Periods,
 ) -> bool:
     """Test whether the arm can stop from the next state's command, and note in how many periods.
 
@@ -503,14 +508,10 @@ def guard_step(
         motion_state: State of the motion.
         next_motion_state: State for the next step.
         yielding: Limits and scenes.
+        timing: Periods of the step.
     """
     rest = stopping_time(
-        arrays,
-        motion_state.q,
-        motion_state.last,
-        next_motion_state.least,
-        yielding,
-        next_motion_state.last,
+        arrays, motion_state, next_motion_state.least, yielding, timing, next_motion_state.last
     )
     next_motion_state.stopping_periods = max(rest, 0.0)
     return rest >= 0.0

@@ -120,14 +120,14 @@ def code_of(controller: Controller) -> dict[str, Any]:
     code = _Code("c->jacobian", "c->placements", inertia, "c->fallback")
     lengths = _lengths(controller)
     texts: dict[str, Any] = {
-        "plan": code.initializer("plan", code.numbered(step.plan)),
+        "plan": code.initializer("plan", code.numbered(step.given)),
         "model": code.initializer("model", model),
         "take_step": code.kernel(take_step),
         "log_of": code.kernel(log_of),
         "kinematics": code.kernel(write_kinematics),
         "target_function": "",
     }
-    if step.samples:
+    if step.plan.samples:
         sample = {
             "sample": code.kernel(sample_targets),
             "pairs": len(program.pairs),
@@ -147,7 +147,7 @@ def code_of(controller: Controller) -> dict[str, Any]:
         "fields": "\n".join(f"    double {name}[{k}];" for name, k in lengths.items() if k),
         "size": 8 * sum(lengths.values()),
         "actions": "\n".join(f"#define CONTROLLER_{each.name} {each.value}" for each in Action),
-        "has_reference": step.samples,
+        "has_reference": step.plan.samples,
     }
 
 
@@ -166,20 +166,19 @@ def _about(robot: Robot, dt: float, code: _Code) -> dict[str, Any]:
 
 def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
     """Translate a shield, whose twists are those of one frame; returns what `code_of` does."""
-    plan, *_, memory, _ = shield.layout(frame)
+    plan, _, memory, _ = shield.layout(frame)
     code = _Code("NULL", "NULL", "NULL", "NULL")
-    joint = plan.joint._replace(step=code.numbered(plan.joint.step))
-    twist = plan.twist._replace(step=code.numbered(plan.twist.step))
-    text = code.initializer("plan", plan._replace(joint=joint, twist=twist))
+    text = code.initializer("plan", plan._replace(step=code.numbered(plan.step)))
+    code.unfold()
     kernels = (
         *(arm_state, rest_arm, halt_arm, send_arm, step_arm),
         *(place_arm, motion_of, margin_of, stopping_time_of),
     )
     calls = {source_of(each).__name__: code.kernel(each) for each in kernels}
     centers = ArmState.of(memory, *plan.sizes).obstacles.ravel().tolist()
-    arrays = plan.joint.step.arrays
+    arrays = plan.step.arrays
     n, m, _ = arrays.sizes[:3]
-    taken = 8 * n * (n + m + 10) + 2 * plan.twist.width
+    taken = 8 * n * (n + m + 10) + 2 * plan.width
     taken += 2 * arrays.constants.size + 12 * (len(arrays.placements) + 4 * n) + memory.size
     avoidance = avoidance_of(shield)
     obstacles = avoidance.obstacles if avoidance else ()
@@ -298,6 +297,10 @@ class _Code:
         """Return the initializer of a named tuple, a number or an array, by its path in C."""
         own = self._value(path, own)
         return own.initializer if isinstance(own, Value) else own
+
+    def unfold(self) -> None:
+        """Take no member of the plan for a constant: a step of an arm makes such tuples anew."""
+        self._translator.plan.clear()
 
     def _value(self, path: str, own: Any) -> Value | str:
         """Write values outside of the struct as constants; return their address or initializer."""

@@ -94,6 +94,9 @@ LEVELS = 15
 LOWER = 0.7
 """Ratio of each of them to the one before."""
 
+SLACK = 1e-9
+"""Relative excess of a period that is rounding."""
+
 
 class Rates(NamedTuple):
     """Limits of a joint on the derivatives of its position; inf for none.
@@ -179,24 +182,42 @@ class Periods(NamedTuple):
 
     Attributes:
         dt: Period over which changes of the command are measured [s].
-        hold: Longest time for which the command may be held [s].
+        expected: Time for which the command is expected to be held [s].
+        hold: Longest time for which it may be held [s].
         longest: Longest period that may come [s].
         fraction: Part of a distance that is gone in the stated periods at least: 1, or dt / T where
             nobody states them and they may last T.
         vary: Whether periods differ.
+        exceeded: Whether the stated one is above the longest.
     """
 
     dt: float
+    expected: float
     hold: float
     longest: float
     fraction: float
     vary: bool
+    exceeded: bool
 
 
 @compiled
 def constant_periods(dt: float) -> Periods:
     """Return the periods of a loop whose period [s] is constant."""
-    return Periods(dt, dt, dt, 1.0, False)
+    return Periods(dt, dt, dt, dt, 1.0, False, False)
+
+
+@compiled
+def periods_of(nominal: float, longest: float, dt: float, elapsed: float) -> Periods:
+    """Return `stated_periods`, where 0 is a period that is not stated, or no longest one."""
+    hold = dt if dt > 0.0 else nominal
+    if longest == 0.0:
+        return constant_periods(hold)
+    exceeded = max(dt, elapsed) > longest * (1.0 + SLACK)
+    if dt > 0.0:
+        return Periods(dt, dt, dt, longest, 1.0, True, exceeded)
+    if elapsed > 0.0:
+        return Periods(elapsed, nominal, longest, longest, 1.0, True, exceeded)
+    return Periods(nominal, nominal, nominal, nominal, nominal / longest, True, False)
 
 
 def checked_longest(longest: float | None, dt: float) -> float | None:
@@ -226,14 +247,9 @@ def stated_periods(
         )
     if elapsed is not None and longest is None:
         raise InvalidInputError("elapsed", "needs a longest_period", elapsed)
-    hold = nominal if dt is None else checks.positive("dt", dt)
-    if longest is None:
-        return constant_periods(hold)
-    if dt is not None:
-        return Periods(hold, hold, longest, 1.0, True)
-    if elapsed is not None:
-        return Periods(checks.positive("elapsed", elapsed), longest, longest, 1.0, True)
-    return Periods(nominal, nominal, nominal, nominal / longest, True)
+    said = 0.0 if dt is None else checks.positive("dt", dt)
+    passed = 0.0 if elapsed is None else checks.positive("elapsed", elapsed)
+    return periods_of(nominal, longest or 0.0, said, passed)
 
 
 @compiled
@@ -394,6 +410,15 @@ def joint_rates(limits: MotionConstants, i: int) -> Rates:
 
 
 @compiled
+def state_periods(limits: MotionConstants, periods: Periods) -> None:
+    """Write the periods of a step among the constants of `MotionLimits`."""
+    limits.dt = periods.dt
+    limits.hold = periods.hold
+    limits.longest = periods.longest
+    limits.fraction = periods.fraction
+
+
+@compiled
 def motion_limits(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
@@ -405,9 +430,10 @@ def motion_limits(
     if not step.rate < np.inf:
         return
     limits = MotionConstants.of(constants)
-    periods = constant_periods(1.0 / step.rate)
+    dt = 1.0 / step.rate
+    periods = constant_periods(dt)
     if limits.dt > 0.0:
-        periods = Periods(limits.dt, limits.hold, limits.longest, limits.fraction, True)
+        periods = Periods(limits.dt, dt, limits.hold, limits.longest, limits.fraction, True, False)
     for i in range(step.q.size):
         above = limits.upper[i] - step.q[i]
         below = step.q[i] - limits.lower[i]
@@ -781,7 +807,15 @@ def _ceiling_below_velocity_limit(
     the distance at constant deceleration: the lower the deceleration, the less.
     """
     # Below a limit that shrinks, the stopping path is counted at the samples.
-    own = Periods(periods.dt, periods.hold, periods.longest, periods.fraction, True)
+    own = Periods(
+        periods.dt,
+        periods.expected,
+        periods.hold,
+        periods.longest,
+        periods.fraction,
+        True,
+        periods.exceeded,
+    )
     deceleration = rates.deceleration
     for level in range(LEVELS):
         slower = Rates(

@@ -249,7 +249,6 @@ class ProgramArrays(NamedTuple):
         placements: `Kinematics.placements`, (frames, 12).
         support: `Robot.support`, (frames, dof).
         inertia: `Kinematics.inertia`, (dof, dof).
-        rate: Inverse of the control period [1/s]; inf outside of a loop.
         tip: Index of the first tracked frame.
     """
 
@@ -260,7 +259,6 @@ class ProgramArrays(NamedTuple):
     placements: Matrix
     support: Matrix
     inertia: Matrix
-    rate: float
     tip: int
 
 
@@ -383,8 +381,12 @@ class ProgramLayout:
 
     def constants_of(self, kind: type[Part]) -> list[Vector]:
         """Return the constants of each part of a kind, views."""
-        found = [block for block in self.blocks if isinstance(block.part, kind)]
+        found = [self.blocks[k] for k in self.places_of(kind)]
         return [self.constants[block.start : block.stop] for block in found]
+
+    def places_of(self, kind: type[Part]) -> list[int]:
+        """Return the numbers of the blocks of the parts of a kind."""
+        return [k for k, block in enumerate(self.blocks) if isinstance(block.part, kind)]
 
     @property
     def least(self) -> Vector:
@@ -407,8 +409,9 @@ class ProgramLayout:
         counts = [task.row_count(self.robot) for task in self.tasks]
         return np.repeat([task.row_weight for task in self.tasks], counts)
 
-    def arrays(self, dt: float) -> ProgramArrays:
-        """Return the arrays with which compiled code writes programs of a control period [s]."""
+    @property
+    def arrays(self) -> ProgramArrays:
+        """The arrays with which compiled code writes programs."""
         return ProgramArrays(
             ProgramSizes(*self.sizes, self.robot.dof, len(self.pairs), len(self.target_frames)),
             self.table,
@@ -417,7 +420,6 @@ class ProgramLayout:
             self.kinematics.placements,
             self.kinematics.robot.support,
             self.kinematics.inertia,
-            1.0 / dt if dt < np.inf else np.inf,
             self.robot.frame_id(self.target_frames[0]),
         )
 
@@ -474,7 +476,10 @@ class ProgramLayout:
         self.kinematics.update(q)
         self.refresh(q, last, targets, t, dt)
         kept = self.least if least is None else least
-        assemble(data, self.arrays(dt), q, last, before, kept, targets, float(t))
+        arrays = self.arrays
+        rate = 1.0 / dt if dt < np.inf else np.inf
+        step = StepViews(float(t), rate, q, last, before, *arrays[3:7], targets, kept)
+        assemble(data, arrays, step)
         return QP.from_data(data, self.sizes)
 
     def settings(self) -> dict[str, object]:
@@ -525,41 +530,14 @@ def block_constants(arrays: ProgramArrays, k: int) -> Vector:
 
 
 @compiled
-def assemble(
-    data: Vector,
-    arrays: ProgramArrays,
-    q: Vector,
-    last: Vector,
-    before: Vector,
-    least: Vector,
-    targets: Matrix,
-    t: float,
-) -> None:
+def assemble(data: Vector, arrays: ProgramArrays, step: StepViews) -> None:
     """Write the rows of all parts into a program.
 
     Args:
         data: The program, `QP.data`, (size,), overwritten.
         arrays: `ProgramLayout.arrays`.
-        q: Joint positions [rad], (dof,).
-        last: Last command [rad/s], (dof,).
-        before: Command before the last one [rad/s], (dof,).
-        least: Distance that each watched pair has to keep [m], (pairs,), brought up to date.
-        targets: Targets of the tracked frames, (k, 18).
-        t: Time [s].
+        step: The instant; the distances that watched pairs keep are brought up to date.
     """
-    step = StepViews(
-        t,
-        arrays.rate,
-        q,
-        last,
-        before,
-        arrays.jacobian,
-        arrays.placements,
-        arrays.support,
-        arrays.inertia,
-        targets,
-        least,
-    )
     qp = program_views(data, arrays.sizes)
     data[:] = 0.0
     qp.lb[:] = -np.inf
@@ -571,7 +549,7 @@ def assemble(
         first = entry[Column.FIRST]
         end = first + entry[Column.ROWS]
         own = block_constants(arrays, k)
-        target = TargetData.of(targets[entry[Column.TARGET]])
+        target = TargetData.of(step.targets[entry[Column.TARGET]])
         if kind == BlockKind.COST:
             enter_cost(address, step, own, qp.P, qp.q)
         elif kind == BlockKind.TASK:
@@ -580,20 +558,20 @@ def assemble(
             A = np.zeros((end - first, qp.q.size))
             b = np.zeros(end - first)
             enter_task(address, step, own, target, A, b)
-            add_soft(qp, A, b, arrays.constants[entry[Column.STOP]])
+            add_soft(qp.P, qp.q, A, b, arrays.constants[entry[Column.STOP]])
         else:
             enter_limit(address, step, own, qp.G[first:end], qp.h[first:end], qp.lb, qp.ub)
 
 
 @compiled
-def add_soft(qp: QPViews, A: Matrix, b: Vector, weight: float) -> None:
+def add_soft(P: Matrix, q: Vector, A: Matrix, b: Vector, weight: float) -> None:
     """Add weight A^T A to P and -weight A^T b to q, for rows A (rows, n) and b (rows,)."""
     for k in range(b.size):
-        for i in range(qp.q.size):
+        for i in range(q.size):
             scaled = weight * A[k, i]
-            qp.q[i] -= scaled * b[k]
-            for j in range(qp.q.size):
-                qp.P[i, j] += scaled * A[k, j]
+            q[i] -= scaled * b[k]
+            for j in range(q.size):
+                P[i, j] += scaled * A[k, j]
 
 
 class LimitNames:

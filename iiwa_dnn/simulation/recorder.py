@@ -175,8 +175,8 @@ class Recorder:
         if multipliers.any():
             qp = command.qp
             bounds = np.array([qp.lb, qp.ub])
-            periods = self.layout.periods
-            kinds = self._names.codes(bounds, multipliers, command.motion_state, periods)
+            state = command.motion_state
+            kinds = self._names.codes(bounds, multipliers, state, command.periods)
             self._array("bound_kind")[k] = kinds
 
     def _add_kinetic_index(self, steps: slice, ended: bool) -> None:

@@ -83,7 +83,7 @@ def test_a_command_that_is_rate_limited_is_within_its_bounds(limits: str, policy
 
 def test_the_excess_of_an_answer_counts_its_rows_and_a_multiplier_needs_its_bound() -> None:
     qp = d.QP(np.eye(2), np.zeros(2), G=[[1.0, 1.0]], h=[0.5], lb=[-1.0] * 2, ub=[1.0] * 2)
-    layout = lay_out_log(ProgramSizes(*qp.sizes, 2, 0, 0), None, 1e-3)
+    layout = lay_out_log(ProgramSizes(*qp.sizes, 2, 0, 0), None)
     row = np.zeros((1, layout.width))
     log = log_of(row, layout.sizes)
     log.program[:] = qp.data

@@ -56,7 +56,7 @@ def test_an_active_limit_has_a_multiplier_and_no_slack() -> None:
     """Multipliers of rounding, and such as decay after the joint has left its bound, do not act."""
     rows = [[1.0, 0.0], [-1.0, 0.0], [1.0, 1.0]]
     qp = d.QP(np.eye(2), np.zeros(2), rows, [1.0, 0.0, 2.0], lb=[-1.0, -2.0], ub=[1.0, 1.5])
-    layout = lay_out_log(ProgramSizes(*qp.sizes, 2, 0, 1), None, 1e-3)
+    layout = lay_out_log(ProgramSizes(*qp.sizes, 2, 0, 1), None)
     for x, z, z_box, active_rows, active_bounds in (
         ([1.0, 1.0], [2.0, 3.0, 1e-16], [1e-16, 1e-16], [2.0, 0.0, 0.0], [0.0, 0.0]),
         ([1.0, -2.0], [1e-9, 0.0, 40.0], [0.5, -0.1], [0.0, 0.0, 0.0], [0.5, -0.1]),

@@ -61,7 +61,7 @@ int controller_step(struct controller *c, const double *q, const double *target,
     }
     memcpy(log.targets.data, target, sizeof(double) * 18 * CONTROLLER_FRAMES);
     @kinematics@&model, joints, plan.arrays.jacobian, plan.arrays.placements, plan.arrays.inertia);
-    const ptrdiff_t action = @take_step@data, &plan, joints, motion_state, next_motion_state, state, t, false);
+    const ptrdiff_t action = @take_step@data, &plan, joints, motion_state, next_motion_state, state, t);
     if (full || action == CONTROLLER_INVALID) {
         memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
         return CONTROLLER_INVALID;

@@ -7,5 +7,5 @@ void controller_target(struct controller *c, double t, double *target)
     const Matrix targets = {target, CONTROLLER_FRAMES, 18};
     const Vector numbers = {c->motion_state, @motion@};
     const control_state_MotionState motion = control_state_MotionState_of(numbers, CONTROLLER_DOF, @pairs@);
-    @sample@&plan.paths, t - motion.at->path_lag, targets);
+    @sample@&plan.paths, t - motion.at->path_lag, CONTROLLER_DT, targets);
 }
