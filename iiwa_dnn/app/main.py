@@ -9,6 +9,7 @@ from typing import Any
 from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes
 from tyro.extras import subcommand_cli_from_dict
 
+from iiwa_dnn.app.collisions import collisions
 from iiwa_dnn.app.command_line import guard
 from iiwa_dnn.app.replay import view
 from iiwa_dnn.app.sweeps import atlas, paper
@@ -23,6 +24,7 @@ COMMANDS: dict[str, Any] = {
     "paper": paper,
     "atlas": atlas,
     "view": view,
+    "collisions": collisions,
 }
 
 

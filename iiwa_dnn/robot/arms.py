@@ -77,6 +77,9 @@ ARMS = {
         "panda_hand_tcp",
         (0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
     ),
+    "so101": Arm(
+        "so_arm_description/urdf/so101.urdf", "gripper_frame_link", (0.0, -0.6, 0.6, 0.8, 0.0)
+    ),
     "talos_left": Arm(
         _TALOS,
         "gripper_left_base_link",

@@ -10,10 +10,13 @@ start posture, among them those of capsules that overlap in every posture.
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from itertools import combinations, product
+from pathlib import Path
+from time import perf_counter
 
 import coal
 import numpy as np
@@ -108,19 +111,38 @@ class CollisionModel:
             raise FileError(path, f"no collision geometry: {one_line(error)}") from error
 
 
+def collision_file(robot: Robot) -> Path:
+    """Return the file of a robot's collision geometry, whether it exists or not.
+
+    Raises:
+        InvalidInputError: The robot does not come from a file.
+    """
+    path = source_of(robot)[0]
+    if robot.name in ARMS and ARMS[robot.name].path == path:
+        path = robots_folder() / robot.name / robot.name  # the arm's folder is somebody else's
+    return path.with_suffix(".collisions.toml")
+
+
 @lru_cache(maxsize=32)
 def collision_model(robot: Robot) -> CollisionModel:
     """Read the collision geometry of a robot, or make it where it has no file; none is written.
+
+    If that takes more than a second, a warning says how to keep it.
 
     Raises:
         InvalidInputError: The robot does not come from a file.
         FileError: The file of the geometry is damaged, or a mesh cannot be read.
     """
-    path = source_of(robot)[0]
-    if robot.name in ARMS and ARMS[robot.name].path == path:
-        path = robots_folder() / robot.name / robot.name  # the arm's folder is somebody else's
-    file = path.with_suffix(".collisions.toml")
-    return CollisionModel.load(file) if file.exists() else make_collision_model(robot)
+    file = collision_file(robot)
+    if file.exists():
+        return CollisionModel.load(file)
+    began = perf_counter()
+    model = make_collision_model(robot)
+    if (taken := perf_counter() - began) > 1.0:
+        problem = f"capsules and pairs of {robot.name} took {taken:.1f} s"
+        advice = f"`iiwa-dnn collisions` keeps them beside {robot.path}"
+        warnings.warn(f"{problem}; {advice}", stacklevel=2)
+    return model
 
 
 @lru_cache(maxsize=32)
@@ -143,47 +165,41 @@ def make_collision_model(robot: Robot, samples: int = SAMPLES) -> CollisionModel
     Postures are drawn evenly within the robot's limits, with a fixed seed.
     """
     whole = CollisionModel(tuple(_capsules(robot)), ())
+    links = [capsule.link for capsule in whole.capsules]
+    joints = {link: _joint(robot, link) for link in links}
     pairs = whole.pairs(robot)
-    postures = robot.draw(np.random.default_rng(0), samples)
-    distances = _distances(robot, whole, pairs, np.vstack([robot.start_posture(), postures]))
-    of_links: dict[tuple[str, str], checks.Array] = {}
-    for (i, k), column in zip(pairs, distances.T, strict=True):
-        links = (whole.capsules[i].link, whole.capsules[k].link)
-        of_links[links] = np.minimum(of_links.get(links, np.inf), column)
-    reasons = {links: _reason(robot, links, nearest) for links, nearest in of_links.items()}
-    return CollisionModel(
-        whole.capsules, tuple((*links, why) for links, why in reasons.items() if why)
-    )
+    of_links: dict[tuple[str, str], set[int]] = {}
+    for number, (i, k) in enumerate(pairs):
+        of_links.setdefault((links[i], links[k]), set()).add(number)
+    geometry = coal_geometry(robot, whole, pairs)
+    near = _near_pairs(robot, geometry, robot.draw(np.random.default_rng(0), samples))
+    at_start = _near_pairs(robot, geometry, robot.start_posture()[np.newaxis])
+    left_out = []
+    for (first, second), numbers in of_links.items():
+        if robot.model.parents[joints[second]] == joints[first]:
+            left_out.append((first, second, "adjacent"))
+        elif not numbers & near:
+            left_out.append((first, second, "never"))
+        elif numbers & at_start:
+            left_out.append((first, second, "start"))
+    return CollisionModel(whole.capsules, tuple(left_out))
 
 
-def _reason(robot: Robot, links: tuple[str, str], distances: checks.Array) -> str:
-    """Say why two links need no watching; "" if they do.
-
-    Args:
-        robot: The robot.
-        links: Both links, the one nearer to the base first.
-        distances: Their distances in the start posture and in random ones, (1 + k,) [m].
-    """
-    first, second = (_joint(robot, link) for link in links)
-    if robot.model.parents[second] == first:
-        return "adjacent"
-    if distances[1:].min() > CLEARANCE:
-        return "never"
-    return "start" if distances[0] <= CLEARANCE else ""
-
-
-def _distances(
-    robot: Robot, model: CollisionModel, pairs: list[tuple[int, int]], postures: checks.Array
-) -> checks.Array:
-    """Compute the distance of each pair [m] in each posture (k, n) by coal, (k, pairs)."""
-    geometry = coal_geometry(robot, model, pairs)
+def _near_pairs(robot: Robot, geometry: pin.GeometryModel, postures: checks.Array) -> set[int]:
+    """Number the pairs that come within `CLEARANCE` in one of the postures (k, n), by coal."""
     data = robot.model.createData()
     scratch = pin.GeometryData(geometry)
-    distances = np.empty((len(postures), len(pairs)))
-    for row, q in zip(distances, postures, strict=True):
-        pin.computeDistances(robot.model, data, geometry, scratch, q)
-        row[:] = [result.min_distance for result in scratch.distanceResults]
-    return distances
+    for request in scratch.collisionRequests:
+        request.security_margin = CLEARANCE
+    near: set[int] = set()
+    for q in postures:
+        if pin.computeCollisions(robot.model, data, geometry, scratch, q):
+            results = enumerate(scratch.collisionResults)
+            found = {i for i, result in results if result.isCollision()} - near
+            for i in found:
+                scratch.deactivateCollisionPair(i)
+            near |= found
+    return near
 
 
 def coal_geometry(

@@ -7,6 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import coal
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
@@ -37,10 +38,15 @@ def read_shapes(robot: Robot, kind: pin.GeometryType) -> pin.GeometryModel:
         InvalidInputError: The robot does not come from a file.
         ValueError, RuntimeError: A mesh is missing or damaged.
     """
-    path, text = source_of(robot)
+    return _read(robot.model, *source_of(robot), kind).copy()
+
+
+@lru_cache(maxsize=8)  # meshes of 100,000 triangles take a second
+def _read(model: pin.Model, path: Path, text: str, kind: pin.GeometryType) -> pin.GeometryModel:
     folders = [str(folder) for folder in (*path.absolute().parents, *path.resolve().parents)]
+    loader = coal.CachedMeshLoader(coal.BV_OBB)  # half of the default's time
     with parser_messages():  # which were told when the robot was loaded
-        return pin.buildGeomFromUrdfString(robot.model, text, kind, package_dirs=folders)
+        return pin.buildGeomFromUrdfString(model, text, kind, None, folders, loader)
 
 
 def visual_shapes(robot: Robot) -> pin.GeometryModel:

@@ -34,7 +34,8 @@ def test_every_arm_starts_inside_its_limits_and_not_singular(name: str) -> None:
         np.testing.assert_array_equal(robot.start_posture(), ARMS[name].start)
     other = dataclasses.replace(robot, name="some")
     locked = d.load_robot(name, locked=robot.joint_names[0])
-    for start, least in ((robot, 0.1), (other, 0.1), (locked, 0.01)):
+    free = 0.05 if name == "so101" else 0.1  # small, and its start is chosen by positions
+    for start, least in ((robot, free), (other, free), (locked, 0.01)):
         q = start.start_posture()
         assert is_inside(start, q)
         assert np.linalg.svd(d.Configuration(start, q).jacobian, compute_uv=False)[-1] >= least
@@ -60,7 +61,8 @@ def test_a_start_where_limits_are_on_one_side_or_on_none(lower: object, upper: o
 
 @pytest.mark.parametrize(
     ("name", "orientation"),
-    [*product(ARMS, ["so3"]), *product(["ur5", "panda"], ["none"])],
+    # The five joints of the SO-101 have no pose to choose.
+    [*product(sorted({*ARMS} - {"so101"}), ["so3"]), *product(["ur5", "panda", "so101"], ["none"])],
 )
 def test_the_heart_with_any_redundancy(name: str, orientation: str) -> None:
     robot = d.load_robot(name)

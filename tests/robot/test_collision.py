@@ -1,5 +1,6 @@
 """Collision geometry: capsules around the shapes of the URDF, the pairs that may meet."""
 
+import dataclasses
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,12 @@ import pytest
 
 import iiwa_dnn
 from iiwa_dnn.robot import collision
-from iiwa_dnn.robot.collision import collision_model, make_collision_model, unwatched_links
+from iiwa_dnn.robot.collision import (
+    coal_geometry,
+    collision_model,
+    make_collision_model,
+    unwatched_links,
+)
 
 BALL = iiwa_dnn.Sphere([0.36, 0.16, 0.64], 0.05)
 
@@ -30,7 +36,7 @@ def points_of(shape: Any) -> np.ndarray:
 
 
 @pytest.mark.parametrize("make", [collision_model, partial(make_collision_model, samples=9)])
-@pytest.mark.parametrize("name", ["iiwa7", "iiwa7_dual", "fr3", "panda", "ur5", "xarm7", "kinova"])
+@pytest.mark.parametrize("name", ["iiwa7", "iiwa7_dual", "fr3", "panda", "ur5", "xarm7", "so101"])
 def test_capsules_hold_the_shapes_of_the_urdf_and_are_not_much_larger(name: str, make: Any) -> None:
     robot = iiwa_dnn.load_robot(name)
     assert unwatched_links(robot) == ()
@@ -39,22 +45,28 @@ def test_capsules_hold_the_shapes_of_the_urdf_and_are_not_much_larger(name: str,
     shapes = pin.buildGeomFromUrdfString(
         robot.model, robot.urdf, pin.GeometryType.COLLISION, package_dirs=folders
     )
-    volumes: dict[str, list[float]] = {}
+    links: dict[str, list[np.ndarray]] = {}
+    meshes = set()
     for shape in shapes.geometryObjects:
         frame = robot.model.frames[shape.parentFrame]
         place = frame.placement.actInv(shape.placement)
         points = points_of(shape.geometry) @ place.rotation.T + place.translation
-        away = []
-        for capsule in (each for each in model.capsules if each.link == frame.name):
+        links.setdefault(frame.name, []).append(points)
+        if hasattr(shape.geometry, "vertices"):
+            meshes.add(frame.name)
+    for link, parts in links.items():
+        points = np.vstack(parts)
+        away, volumes = [], []
+        for capsule in (each for each in model.capsules if each.link == link):
             a = np.array(capsule.a)
             axis = np.array(capsule.b) - a
             along = np.clip((points - a) @ axis / max(axis @ axis, 1e-12), 0.0, 1.0)
             away.append(np.linalg.norm(points - a - along[:, None] * axis, axis=1) - capsule.radius)
             length = float(np.linalg.norm(axis)) + 4.0 / 3.0 * capsule.radius
-            volumes.setdefault(frame.name, []).append(np.pi * capsule.radius**2 * length)
+            volumes.append(np.pi * capsule.radius**2 * length)
         assert np.min(away, axis=0).max() < 3e-5
-        if hasattr(shape.geometry, "vertices"):
-            assert min(volumes[frame.name]) < 4.0 * np.prod(np.ptp(points, axis=0))
+        if link in meshes:
+            assert min(volumes) < 4.0 * np.prod(np.ptp(points, axis=0))
 
 
 def arm_of(folder: Path, **bodies: str) -> iiwa_dnn.Robot:
@@ -109,6 +121,37 @@ def test_a_pair_is_watched_if_it_may_come_near(gap, joint_1, reason, tmp_path) -
     assert ({"base", "p2"} in watched) == (reason is None)
     still = robot.with_limits(*(robot.start_posture() + [[-0.01], [0.01]]))  # it never comes near
     assert make_collision_model(still).pairs(robot) == []
+
+
+@pytest.mark.parametrize("name", ["fr3", "so101"])
+def test_pairs_are_those_of_all_distances(name: str) -> None:
+    robot = iiwa_dnn.load_robot(name)
+    model = make_collision_model(robot, samples=300)
+    reasons = {frozenset(links): why for *links, why in model.left_out}
+    whole = dataclasses.replace(model, left_out=())
+    pairs = whole.pairs(robot)
+    geometry = coal_geometry(robot, whole, pairs)
+    data, scratch = robot.model.createData(), pin.GeometryData(geometry)
+    postures = [robot.start_posture(), *robot.draw(np.random.default_rng(0), 300)]
+    distances = []
+    for q in postures:
+        pin.computeDistances(robot.model, data, geometry, scratch, q)
+        distances.append([result.min_distance for result in scratch.distanceResults])
+    links = [frozenset(model.capsules[i].link for i in pair) for pair in pairs]
+    for each in set(links):
+        start, *others = np.array(distances)[:, [other == each for other in links]].min(axis=1)
+        expected = "never" if min(others) > 0.02 else "start" if start <= 0.02 else None
+        assert reasons.get(each) in (expected, "adjacent")
+    assert len(set(reasons.values())) > 1
+
+
+def test_pairs_that_take_long_are_said(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(collision, "perf_counter", iter([0.0, 0.9, 0.0, 2.5]).__next__)
+    robot = arm_of(tmp_path, p1=COVER)
+    assert collision_model(robot) is collision_model(robot)  # once
+    said = f"^capsules and pairs of arm took 2.5 s; .* beside {robot.path}$"
+    with pytest.warns(UserWarning, match=said):
+        collision_model(robot.with_limits(upper=0.5))
 
 
 def test_a_controller_warns_of_links_that_no_row_watches(tmp_path, monkeypatch) -> None:
