@@ -19,6 +19,7 @@ import matplotlib.style
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
+from scipy.interpolate import CubicSpline
 
 import iiwa_dnn
 from iiwa_dnn.files import write_text
@@ -235,14 +236,12 @@ def waypoints() -> Figure:
     points = np.column_stack([np.zeros((4, 2)), heights])
     t = np.linspace(0.0, 7.0, 400)
     made, axes = panels(1, 2.2)
+    cubic = CubicSpline(times, heights, bc_type="clamped")
+    axes.plot(t, 1e2 * cubic(t), color=ORANGE, label="cubic spline")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # names the exchanged rows
-        for label, color, options in (
-            ("cubic spline", ORANGE, {"interpolation": "cubic"}),
-            ("Waypoints", BLUE, {}),
-        ):
-            path = iiwa_dnn.Waypoints(times, points, **options)
-            axes.plot(t, 1e2 * path.sample(t).position[:, 2], color=color, label=label)
+        path = iiwa_dnn.Waypoints(times, points)
+    axes.plot(t, 1e2 * path.sample(t).position[:, 2], color=BLUE, label="Waypoints")
     axes.plot(times, 1e2 * heights, "o", color=INK, label="rows")
     axes.set(xlabel="time [s]", ylabel="height [cm]")
     put_legend(axes)

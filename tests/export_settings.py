@@ -91,7 +91,7 @@ def tilting() -> Made:
     points = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02, 0.03, 0.0], [0.0, 0.0, 0.01]]
     turns = np.eye(4)[[0, 0, 0, 0]]
     turns[1:3, [1, 2]] = np.diag([0.02, 0.03])
-    path = d.Waypoints([0.0, 0.5, 1.0, 1.5], points, "clamped", turns, "cubic")
+    path = d.Waypoints([0.0, 0.5, 1.0, 1.5], points, quaternions=turns)
     return drawing(path=d.Tilting(path))
 
 

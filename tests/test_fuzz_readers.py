@@ -34,7 +34,7 @@ TOKENS = [
 ]  # fmt: skip
 
 Rng = np.random.Generator
-CASES = 300
+CASES = 320
 
 
 def token(rng: Rng) -> bytes:

@@ -26,7 +26,6 @@ def reference(number: int, size: float, rng: np.random.Generator) -> iiwa_dnn.Re
         iiwa_dnn.Waypoints(
             np.linspace(0.0, period, 5),
             size * rng.standard_normal((5, 3)),
-            interpolation="cubic",
         ),
     )
     return paths[number % 5]

@@ -9,16 +9,14 @@ interpolation
     F. N. Fritsch and J. Butland, "A method for constructing local monotone piecewise cubic
     interpolants", SIAM J. Sci. Stat. Comput. 5, 300-304 (1984),
 
-and between such rows the path is the cubic spline of these end slopes, until no piece offends.
-Velocity is continuous, and acceleration jumps at the exchanged rows alone. Positions are judged
-axis by axis: what stands still along one axis, above a table, does so whatever the others do. A
-turn has no such axes: it is judged by its rotation vector's length, and rests at an exchanged row.
+and the others are solved for again, so that the acceleration is continuous at their rows, until no
+piece offends. Velocity is continuous everywhere. Positions are judged axis by axis: what stands
+still along one axis, above a table, does so whatever the others do. Quaternions have no such axes
+and are judged by the length of their steps.
 
 Rows that were recorded with noise are smoothed before by splines that stay within it.
 """
 
-from collections.abc import Callable, Iterator
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,23 +26,12 @@ from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import InvalidInputError
 
 Mask = NDArray[np.bool_]
-Rows = NDArray[np.intp]
 
 ALLOWED = 0.25
 """Excursion of a piece beyond its rows that is allowed, in smaller neighbouring steps."""
 
 _ROUNDING = 1e-9
 """Part of the largest step below which a step or an excursion counts as none."""
-
-_BESIDE = 1e-10
-"""Least time between the two equal rows at which a turn rests [s]."""
-
-_MISSES = 1e-9
-"""Distance of a piece's end from its next pose above which scipy's iterations diverged [rad]."""
-
-_ROUNDS = 6
-"""Rounds before and after a closed path of turns, whose ends are then without effect."""
-
 
 _MISSED = 1.2
 """Ratio of the squared distances that FITPACK has left to the noise from which on rows stay."""
@@ -54,161 +41,95 @@ class Spline(NamedTuple):
     """A spline's pieces, and the rows at which its acceleration jumps.
 
     Attributes:
-        pieces: Coefficients of x^3, x^2, x, (p, 3, 3), and of a spline of positions 1, (p, 4, 3).
+        pieces: Coefficients of x^3, x^2, x and 1 of k columns, (p, 4, k).
         jumps: Whether the acceleration jumps where a piece begins, (p,).
-        excursion: Largest one of the cubic spline beyond the rows of a piece that offends [m, rad];
-            inf if the iterations for its turns diverge.
     """
 
     pieces: Array
     jumps: Mask
-    excursion: float
 
 
-def spline_of_positions(times: Array, moves: Array, closed: bool, limited: bool) -> Spline:
-    """Fit a spline to positions (m, 3) [m] at times from 0 (m,) [s], at rest at its ends or closed.
+def spline_through(times: Array, rows: Array, closed: bool, jointly: bool = False) -> Spline:
+    """Fit a spline to rows (m, k) at times (m,) [s], at rest at its ends unless it is closed.
 
-    Args:
-        times: The times.
-        moves: The positions.
-        closed: Whether the path repeats; it ends at rest otherwise.
-        limited: Whether to exchange slopes; the cubic spline otherwise.
+    Its columns are judged one by one, or jointly by the lengths of steps and excursions.
     """
-    from scipy.interpolate import CubicSpline, PchipInterpolator  # 0.3 s for those who use it
-
-    cubic = CubicSpline(times, moves, bc_type="periodic" if closed else "clamped").c
-    # One row more on either side: the next one of a closed path, or one at rest.
-    around = moves[[-2 if closed else 0, *range(len(times)), 1 if closed else -1]]
-    knots = np.cumsum(np.pad(np.diff(times), (2, 1), mode="wrap"))
-    preserving = PchipInterpolator(knots, around).c[:, 1:]
-
-    def fit(knots: Array, rows: Rows, axis: int) -> Any:
-        if len(rows) == 2:  # most segments of a noisy recording
-            return preserving[:, rows[:1]][..., [axis]]
-        ends = [(1, preserving[2, row, [axis]]) for row in (rows[0], rows[-1])]
-        return CubicSpline(knots, moves[rows][:, [axis]], bc_type=ends).c
-
-    steps = np.abs(np.diff(moves, axis=0))
-    return _limited(cubic[..., np.newaxis], fit, steps, times, closed, limited)
-
-
-def spline_of_turns(times: Array, turns: Any, closed: bool, limited: bool) -> Spline:
-    """Fit a spline to turns, a `Rotation` of m; the other arguments as of `spline_of_positions`.
-
-    Returns:
-        The spline of each piece's rotation vector, about the axes of the piece's first pose.
-    """
-
-    def fit(knots: Array, rows: Rows, axis: int = 0) -> Array:
-        # At rest by rows that are given twice.
-        beside = max(_BESIDE, 4.0 * np.spacing(knots[-1]))
-        twice = np.array([knots[0] - beside, *knots, knots[-1] + beside])
-        return _turning(twice, turns[np.pad(rows, 1, mode="edge")])[:, 1:-1]
+    from scipy.interpolate import CubicHermiteSpline, PchipInterpolator  # 0.3 s for those who do
 
     count = len(times) - 1
-    if closed:
-        rows = np.arange(-_ROUNDS * count, (_ROUNDS + 1) * count + 1)
-        rounds = _turning(rows // count * times[-1] + times[rows % count], turns[rows % count])
-        cubic = rounds[:, _ROUNDS * count :][:, :count]
-    else:
-        cubic = fit(times, np.arange(count + 1))
-    steps = (turns[:-1].inv() * turns[1:]).magnitude()[:, np.newaxis]
-    return _limited(cubic[:, :, np.newaxis], fit, steps, times, closed, limited)
-
-
-def _limited(
-    cubic: Array,
-    fit: Callable[[Array, Rows, int], Array],
-    steps: Array,
-    times: Array,
-    closed: bool,
-    limited: bool,
-) -> Spline:
-    """Replace slopes at the ends of pieces that overshoot, until none does.
-
-    Args:
-        cubic: Pieces of the cubic spline along k axes, (3 or 4, p, k, 3 / k).
-        fit: Fits those of one axis, (3 or 4, r, 3 / k), between rows with exchanged slopes, whose
-            times and numbers are (r + 1,).
-        steps: Distances between the rows along each axis, or angles, (p, k).
-        times: Times of the rows (p + 1,) [s].
-        closed: Whether the path repeats.
-        limited: Whether pieces may offend at all.
-    """
-    beside = np.pad(steps, ((1, 1), (0, 0)), mode="wrap" if closed else "reflect")
-    allowed = ALLOWED * np.minimum(beside[:-2], beside[2:]) + _ROUNDING * steps.max()
-    pauses = steps.max(axis=1, keepdims=True) <= _ROUNDING * steps.max()
-    offending = np.zeros(steps.shape, bool)
-    excursion = 0.0
+    if not closed:  # a piece back to the start, at rest at both ends, which is not kept
+        times = np.append(times, 2.0 * times[-1] - times[-2])
+        rows = np.vstack([rows, rows[:1]])
+    lengths = np.diff(times)
+    steps = _sizes(np.diff(rows, axis=0), jointly)
+    rounding = _ROUNDING * steps[:count].max()
+    pauses = (steps <= rounding).all(axis=1)
+    pauses[count:] = False
+    steps[count:] = np.inf
+    allowed = ALLOWED * np.minimum(np.roll(steps, 1, 0), np.roll(steps, -1, 0)) + rounding
+    allowed[count:] = np.inf
+    around = np.cumsum(np.pad(lengths, (2, 1), mode="wrap"))
+    preserving = PchipInterpolator(around, rows[[-2, *range(len(rows)), 1]]).c[2, 1:-1]
+    at_rest = np.zeros(steps.shape, bool)
+    at_rest[count:] = True  # of an open path alone
+    at_rest[0] = not closed
+    offending = np.tile(pauses[:, np.newaxis], rows.shape[1])
     while True:
-        around = np.pad(offending, ((1, 1), (0, 0)), mode="wrap" if closed else "constant")
-        exchanged = around[:-1] | around[1:]
-        pieces = cubic.copy()
-        for axis in np.flatnonzero(exchanged.any(axis=0)):
-            for knots, rows in _segments(times, exchanged[:, axis], closed):
-                pieces[:, rows[:-1] % len(steps), axis] = fit(knots, rows, axis)
-        excursions = _excursions(pieces, np.diff(times))
-        found = offending | (limited & ((excursions > allowed) | pauses))
+        exchanged = offending | np.roll(offending, 1, axis=0)
+        known = np.where(at_rest, 0.0, np.where(exchanged, preserving, np.nan))
+        slopes = np.stack([_slopes(lengths, *each) for each in zip(rows.T, known.T, strict=True)])
+        if not np.isfinite(slopes).all():
+            problem = "have no spline: they are too far apart, or their times too uneven"
+            raise InvalidInputError("points", problem, rows)
+        pieces = CubicHermiteSpline(times, rows, slopes[:, [*range(len(lengths)), 0]].T).c
+        found = offending | (_sizes(_excursions(pieces, lengths), jointly) > allowed)
         if np.array_equal(found, offending):
             break
-        excursion = excursion or float(excursions.max(initial=0.0, where=found))
         offending = found
-    if not np.isfinite(pieces).all():
-        problem = "scipy finds no spline through rows of times as uneven as these"
-        raise InvalidInputError("times", problem, times)
-    jumps = exchanged[:-1].any(axis=1) & ~(pauses & np.roll(pauses, 1))[:, 0]  # none in a pause
-    jumps[0] &= closed
-    return Spline(pieces.swapaxes(0, 1).reshape(len(steps), -1, 3), jumps, excursion)
+    jumps = exchanged.any(axis=1) & ~(pauses & np.roll(pauses, 1)) & ~at_rest.any(axis=1)
+    return Spline(pieces[:, :count].swapaxes(0, 1), jumps[:count])
 
 
-def _segments(times: Array, exchanged: Mask, closed: bool) -> Iterator[tuple[Array, Rows]]:
-    """Yield times and numbers of the rows from each exchanged one to the next, or to an open end.
+def _sizes(values: Array, jointly: bool) -> Array:
+    """Return the absolute values of k columns, (p, k), or in each of them the length of all."""
+    lengths = np.linalg.norm(values, axis=1, keepdims=True) * np.ones(values.shape[1])
+    return lengths if jointly else np.abs(values)
 
-    A closed path is gone round once from its first exchanged row.
+
+def _slopes(lengths: Array, rows: Array, known: Array) -> Array:
+    """Solve for the slopes of a closed cubic spline at its rows.
+
+    Args:
+        lengths: Lengths of the pieces [s], (p,).
+        rows: The rows, (p + 1,), the last one being the first.
+        known: Slopes that are given, (p,), NaN where the acceleration is to be continuous.
     """
-    ends = exchanged.copy()
-    ends[[0, -1]] |= not closed
-    numbers = np.r_[: len(times), 1 : len(times)]
-    knots = np.append(times, times[-1] + times[1:])
-    found = np.flatnonzero(ends[numbers])[: np.count_nonzero(ends[1:]) + 1]
-    for first, last in pairwise(found):
-        yield knots[first : last + 1], numbers[first : last + 1]
+    from scipy.sparse import csc_array
+    from scipy.sparse.linalg import spsolve
+
+    before = np.roll(lengths, 1)
+    chords = np.diff(rows) / lengths
+    free = np.isnan(known)
+    own = np.where(free, 2.0 * (before + lengths), 1.0)
+    values = np.concatenate([own, free * lengths, free * before])
+    here = np.arange(lengths.size)
+    columns = np.concatenate([here, np.roll(here, 1), np.roll(here, -1)])
+    curved = 3.0 * (lengths * np.roll(chords, 1) + before * chords)
+    matrix = csc_array((values, (np.tile(here, 3), columns)))
+    return np.asarray(spsolve(matrix, np.where(free, curved, known)))
 
 
 @np.errstate(all="ignore")
 def _excursions(pieces: Array, lengths: Array) -> Array:
-    """Compute the overshoot of cubics (3 or 4, p, k, 3 / k) beyond their ends, (p, k)."""
-    powers = np.array([3, 2, 1]).reshape(3, 1, 1, 1)
-    a, b, slope = pieces[:3] * lengths[:, np.newaxis, np.newaxis] ** powers
+    """Compute the overshoot of cubics (4, p, k) beyond their ends, (p, k)."""
+    a, b, slope = pieces[:3] * lengths[:, np.newaxis] ** np.array([3, 2, 1]).reshape(3, 1, 1)
     # The zeros of the derivative, without cancellation; a monotone cubic has none.
     root = -b - np.copysign(np.sqrt(np.maximum(b * b - 3.0 * a * slope, 0.0)), b)
     x = np.clip(np.nan_to_num([root / (3.0 * a), slope / root]), 0.0, 1.0)
     y = x * (slope + x * (b + x * a))
     end = a + b + slope
-    beyond = np.abs(y - np.clip(y, np.minimum(end, 0.0), np.maximum(end, 0.0))).max(axis=0)
-    return np.asarray(np.nan_to_num(np.linalg.norm(beyond, axis=-1), nan=np.inf))
-
-
-@np.errstate(all="ignore")
-def _turning(knots: Array, turns: Any) -> Array:
-    """Fit scipy's spline of turns; NaN where its iterations diverge.
-
-    Diverged pieces may be finite, and so large that rounding leads them past their next pose.
-
-    Returns:
-        Coefficients of x^3, x^2, x, (3, p, 3), about the axes of each piece's first pose.
-    """
-    from scipy.spatial.transform import RotationSpline
-
-    try:
-        pieces = np.array(RotationSpline(knots, turns).interpolator.c[:3])
-    except ValueError:
-        return np.full((3, len(knots) - 1, 3), np.nan)
-    lengths = np.diff(knots)[:, np.newaxis]
-    ends = lengths * (pieces[2] + lengths * (pieces[1] + lengths * pieces[0]))
-    misses = np.abs(ends - (turns[:-1].inv() * turns[1:]).as_rotvec()).max(axis=1)
-    pieces[:, ~(misses <= _MISSES)] = np.nan
-    return pieces
+    beyond = np.abs(y - np.clip(y, np.minimum(end, 0.0), np.maximum(end, 0.0)))
+    return np.asarray(beyond.max(axis=0))
 
 
 def smoothed(times: Array, rows: Array, noise: float, closed: bool) -> Array:

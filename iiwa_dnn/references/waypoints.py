@@ -19,7 +19,6 @@ from iiwa_dnn.checks import (
     Array,
     Checks,
     Matrix,
-    Vector3,
     finite_array,
     not_negative,
     one_of,
@@ -31,25 +30,19 @@ from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.references.base import Reference
-from iiwa_dnn.references.rotations import combined, scaled, triple, turn_target
-from iiwa_dnn.references.splines import (
-    Spline,
-    smoothed,
-    smoothed_turns,
-    spline_of_positions,
-    spline_of_turns,
-)
+from iiwa_dnn.references.rotations import column_of, combined, cross, dot, triple
+from iiwa_dnn.references.splines import Spline, smoothed, smoothed_turns, spline_through
 from iiwa_dnn.references.targets import Target, TargetData
 
 Ends = Literal["clamped", "closed"]
-Interpolation = Literal["limited", "cubic"]
 
 _COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
 
 SLOW = 1e-3
 """Speed [m/s, rad/s] of a path below which its times are likely not in seconds."""
 
-_CLOSED_WITHIN = 1e-9  # [rad]
+_CLOSED_WITHIN = 1e-9
+"""Distance between both ends of a closed path that is rounding [m, rad]."""
 
 _UNIT_WITHIN = 0.01
 """Difference of a quaternion's norm from 1 that is forgiven: rounding to few digits."""
@@ -63,21 +56,22 @@ class WaypointsConstants(Record):
     pieces: Array = part()
 
 
-class Cubic(Record):
-    """Coefficients of a cubic of vectors."""
+class PoseNumbers(Record):
+    """Displacement [m], and scalar and vector part of a quaternion of any length but 0."""
 
-    third: Array = part(3)
-    second: Array = part(3)
-    first: Array = part(3)
-    offset: Array = part(3)
+    scalar: float
+    move: Array = part(3)
+    vector: Array = part(3)
 
 
 class Piece(Record):
-    """Start of a piece [s], and the cubics of its displacement and its turn."""
+    """Start of a piece [s], and coefficients of its cubics, each of `PoseNumbers`."""
 
     start: float
-    move: Cubic = part(Cubic)
-    turn: Cubic = part(Cubic)
+    third: Array = part(7)
+    second: Array = part(7)
+    first: Array = part(7)
+    offset: Array = part(7)
 
 
 @compiled
@@ -95,17 +89,21 @@ def _piece(pieces: Matrix, t: float) -> int:
 
 
 @compiled
-def _change(own: Cubic, x: float) -> Vector3:
-    """Compute a cubic less its offset."""
-    inner = combined(x, triple(own.third), 1.0, triple(own.second))
-    return scaled(x, combined(x, inner, 1.0, triple(own.first)))
-
-
-@compiled
-def _slope(own: Cubic, x: float) -> Vector3:
-    """Compute the derivative of a cubic."""
-    inner = combined(3.0 * x, triple(own.third), 2.0, triple(own.second))
-    return combined(x, inner, 1.0, triple(own.first))
+def turn_by_quaternion(target: TargetData, pose: PoseNumbers, rate: PoseNumbers) -> None:
+    """Turn a target at rest by a quaternion with a rate of change, neither of length 1."""
+    w = pose.scalar
+    u = triple(pose.vector)
+    scale = 2.0 / (w * w + dot(u, u))
+    for j in range(3):
+        column = column_of(target.rotation, j)
+        once = cross(u, column)
+        turned = combined(1.0, column, scale, combined(w, once, 1.0, cross(u, once)))
+        for i in range(3):
+            target.rotation[i, j] = turned[i]
+    change = triple(rate.vector)
+    spin = combined(1.0, cross(u, change), 1.0, combined(w, change, -rate.scalar, u))
+    for i in range(3):
+        target.angular_velocity[i] += scale * spin[i]
 
 
 @compiled
@@ -118,26 +116,31 @@ def waypoints_path(t: float, constants: Array, target: TargetData) -> None:
     moves = 1.0 if repeats or inside == t else 0.0
     piece = Piece.of(pieces[_piece(pieces, inside)])
     x = inside - piece.start
-    moved = combined(1.0, _change(piece.move, x), 1.0, triple(piece.move.offset))
-    velocity = _slope(piece.move, x)
+    values = np.empty(PoseNumbers.width())
+    rates = np.empty(PoseNumbers.width())
+    for i in range(values.size):
+        inner = x * piece.third[i] + piece.second[i]
+        values[i] = x * (x * inner + piece.first[i]) + piece.offset[i]
+        inner = 3.0 * x * piece.third[i] + 2.0 * piece.second[i]
+        rates[i] = moves * (x * inner + piece.first[i])
+    pose = PoseNumbers.of(values)
+    rate = PoseNumbers.of(rates)
     for i in range(3):
-        target.position[i] += moved[i]
-        target.linear_velocity[i] += moves * velocity[i]
-    turn_target(target, triple(piece.turn.offset), (0.0, 0.0, 0.0))
-    rate = scaled(moves, _slope(piece.turn, x))
-    turn_target(target, _change(piece.turn, x), rate)
+        target.position[i] += pose.move[i]
+        target.linear_velocity[i] += rate.move[i]
+    turn_by_quaternion(target, pose, rate)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Waypoints(Reference):
     """A smooth path through points or poses, by cubic splines that stay near their rows.
 
-    Positions follow `scipy.interpolate.CubicSpline`, orientations
-    `scipy.spatial.transform.RotationSpline`: velocity and acceleration are continuous. Where they
-    would leave the rows, as about a pause, they have other slopes (`iiwa_dnn.references.splines`);
-    the acceleration jumps at these rows, and a warning says so. Time counts from the first row and
-    displacement from the first point. Before the start and after the end the path rests at its
-    first and last point; a closed path repeats instead.
+    Positions follow `scipy.interpolate.CubicSpline`, orientations the direction of the same spline
+    through their quaternions: velocity and acceleration are continuous. Where they would leave the
+    rows, as about a pause, they have other slopes (`iiwa_dnn.references.splines`); the acceleration
+    jumps at these rows, and a warning says so. Time counts from the first row and displacement from
+    the first point. Before the start and after the end the path rests at its first and last point;
+    a closed path repeats instead.
 
     A path of points is relative: `anchored` moves its first point to a pose, whose orientation it
     keeps. A path of poses is absolute, in the robot's base frame; `anchored` moves it all the same,
@@ -150,7 +153,6 @@ class Waypoints(Reference):
             point must be the first one, and m >= 3.
         quaternions: Orientations w, x, y, z of the poses, of norm 1, shape (m, 4), or None. Either
             sign will do; neighbours are less than half a turn apart.
-        interpolation: "limited", or "cubic": the cubic splines, wherever they lead.
         noise: Standard deviation of recorded points along each axis [m]. Above 0 the path goes
             through smoothed rows, and a warning says what that has moved; the first and the last
             row of a closed path are then equal up to noise.
@@ -161,15 +163,12 @@ class Waypoints(Reference):
         turned: Angles that smoothing has turned the orientations by [rad], shape (m,).
 
     Raises:
-        InvalidInputError: If a parameter is not as said above, or scipy's iterations for the turns
-            diverge ("limited" rests at such rows).
-        ValueError: If scipy fits no spline; the message says why.
+        InvalidInputError: If a parameter is not as said above.
     """
 
     path: ClassVar[Any] = staticmethod(waypoints_path)
     _checks: ClassVar[Checks] = {
         "ends": partial(one_of, choices=get_args(Ends)),
-        "interpolation": partial(one_of, choices=get_args(Interpolation)),
         "noise": not_negative,
         "turn_noise": not_negative,
     }
@@ -177,7 +176,6 @@ class Waypoints(Reference):
     points: Array
     ends: Ends = "clamped"
     quaternions: Array | None = None
-    interpolation: Interpolation = "limited"
     noise: float = 0.0
     turn_noise: float | None = None
     jumps: NDArray[np.intp] = field(init=False)
@@ -188,35 +186,42 @@ class Waypoints(Reference):
         super().__post_init__()
         self._check_rows()
         knots = self.times - self.times[0]
-        rule = (self.ends == "closed", self.interpolation == "limited")
-        points = smoothed(knots, self.points, self.noise, rule[0])
-        splines = {"m": spline_of_positions(knots, points - points[0], *rule)}
-        turns = np.zeros_like(splines["m"].pieces)
+        closed = self.ends == "closed"
+        points = smoothed(knots, self.points, self.noise, closed)
+        if closed and np.abs(points[-1] - points[0]).max() > _CLOSED_WITHIN:
+            problem = "the last one of a closed path must be the first one"
+            raise InvalidInputError("points", problem, self.points)
+        moves = spline_through(knots, points - points[0], closed)
+        turns = np.zeros((*moves.pieces.shape[:2], 4))
+        turns[:, -1, 0] = 1.0
+        jumps = moves.jumps
         if self.quaternions is not None:
             poses = self._poses(knots, self.quaternions)
             self._set(base=read_only(Target(points[0], poses[0].as_matrix()).data))
-            splines["rad"] = spline_of_turns(knots, poses, *rule)
-            about_base = [poses[:-1].apply(own) for own in splines["rad"].pieces.swapaxes(0, 1)]
-            turns = np.stack([*about_base, (poses[:-1] * poses[0].inv()).as_rotvec()], axis=1)
-        coefficients = np.concatenate([splines["m"].pieces, turns], axis=1)
+            turns, jumping = _turns(
+                knots, (poses * poses[0].inv()).as_quat()[:, [3, 0, 1, 2]], closed
+            )
+            jumps = jumps | jumping
+        coefficients = np.concatenate([turns[..., :1], moves.pieces, turns[..., 1:]], axis=2)
         pieces = np.column_stack([knots[:-1], coefficients.reshape(len(turns), -1)])
         own = WaypointsConstants.make(
             period=self.period, duration=self.duration, pieces=pieces.ravel()
         )
         self._set(
             constants=own.numbers,
-            jumps=np.flatnonzero(np.any([spline.jumps for spline in splines.values()], axis=0)),
+            jumps=np.flatnonzero(jumps),
             moved=read_only(np.linalg.norm(points - self.points, axis=1)),
         )
-        for remark in self._remarks(splines):
+        for remark in self._remarks():
             warnings.warn(remark, stacklevel=3)  # of the line that makes the path
 
     def _check_rows(self) -> None:
         """Check all parameters but the quaternions; raises InvalidInputError."""
         times = finite_array("times", self.times, (-1,))
         self._set(times=times, points=finite_array("points", self.points, (len(times), 3)))
-        if len(times) < 2:
-            raise InvalidInputError("times", "at least 2 points are needed", times)
+        least = 3 if self.ends == "closed" else 2
+        if len(times) < least:
+            raise InvalidInputError("times", f"at least {least} points are needed", times)
         for row in np.flatnonzero(times[1:] <= times[:-1]) + 1:
             problem = f"row {row} must be above {times[row - 1]:g} s, not at {times[row]:g} s"
             raise InvalidInputError("times", problem, times)
@@ -247,25 +252,21 @@ class Waypoints(Reference):
             raise InvalidInputError("quaternions", problem, quaternions)
         return turns
 
-    def _remarks(self, splines: dict[str, Spline]) -> Iterator[str]:
-        """Report the displacement by smoothing, and rows where the acceleration jumps, by unit."""
+    def _remarks(self) -> Iterator[str]:
+        """Report the displacement by smoothing, and rows where the acceleration jumps."""
         for done, moved, unit in (("moved", self.moved, "mm"), ("turned", self.turned, "mrad")):
             if moved.any():
                 yield (
                     f"smoothing has {done} the rows by {1e3 * np.sqrt(np.mean(moved**2)):.3g} "
                     f"{unit} (root of the mean square) and at most {1e3 * moved.max():.3g} {unit}"
                 )
-        for unit, spline in splines.items():
-            if count := np.count_nonzero(spline.jumps):
-                first = ", ".join(f"{t:.4g}" for t in self.times[:-1][spline.jumps][:5])
-                leads = f"would leave the rows by up to {spline.excursion:.2g} {unit}"
-                if np.isinf(spline.excursion):
-                    leads = "diverges; a turn rests at these rows"
-                yield (
-                    f"the acceleration jumps at {count} of {len(self.times)} rows (at {first}"
-                    f"{', ...' * (count > 5)} s): the cubic spline {leads}"
-                    f"{'; noise= smooths a recording' * (count > 5)}"
-                )
+        if count := len(self.jumps):
+            first = ", ".join(f"{t:.4g}" for t in self.times[self.jumps][:5])
+            yield (
+                f"the acceleration jumps at {count} of {len(self.times)} rows (at {first}"
+                f"{', ...' * (count > 5)} s): a cubic spline would leave the rows"
+                f"{'; noise= smooths a recording' * (count > 5)}"
+            )
 
     @classmethod
     def from_csv(
@@ -273,7 +274,6 @@ class Waypoints(Reference):
         path: str | os.PathLike[str],
         ends: Ends = "clamped",
         stretch: float = 1.0,
-        interpolation: Interpolation = "limited",
         noise: float = 0.0,
         turn_noise: float | None = None,
     ) -> Waypoints:
@@ -281,14 +281,13 @@ class Waypoints(Reference):
 
         The header names the columns ``t,x,y,z``, and of poses ``qw,qx,qy,qz``, in any order, with
         commas or semicolons between them. Lines before it, empty ones and what follows a ``#`` are
-        skipped. Warnings name columns that are not read, say so if the rows of an open path begin
-        or end at speed, and ask for the unit of times in which nothing moves.
+        skipped. Warnings name columns that are not read, and ask for the unit of times in which
+        nothing moves.
 
         Args:
             path: The file.
-            ends: As for :class:`Waypoints`, as the last three.
+            ends: As for :class:`Waypoints`, as the last two.
             stretch: Ratio of the path's times to those of the rows.
-            interpolation: "limited" or "cubic".
             noise: Standard deviation of the points [m].
             turn_noise: Standard deviation of the orientations [rad].
 
@@ -302,35 +301,21 @@ class Waypoints(Reference):
             try:
                 table, unread = _read(path)
                 poses = (table[:, 2:5], ends, table[:, 5:] if table.shape[1] > 5 else None)
-                made = cls(stretch * table[:, 1], *poses, interpolation, noise, turn_noise)
+                made = cls(stretch * table[:, 1], *poses, noise, turn_noise)
             except (ValueError, csv.Error) as error:
                 reason = re.sub(
                     r"row (\d+)", lambda row: f"line {table[int(row[1]), 0]:.0f}", one_line(error)
                 )
                 raise FileError(path, reason) from error
-        for message in (*(remark.message for remark in remarks), *made._load_warnings(unread)):
+        said = [str(remark.message) for remark in remarks]
+        if unread:
+            said.append(f"columns that are not read: {', '.join(unread)}")
+        twists = made.sample(np.linspace(0.0, made.duration, 4 * len(made.times))).data[:, 12:]
+        if 0.0 < np.abs(twists).max() < SLOW:
+            said.append(f"no speed is above {SLOW:g} m/s or rad/s: are the times in seconds?")
+        for message in said:
             warnings.warn(f"{path}: {message}", stacklevel=2)
         return made
-
-    def _load_warnings(self, unread: list[str]) -> Iterator[str]:
-        """Report columns that are not read, times that are not in seconds, and ends at speed."""
-        if unread:
-            yield f"columns that are not read: {', '.join(unread)}"
-        steps = np.diff(self.times)
-        twists = self.sample(np.linspace(0.0, self.duration, 4 * len(self.times))).data[:, 12:]
-        if 0.0 < np.abs(twists).max() < SLOW:
-            yield f"no speed is above {SLOW:g} m/s or rad/s: are the times in seconds?"
-        rows = self.sample(self.times - self.times[0]).position  # smoothed, if there is noise
-        speeds = np.linalg.norm(np.diff(rows, axis=0), axis=1) / steps
-        usual = np.average(speeds, weights=steps)
-        for word, end in (("begin", 0), ("end", -1)):
-            # Rows that speed up evenly from rest begin at less than half the mean speed.
-            quick = speeds[end] > 0.5 * usual and steps[end] < 0.1 * self.duration
-            if quick and self.ends == "clamped":
-                yield (
-                    f"the rows {word} at {speeds[end]:.3g} m/s, the path at rest: within "
-                    f"{steps[end]:.3g} s it changes its speed; let the rows {word} slowly"
-                )
 
     @property
     def period(self) -> float:
@@ -341,6 +326,18 @@ class Waypoints(Reference):
     def duration(self) -> float:
         """Time from the first point to the last [s]."""
         return float(self.times[-1] - self.times[0])
+
+
+def _turns(knots: Array, quaternions: Array, closed: bool) -> Spline:
+    """Fit a spline to quaternions w, x, y, z (m, 4) of any sign, neighbours with acute angles."""
+    products = (quaternions[1:] * quaternions[:-1]).sum(axis=1)
+    rows = quaternions * np.cumprod(np.append(1.0, np.sign(products)))[:, np.newaxis]
+    times = knots
+    if closed and rows[-1] @ rows[0] < 0.0:  # a whole turn: it closes after another round
+        times = np.append(knots, knots[-1] + knots[1:])
+        rows = np.vstack([rows, -rows[1:]])
+    spline = spline_through(times, rows, closed, jointly=True)
+    return Spline(spline.pieces[: len(knots) - 1], spline.jumps[: len(knots) - 1])
 
 
 def _read(path: str | os.PathLike[str]) -> tuple[Array, list[str]]:

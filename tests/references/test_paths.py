@@ -23,13 +23,11 @@ QUATERNIONS = TURNS.as_quat()[:, [3, 0, 1, 2]] * [[1], [-1], [1], [-1]]
 POSE = d.Target([0.4, 0.1, 0.5], Rotation.from_rotvec([2.9, 0.4, -0.2]).as_matrix())
 
 
-def waypoints(
-    ends: Any = "clamped", quaternions: Any = None, interpolation: Any = "limited"
-) -> d.Waypoints:
+def waypoints(ends: Any = "clamped", quaternions: Any = None) -> d.Waypoints:
     """The corners as a path, whose limited slopes are warned of."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return d.Waypoints([5, 6, 8, 9], CORNERS, ends, quaternions, interpolation)
+        return d.Waypoints([5, 6, 8, 9], CORNERS, ends, quaternions)
 
 
 CLOSED = [
@@ -46,14 +44,12 @@ CLOSED = [
     ),
     d.Tilting(d.Heart(5e-3, 6.0), 0.4, (0.0, 1.0, 0.0), begin=0.0),
     d.Tilting(d.Line(), 0.4, begin=0.0),
-    d.Tilting(waypoints("closed", QUATERNIONS, "cubic"), 0.2, begin=0.0),
-    waypoints("closed", interpolation="cubic"),
-    waypoints("closed", QUATERNIONS, "cubic"),
+    d.Tilting(waypoints("closed", QUATERNIONS), 0.2, begin=0.0),
+    waypoints("closed"),
     waypoints("closed", QUATERNIONS),
 ]
 OPEN = [
-    waypoints(interpolation="cubic"),
-    waypoints(quaternions=QUATERNIONS, interpolation="cubic"),
+    waypoints(),
     waypoints(quaternions=QUATERNIONS),
 ]
 SOFT = [
@@ -255,7 +251,8 @@ REFUSED = [
     (d.Waypoints, {"times": [0], "points": [[0, 0, 0]]}, "times"),
     (d.Waypoints, {"times": [0, 0], "points": np.eye(3)[:2]}, "times"),
     (d.Waypoints, TURNED | {"ends": "open"}, "ends"),
-    (d.Waypoints, TURNED | {"interpolation": "linear"}, "interpolation"),
+    (d.Waypoints, TURNED | {"points": np.eye(4)[:, :3]}, "points"),  # not closed
+    (d.Waypoints, {"times": [0, 1], "points": np.zeros((2, 3)), "ends": "closed"}, "times"),
     (d.Waypoints, TURNED | {"noise": -1.0}, "noise"),
     (d.Waypoints, TURNED | {"turn_noise": math.nan}, "turn_noise"),
     (d.Waypoints, TURNED | {"quaternions": QUATERNIONS[:3]}, "quaternions"),

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
 from iiwa_dnn import FileError, InvalidInputError, Waypoints
@@ -30,36 +29,28 @@ def acceleration(path: Waypoints, t: float, side: int) -> NDArray[np.float64]:
 
 @pytest.mark.parametrize("ends", ["clamped", "closed"])
 def test_poses_are_met_without_a_jump_of_the_acceleration(ends: str) -> None:
-    path = Waypoints(TIMES, POINTS, ends, QUATERNIONS, "cubic")
-    knots = TIMES - TIMES[0]
+    knots = np.arange(13.0)
+    angle = (
+        np.pi / 6.0 * knots if ends == "closed" else np.pi * (1.0 - np.cos(np.pi / 12.0 * knots))
+    )
+    points = 0.1 * np.stack([np.cos(angle), np.sin(angle), np.sin(2.0 * angle)], axis=1)
+    turns = Rotation.from_rotvec(8.0 * points[:, [2, 0, 1]])
+    signs = np.where(knots % 3, 1.0, -1.0)[:, np.newaxis]
+    path = Waypoints(knots + 2.0, points, ends, signs * turns.as_quat()[:, [3, 0, 1, 2]])
     targets = path.sample(knots)
-    np.testing.assert_allclose(targets.position, POINTS, rtol=0, atol=1e-14)
-    np.testing.assert_allclose(targets.rotation, TURNS.as_matrix(), rtol=0, atol=1e-14)
+    np.testing.assert_allclose(targets.position, points, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(targets.rotation, turns.as_matrix(), rtol=0, atol=1e-14)
+    assert not path.jumps.size
     for t in knots if ends == "closed" else knots[1:-1]:
         before = acceleration(path, t - 1e-12, -1)
         np.testing.assert_allclose(before, acceleration(path, t + 1e-12, 1), rtol=0, atol=1e-6)
     if ends == "clamped":
-        assert np.abs(path.sample([0.0, 6.5]).data[:, 12:]).max() < 1e-9
-        assert (path.duration, path.period) == (6.5, np.inf)
-        outside = path.sample([-1.0, -1e-9, 6.5 + 1e-9, 100.0])
-        expected = [TURNS[0].as_matrix()] * 2 + [TURNS[-1].as_matrix()] * 2
+        assert np.abs(path.sample([0.0, 12.0]).data[:, 12:]).max() < 1e-9
+        assert (path.duration, path.period) == (12.0, np.inf)
+        outside = path.sample([-1.0, -1e-9, 12.0 + 1e-9, 100.0])
+        expected = turns.as_matrix()[[0, 0, -1, -1]]
         np.testing.assert_allclose(outside.rotation, expected, rtol=0, atol=1e-14)
         assert not outside.data[:, 12:].any()
-
-
-@pytest.mark.parametrize(("ends", "scipys"), [("clamped", "clamped"), ("closed", "periodic")])
-def test_about_one_axis_it_is_the_cubic_spline_of_the_angle(ends: str, scipys: str) -> None:
-    axis = np.array([0.6, 0.0, 0.8])
-    angles = np.array([0.1, 1.4, -0.9, 0.3, 0.1])
-    turns = Rotation.from_rotvec(angles[:, None] * axis)
-    path = Waypoints(TIMES, POINTS, ends, turns.as_quat()[:, [3, 0, 1, 2]], "cubic")
-    spline = CubicSpline(TIMES, angles, bc_type=scipys)
-    t = np.linspace(0.0, 6.5, 301)
-    targets = path.sample(t)
-    wanted = Rotation.from_rotvec(spline(t + 2.0)[:, None] * axis).as_matrix()
-    np.testing.assert_allclose(targets.rotation, wanted, rtol=0, atol=1e-10)
-    rates = spline(t + 2.0, 1)[:, None] * axis
-    np.testing.assert_allclose(targets.angular_velocity, rates, rtol=0, atol=1e-9)
 
 
 def write(folder: Path, header: str, rows: NDArray[np.float64]) -> Path:
@@ -68,11 +59,12 @@ def write(folder: Path, header: str, rows: NDArray[np.float64]) -> Path:
     return path
 
 
+@pytest.mark.filterwarnings("ignore:.*the acceleration jumps")
 def test_poses_of_a_file_are_in_the_base_frame(tmp_path: Path) -> None:
     poses = np.hstack([POINTS, QUATERNIONS])
     timed = write(tmp_path, f"t,{POSE_HEADER}", np.hstack([TIMES[:, None], poses]))
-    read = Waypoints.from_csv(timed, ends="closed", interpolation="cubic")
-    assert read.settings() == Waypoints(TIMES, POINTS, "closed", QUATERNIONS, "cubic").settings()
+    read = Waypoints.from_csv(timed, ends="closed")
+    assert read.settings() == Waypoints(TIMES, POINTS, "closed", QUATERNIONS).settings()
     np.testing.assert_array_equal(read.at(0.0).position, POINTS[0])
 
 
@@ -86,22 +78,6 @@ def test_a_stretched_file_is_the_same_path_more_slowly(tmp_path: Path) -> None:
         np.testing.assert_allclose(after.position, before.position, rtol=0, atol=1e-14)
         velocity = before.linear_velocity / 1.4
         np.testing.assert_allclose(after.linear_velocity, velocity, rtol=0, atol=1e-14)
-
-
-@pytest.mark.parametrize("said", [["begin", "end"], ["end"], []])
-def test_rows_that_begin_or_end_at_speed_are_told(said: list[str], tmp_path: Path) -> None:
-    t = np.linspace(0.0, 8.0, 81)
-    s = {2: t / 8.0, 1: (t / 8.0) ** 2, 0: 3.0 * (t / 8.0) ** 2 - 2.0 * (t / 8.0) ** 3}[len(said)]
-    turn = 2 * np.pi * s
-    rows = np.stack([t, 0.1 * np.cos(turn), 0.1 * np.sin(turn), 0.0 * t], axis=1)
-    rows[-1, 1:] = [0.1, 0.0, 0.0]
-    file = write(tmp_path, "t,x,y,z", rows)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        Waypoints.from_csv(file)
-        Waypoints.from_csv(file, ends="closed", interpolation="cubic")  # may be at speed
-    begun = [f"{file}: the rows {word} at" for word in said]
-    assert [str(each.message)[: len(begun[k])] for k, each in enumerate(caught)] == begun
 
 
 @pytest.mark.parametrize(
@@ -220,6 +196,6 @@ def test_a_bad_argument_of_a_good_file_is_named(tmp_path: Path) -> None:
     file.write_text(GOOD)
     with pytest.raises(InvalidInputError, match=r"^stretch"):
         Waypoints.from_csv(file, stretch=0.0)
-    for ends, reason in (("open", "ends: must be"), ("closed", "must be identical")):
+    for ends, reason in (("open", "ends: must be"), ("closed", "at least 3 points")):
         with pytest.raises(FileError, match=reason):
             Waypoints.from_csv(file, ends=ends)
