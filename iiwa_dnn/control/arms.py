@@ -26,16 +26,14 @@ from iiwa_dnn.control.requests import (
     Reason,
     Request,
     RequestConstants,
-    cut_twist,
     falls_short,
-    write_frame_jacobian,
 )
 from iiwa_dnn.control.state import MotionState, change_spacing, count_as_sent
 from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import all_finite, row_dot
+from iiwa_dnn.qp.dense import all_finite, largest_entry, row_dot
 from iiwa_dnn.qp.layout import IntVector, QPViews, copied
-from iiwa_dnn.robot.kinematics import Placement, Twist
+from iiwa_dnn.robot.kinematics import Twist
 from iiwa_dnn.robot.kinematics_kernel import ModelTables, write_kinematics
 from iiwa_dnn.schemes.limits import (
     MotionConstants,
@@ -162,6 +160,7 @@ class ArmPlan(NamedTuple):
         scene: Number of the block of the watched pairs; -1: there is none.
         width: Length of the log of a step.
         motion: Limits of the joints.
+        fastest: Largest number of a twist [m/s], [rad/s]; a larger one is cut to it.
         lower: Lower position limits [rad], (n,).
         upper: Upper position limits [rad], (n,).
         velocities: Velocities of the obstacles [m/s], (k, 3).
@@ -175,6 +174,7 @@ class ArmPlan(NamedTuple):
     scene: int
     width: int
     motion: MotionConstants
+    fastest: float
     lower: Vector
     upper: Vector
     velocities: Matrix
@@ -516,8 +516,10 @@ def _answer(
     request = RequestConstants.of(block_constants(arrays, plan.request))
     request.is_twist = is_twist
     if is_twist:
-        copied(request.asked, own.request)
-        own.is_cut = _cut_to_joints(plan, request, arrays)
+        size = largest_entry(own.request[: Twist.width()])
+        own.is_cut = size > plan.fastest
+        for i in range(TWIST):
+            request.asked[i] = own.request[i] / max(size / plan.fastest, 1.0)
     else:
         come_nearer(own, motion, plan.motion, timing, state)
         copied(request.asked, state[: own.positions.size])
@@ -542,15 +544,6 @@ def _answer(
     own.is_singular = is_twist and falls_short(qp, request.asked)
     _note_limits(plan, own, log, timing, action)
     return action
-
-
-@compiled
-def _cut_to_joints(plan: ArmPlan, request: RequestConstants, arrays: ProgramArrays) -> bool:
-    """Cut the twist of a request to what joints can do; return whether it was larger."""
-    rows = np.empty((TWIST, plan.sizes.n))
-    placement = Placement.of(arrays.placements[request.frame])
-    write_frame_jacobian(arrays.jacobian, placement, arrays.support[request.frame], rows)
-    return cut_twist(request.asked[: Twist.width()], rows, plan.motion)
 
 
 @compiled

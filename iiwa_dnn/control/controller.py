@@ -272,7 +272,8 @@ class Controller:
         numbers = state.numbers
         if not plan.samples:
             clock = t - state.motion.path_lag if target is None else t
-            log_layout.targets(data)[:] = self.targets(clock, target, periods.expected)
+            found = self.targets(clock, target, periods.expected)
+            data[-found.size :] = found.ravel()  # the last numbers of a log
         if program.refreshed:
             last = state.motion.last
             program.refresh(q, last, log_layout.targets(data), t, periods.expected)

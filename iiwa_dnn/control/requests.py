@@ -1,4 +1,4 @@
-"""Requests of a shield: their kinds, their cost, and the cut of a twist."""
+"""Requests of a shield: their kinds, reasons and cost."""
 
 from __future__ import annotations
 
@@ -11,13 +11,12 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.control.command import EXCEEDED
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import cholesky_factor, factor_solve, largest_entry
+from iiwa_dnn.qp.dense import cholesky_factor, factor_solve
 from iiwa_dnn.qp.layout import QPViews
 from iiwa_dnn.references.rotations import triple
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Placement, Twist
 from iiwa_dnn.schemes import Cost
-from iiwa_dnn.schemes.limits import MotionConstants
 from iiwa_dnn.schemes.program import add_soft
 from iiwa_dnn.schemes.step import StepViews, point_rate
 
@@ -111,8 +110,14 @@ def add_request(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> Non
         return
     v = own.asked[: Twist.width()]
     A = np.empty((TWIST, n))
-    placement = Placement.of(step.placements[own.frame])
-    write_frame_jacobian(step.jacobian, placement, step.support[own.frame], A)
+    point = triple(Placement.of(step.placements[own.frame]).position)
+    for j in range(n):
+        support = step.support[own.frame, j]
+        linear = point_rate(step.jacobian, j, point)
+        angular = triple(Twist.of(step.jacobian[j]).angular)
+        for i in range(3):
+            A[i, j] = support * linear[i]
+            A[3 + i, j] = support * angular[i]
     square = 0.0
     for k in range(TWIST):
         square += v[k] * v[k]
@@ -124,27 +129,6 @@ def add_request(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> Non
         for k in range(TWIST):
             A[k, i] = SIDEWAYS * A[k, i] + fraction * v[k]
     add_soft(P, q, A, v, 1.0)
-
-
-@compiled
-def write_frame_jacobian(
-    jacobian: Matrix, placement: Placement, support: Vector, rows: Matrix
-) -> None:
-    """Write the Jacobian of a frame, linear over angular, (6, n).
-
-    Args:
-        jacobian: `Kinematics.jacobian`, (n, 6).
-        placement: The frame's.
-        support: 1 for the joints that move it, else 0, (n,).
-        rows: The Jacobian, overwritten.
-    """
-    point = triple(placement.position)
-    for j in range(support.size):
-        linear = point_rate(jacobian, j, point)
-        angular = triple(Twist.of(jacobian[j]).angular)
-        for i in range(3):
-            rows[i, j] = support[j] * linear[i]
-            rows[3 + i, j] = support[j] * angular[i]
 
 
 @dataclass(frozen=True)
@@ -162,32 +146,6 @@ class RequestCost(Cost):
         """Return `RequestConstants`, for a request to rest."""
         rest = np.zeros(max(robot.dof, TWIST))
         return RequestConstants.make(frame=robot.frame_id(self.frame), is_twist=False, asked=rest)
-
-
-@compiled
-def cut_twist(twist: Vector, rows: Matrix, limits: MotionConstants) -> bool:
-    """Cut a twist (6,) in place to `CUT` times what the joints can do.
-
-    Args:
-        twist: The twist of a frame.
-        rows: The frame's Jacobian, (6, n).
-        limits: Limits of the joints.
-
-    Returns:
-        Whether it was larger.
-    """
-    size = largest_entry(twist)
-    most = 1.0
-    for i in range(TWIST):
-        total = 0.0
-        for j in range(limits.velocity.size):
-            total += abs(rows[i, j]) * min(limits.velocity[j], FASTEST)
-        most = max(most, total)
-    if size <= CUT * most:
-        return False
-    for i in range(TWIST):
-        twist[i] *= CUT * most / size
-    return True
 
 
 @compiled

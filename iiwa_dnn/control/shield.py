@@ -52,6 +52,8 @@ from iiwa_dnn.control.paths import pair_warnings, setup_warnings
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.requests import (
     ARGUMENTS,
+    CUT,
+    FASTEST,
     REASONS,
     TWIST,
     Reason,
@@ -74,7 +76,6 @@ from iiwa_dnn.schemes import (
 )
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.limits import MotionLimits, Periods, checked_longest
-from iiwa_dnn.schemes.program import LimitNames
 from iiwa_dnn.schemes.scene import Body, scene_views
 
 
@@ -135,6 +136,7 @@ def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
         # Two commands in a row last longer than a period, or are one.
         sent=(1 + robot.dof) * (1 + 2 * math.ceil(shield.delay / shield.dt)) * (shield.delay > 0.0),
     )
+    total = np.minimum(robot.dq_max, FASTEST).sum()
     plan = ArmPlan(
         model_tables(robot, program.kinematics.frame_ids),
         step.plan,
@@ -142,6 +144,7 @@ def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
         [*program.places_of(CollisionAvoidance), -1][0],
         step.log_layout.width,
         MotionLimits(own_rate_limits(robot)).constants(robot),
+        float(CUT * max(robot.reach, 1.0) * total),  # above what the joints can do anywhere
         robot.q_lower,
         robot.q_upper,
         velocities,
@@ -178,23 +181,48 @@ class Margin(NamedTuple):
     distance: float
 
 
-class Arm(NamedTuple):
-    """Answers to what can be asked about the last step of an arm.
+class ShieldCommand(NamedTuple):
+    """Decision of one step of a shield.
 
     Attributes:
-        plan: Layout of the step.
+        dq: Joint velocity [rad/s], (n,), within the limits.
+        plan: Layout of the arm's step.
         memory: Memory of the arm after it, (k,).
-        names: Names of its limits.
+        row: The log of the control step, (width,).
+        layout: Layout of the log.
+        periods: Periods of the step.
     """
 
+    dq: Vector
     plan: ArmPlan
     memory: Vector
-    names: LimitNames
+    row: Vector
+    layout: LogLayout
+    periods: Periods
 
     @property
     def state(self) -> ArmState:
-        """The memory by its names."""
+        """State of the arm after the step."""
         return ArmState.of(self.memory, *self.plan.sizes)
+
+    @property
+    def command(self) -> Command:
+        """The command with the program that was answered."""
+        return Command(self.row, self.layout, Action(self.state.action), self.periods)
+
+    @property
+    def next_q(self) -> Vector:
+        """Joint positions at the end of the period, for drives that take these [rad], (n,)."""
+        return self.command.next_q
+
+    @property
+    def clipped(self) -> bool:
+        """Test whether the command differs from the request.
+
+        For positions, from the quickest approach to them that the joints' own limits allow; for a
+        twist, whether more than `SHORT` of it is missing, or a limit holds.
+        """
+        return self.state.is_clipped
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -216,10 +244,11 @@ class Arm(NamedTuple):
         own = self.state
         if not own.is_clipped:
             return ()
+        names = self.layout.names
         codes, rows = np.split(own.limiting.astype(int), [own.positions.size])
-        words = map(describe, active_limits(self.names.settings, codes, rows))
+        words = map(describe, active_limits(names.settings, codes, rows))
         motion = motion_of(self.plan, own)
-        return (*self.reasons, *words, *self.names.conditions(motion.q, motion.least))
+        return (*self.reasons, *words, *names.conditions(motion.q, motion.least))
 
     @property
     def margin(self) -> Margin:
@@ -230,64 +259,6 @@ class Arm(NamedTuple):
     def stopping_time(self) -> float:
         """Time of the motion to rest from the command [s]."""
         return float(stopping_time_of(self.plan, self.memory))
-
-
-class ShieldCommand(NamedTuple):
-    """Decision of one step of a shield.
-
-    Attributes:
-        dq: Joint velocity [rad/s], (n,), within the limits.
-        arm: The arm after the step.
-        row: The log of the control step, (width,).
-        layout: Its layout.
-        periods: Its periods.
-    """
-
-    dq: Vector
-    arm: Arm
-    row: Vector
-    layout: LogLayout
-    periods: Periods
-
-    @property
-    def command(self) -> Command:
-        """The command with the program that was answered."""
-        action = Action(self.arm.state.action)
-        return Command(self.row, self.layout, action, self.periods)
-
-    @property
-    def next_q(self) -> Vector:
-        """Joint positions at the end of the period, for drives that take these [rad], (n,)."""
-        return self.command.next_q
-
-    @property
-    def clipped(self) -> bool:
-        """Test whether the command differs from the request.
-
-        For positions, from the quickest approach to them that the joints' own limits allow; for a
-        twist, whether more than `SHORT` of it is missing, or a limit holds.
-        """
-        return self.arm.state.is_clipped
-
-    @property
-    def active_limits(self) -> tuple[str, ...]:
-        """Name the reasons, bounds and rows that keep the command from the request."""
-        return self.arm.active_limits
-
-    @property
-    def reasons(self) -> tuple[str, ...]:
-        """Reasons beside limits for another command than the request, in words."""
-        return self.arm.reasons
-
-    @property
-    def stopping_time(self) -> float:
-        """Time of the motion to rest from the command [s]."""
-        return self.arm.stopping_time
-
-    @property
-    def margin(self) -> Margin:
-        """Distances at the joint positions that the command starts from."""
-        return self.arm.margin
 
     def __repr__(self) -> str:
         dq = np.array2string(self.dq, precision=4, separator=", ")
@@ -510,8 +481,8 @@ class Shield:
         if action == INVALID:
             checks.joint_positions("q", positions, positions.size)
         self._kept = (memory, seen)
-        arm = Arm(layout.plan, memory, log_layout.names)
-        return ShieldCommand(row[log_layout.dq], arm, row, log_layout, periods)
+        dq = row[log_layout.dq]
+        return ShieldCommand(dq, layout.plan, memory, row, log_layout, periods)
 
     def _asked(self, kind: Request, request: ArrayLike) -> Vector:
         """Return a request of a kind as numbers, which may be NaN."""

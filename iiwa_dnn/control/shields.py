@@ -17,13 +17,15 @@ from iiwa_dnn import checks
 from iiwa_dnn.control.arms import (
     ArmInputs,
     ArmOutputs,
+    arm_state,
     halt_arm,
+    motion_of,
     place_arm,
     rest_arm,
     step_arms,
 )
 from iiwa_dnn.control.requests import REASONS, TWIST, Request
-from iiwa_dnn.control.shield import Arm, Margin, Shield, one_request
+from iiwa_dnn.control.shield import Margin, Shield, ShieldCommand, one_request
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.naming import KINDS, active_limits, describe
 from iiwa_dnn.qp import Matrix, Vector
@@ -284,23 +286,28 @@ class Shields:
     def _memory(self, i: int) -> Vector:
         return self._memories[i, : self._layout.memory.size]
 
-    def _arm(self, i: int) -> Arm:
-        return Arm(self._layout.plan, self._memory(i), self._layout.step.log_layout.names)
+    def _command(self, i: int) -> ShieldCommand:
+        """Return the last command of arm i without its log."""
+        plan = self._layout.plan
+        memory = self._memory(i)
+        layout = self._layout.step.log_layout
+        last = motion_of(plan, arm_state(plan, memory)).last
+        return ShieldCommand(last, plan, memory, np.zeros(0), layout, plan.step.timing)
 
     def active_limits(self, i: int) -> tuple[str, ...]:
         """Name the active limits of arm i's last command, as `ShieldCommand.active_limits`."""
         with self._lock:
-            return self._arm(i).active_limits
+            return self._command(i).active_limits
 
     def margin(self, i: int) -> Margin:
         """Return the distances of arm i at the positions that its last command starts from."""
         with self._lock:
-            return self._arm(i).margin
+            return self._command(i).margin
 
     def stopping_time(self, i: int) -> float:
         """Return the time of arm i's motion to rest from its last command [s]."""
         with self._lock:
-            return self._arm(i).stopping_time
+            return self._command(i).stopping_time
 
 
 def _numbers(name: str, value: ArrayLike, shape: Sequence[int]) -> Matrix:

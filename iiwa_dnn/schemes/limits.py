@@ -817,11 +817,8 @@ def _ceiling_below_velocity_limit(
         periods.exceeded,
     )
     deceleration = rates.deceleration
+    J = usable_jerk(rates, periods.longest)
     for level in range(LEVELS):
-        slower = Rates(
-            rates.velocity, rates.acceleration, rates.jerk, deceleration, rates.slope, rates.lag
-        )
-        J = usable_jerk(slower, periods.longest)
         A = min(deceleration, rates.acceleration - J * periods.longest)
         end = distance - 0.5 * rates.lag * rates.lag * rates.slope * A / (rates.slope - A)
         # One that brakes by more is behind on its way.

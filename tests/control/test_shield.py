@@ -343,8 +343,8 @@ def test_threads_may_share_a_shield() -> None:
         thread.start()
     for thread in threads:
         thread.join()
-    found.sort(key=lambda command: command.arm.state.time)
-    assert len({command.arm.state.time for command in found}) == 900
+    found.sort(key=lambda command: command.state.time)
+    assert len({command.state.time for command in found}) == 900
     for before, after in itertools.pairwise(found):
         np.testing.assert_array_equal(after.command.motion_state[1], before.dq)
         assert np.abs(after.dq - before.dq).max() <= 10.0 * DT + 1e-12

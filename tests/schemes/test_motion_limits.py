@@ -12,7 +12,10 @@ from helpers_kinematics import PAPER_Q0, Array
 from helpers_simulation import heart, paper_robot, paper_start
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.schemes.limits import (
+    LEVELS,
+    LOWER,
     MotionConstants,
+    Rates,
     braking,
     check_ranges,
     constant_periods,
@@ -20,6 +23,7 @@ from iiwa_dnn.schemes.limits import (
     largest_gain,
     own_rate_limits,
     stated_periods,
+    usable_jerk,
 )
 from judge_limits import Breach, breaches
 
@@ -215,6 +219,35 @@ def test_a_limit_that_shrinks_is_kept_whatever_period_comes(meaning: str, jerk: 
             before, last = last, v
         assert worst < 1e-9
         assert abs(q) <= 1.5
+
+
+def test_a_joint_that_retreats_from_a_limit_that_shrinks_may_stop() -> None:
+    """It needs the room of a motion whose acceleration goes to zero at the jerk limit, no more.
+
+    It was kept retreating at a jerk that shrank with the distance, and went nearer to obstacles.
+    """
+    random = np.random.default_rng(0)
+    for _ in range(300):
+        longest = 10.0 ** random.uniform(-3.0, -1.4)
+        dt = longest * random.uniform(0.2, 1.0)
+        V, A, jerk = 10.0 ** random.uniform([-0.5, 0.0, 2.5], [1.0, 2.0, 4.5])
+        steepness = A * 10.0 ** random.uniform(0.05, 1.0)
+        offset = V * 10.0 ** random.uniform(-1.5, -0.3)
+        deceleration = min(A, steepness * V / (V + offset))
+        rates = Rates(V, A, jerk, deceleration, steepness, offset / steepness)
+        periods = stated_periods(dt, longest, dt, None)
+        nearest, room = 0.0, 1.0  # at which it may rest
+        while room - nearest > 1e-15:
+            middle = 0.5 * (nearest + room)
+            rests = joint_bounds(0.0, 0.0, middle, 5.0, rates, periods)[1] >= 0.0
+            nearest, room = (nearest, middle) if rests else (middle, room)
+        J = usable_jerk(rates, longest)
+        last = -min(0.1 * A, 0.5 * J * dt) * dt
+        a = -last / dt
+        v = a * a / (2.0 * J)
+        B = deceleration * LOWER ** (LEVELS - 1)
+        room += a**3 / (3.0 * J**2) + v * (v / B + B / J)
+        assert joint_bounds(last, last, room, 5.0, rates, periods)[1] >= -1e-9 * V
 
 
 @pytest.mark.parametrize("meaning", ["dt", "elapsed", "neither"])
