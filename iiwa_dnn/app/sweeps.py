@@ -38,7 +38,6 @@ class SweepWords:
     out: Folder = None  # folder of the results (runs/ and the command's name)
     overwrite: Flag = False  # write over a folder that holds something else
     workers: Count = None  # number of processes (one for each core)
-    dask: Annotated[str | None, shown("ADDRESS")] = None  # Dask scheduler that runs them
     quiet: Quiet = False  # print nothing but the reasons of a failure
 
 
@@ -58,7 +57,7 @@ def start_sweep(words: SweepWords, name: str) -> tuple[Path, Callable[..., list[
     folder = words.out or Path("runs") / name
     check_folder(folder, settings, words.overwrite)
     write_settings(folder, settings)
-    compute = partial(sweep, workers=words.workers, dask=words.dask, quiet=words.quiet)
+    compute = partial(sweep, workers=words.workers, quiet=words.quiet)
     return folder, partial(compute, folder=folder / "cells")
 
 

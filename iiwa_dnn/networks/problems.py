@@ -31,8 +31,7 @@ def solve_problem(
         solver: Network and integrator to use; the default integrates the paper's network
             implicitly. Its state is reset first, and its own settings replace `tol`, `eps_rel` and
             `max_iter`.
-        sharpen: Take a few more steps down to rounding, for about a third more time
-            (`DNNSolver.sharpen`).
+        sharpen: Take a few more steps down to rounding, for about a third more time.
         eps_rel: Tolerance on each entry of a residual, relative to the sum of its absolute terms.
         max_iter: Largest number of linear solves.
 

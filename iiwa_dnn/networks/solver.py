@@ -30,7 +30,7 @@ from iiwa_dnn.qp.solution import Solution, Status
 
 SHARPENED = 1e-14
 SHARPENING = (4, 20)
-"""Tolerance of `DNNSolver.sharpen`, and the linear solves of a round, at first and again."""
+"""Tolerance of a sharpened solution, and the linear solves of a round, at first and again."""
 
 _COSTS: tuple[float | None, ...] = (None, LARGE, 1.0, None)
 """Largest entries of the cost in the attempts of a `solve`; None: the program as it is."""
@@ -167,7 +167,7 @@ class DNNSolver:
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).
-            sharpen: Whether to `sharpen` the solution.
+            sharpen: Whether to take a few more steps down to rounding.
         """
         self.reset()
         state = self._fresh(qp)
@@ -241,30 +241,16 @@ class DNNSolver:
             return Status.NOT_FINITE
         return Status.NOT_CONVERGED if is_convex(qp.P, np.empty_like(qp.P)) else Status.NOT_CONVEX
 
-    def sharpen(self, qp: QP, solution: Solution) -> Solution:
-        """Go on from the state that the last call left, for a few linear solves.
+    def _sharpened(self, qp: QP, solution: Solution, state: Vector) -> Solution:
+        """Go on from the state (size,) of a solution for a few linear solves; it is advanced.
 
         If the cost has small eigenvalues, x is known to the residuals over these only. So a round
         begins with those of a steeper cost (`iiwa_dnn.networks.integrators.scaling`). A solution
         to rounding stays as it is.
 
-        Args:
-            qp: The program of the last call.
-            solution: Its solution.
-
         Returns:
             A solution with smaller residuals, or the same if no step had any.
         """
-        state = self._warm.get(qp.sizes)
-        if state is None:
-            return solution
-        own = state.copy()
-        solution = self._sharpened(qp, solution, own)
-        self._keep(qp.sizes, own)
-        return solution
-
-    def _sharpened(self, qp: QP, solution: Solution, state: Vector) -> Solution:
-        """Sharpen the solution that a state (size,) stands for, and advance that."""
         if not solution.found or not is_projection(self.network):
             return solution
         for most, is_steep in product(SHARPENING, (True, False)):

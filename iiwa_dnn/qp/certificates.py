@@ -24,26 +24,29 @@ rounding, underflow included, is counted against the certificate throughout.
 """
 
 from collections.abc import Callable
-from functools import partial
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.qp.layout import Matrix, Vector, check_size
+from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.solution import Status
 
 RADIUS = 1e8
 """Radius from which on a certificate is claimed."""
 
+_INFEASIBLE = (Status.NONE_FEASIBLE_NEAR, Status.PRIMAL_INFEASIBLE)
+_UNBOUNDED = (Status.NONE_OPTIMAL_NEAR, Status.UNBOUNDED)
+
 _EPS = 2.0**-52
 _TINY = 2.0**-900
 """Bound on the underflow of a term."""
 _SLIGHT = 1e-5
 """Fraction of the largest entry below which a row takes no part in a polish."""
-_MULTIPLES = np.arange(1.0, 61.0)
-"""Multiples of the least entry that are tried as denominator of a vector of simple ratios."""
+_WHOLE = 60.0
+"""Least entry of a vector in whole numbers: 1 to 6 and their like divide it."""
 _UNDERFLOW = 1e-270
 """Absolute term of a product below which digits may be lost to underflow."""
 _SPLIT = 2.0**27 + 1.0
@@ -67,34 +70,42 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
         ``NOT_CONVERGED`` where no proof was found.
     """
     n, m, p = qp.sizes
-    limited = np.isfinite(np.concatenate([qp.b, qp.h]))
+    views = qp.views  # once: each field of a program is made where it is asked for
+    limited = np.isfinite(np.concatenate([views.b, views.h]))
     multipliers = _scaled(np.where(limited, point[n : n + p + m], 0.0))
-    multipliers = _best(qp, multipliers, _polished_multipliers, infeasibility_radius)
-    w = np.vstack([qp.A, qp.G]).T @ multipliers
-    certificate = np.concatenate([multipliers, np.where(_is_carried(qp, w), 0.0 - w, 0.0)])
-    status = certified(qp, certificate)
-    if status is Status.NOT_CONVERGED:
-        direction = _scaled(point[:n])
-        direction = np.where(_towards_bound(qp, direction), 0.0, direction)
-        certificate = _best(qp, direction, _polished_direction, unboundedness_radius)
-        status = certified(qp, certificate)
-    return status, None if status is Status.NOT_CONVERGED else certificate
+    radius, vector = _best(views, multipliers, _polished_multipliers, infeasibility_radius)
+    if radius >= RADIUS:
+        w = np.vstack([views.A, views.G]).T @ vector
+        box = np.where(_is_carried(views, w), 0.0 - w, 0.0)
+        return _status(radius, *_INFEASIBLE), np.concatenate([vector, box])
+    direction = _scaled(point[:n])
+    direction = np.where(_towards_bound(views, direction), 0.0, direction)
+    radius, vector = _best(views, direction, _polished_direction, unboundedness_radius)
+    return _status(radius, *_UNBOUNDED), vector if radius >= RADIUS else None
 
 
 def _best(
-    qp: QP,
+    qp: QPViews,
     vector: Vector,
-    polish: Callable[[QP, Vector], Vector],
-    radius: Callable[[QP, Vector], float],
-) -> Vector:
-    """Return a vector, or the polished one, or that in whole numbers: that of the largest radius.
+    polish: Callable[[QPViews, Vector], Vector],
+    radius: Callable[[QPViews, Vector], float],
+) -> tuple[float, Vector]:
+    """Return the largest radius, of a vector, the polished one, or that in whole numbers, and it.
 
     If the first one is a proof, no other is computed.
     """
-    if radius(qp, vector) == np.inf:
-        return vector
-    polished = polish(qp, vector)
-    return max((vector, polished, _whole(polished)), key=partial(radius, qp))
+    judged = [(radius(qp, vector), vector)]
+    if judged[0][0] < np.inf:
+        polished = polish(qp, vector)
+        judged += [(radius(qp, each), each) for each in (polished, _whole(polished))]
+    return max(judged, key=itemgetter(0))
+
+
+def _status(radius: float, near: Status, outright: Status) -> Status:
+    """Return what a radius proves."""
+    if radius < RADIUS:
+        return Status.NOT_CONVERGED
+    return outright if radius == np.inf else near
 
 
 def certified(qp: QP, certificate: Vector) -> Status:
@@ -108,16 +119,12 @@ def certified(qp: QP, certificate: Vector) -> Status:
     """
     n, m, p = qp.sizes
     if certificate.shape == (n,):
-        radius = unboundedness_radius(qp, certificate)
-        statuses = (Status.NONE_OPTIMAL_NEAR, Status.UNBOUNDED)
-    else:
-        check_size("certificate", certificate, n + m + p)
-        radius = infeasibility_radius(qp, certificate[: p + m])
-        statuses = (Status.NONE_FEASIBLE_NEAR, Status.PRIMAL_INFEASIBLE)
-    return statuses[radius == np.inf] if radius >= RADIUS else Status.NOT_CONVERGED
+        return _status(unboundedness_radius(qp.views, certificate), *_UNBOUNDED)
+    check_size("certificate", certificate, n + m + p)
+    return _status(infeasibility_radius(qp.views, certificate[: p + m]), *_INFEASIBLE)
 
 
-def infeasibility_radius(qp: QP, multipliers: Vector) -> float:
+def infeasibility_radius(qp: QPViews, multipliers: Vector) -> float:
     """Compute the radius within which no x is feasible, as multipliers of the rows prove.
 
     Args:
@@ -147,7 +154,7 @@ def infeasibility_radius(qp: QP, multipliers: Vector) -> float:
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def unboundedness_radius(qp: QP, direction: Vector) -> float:
+def unboundedness_radius(qp: QPViews, direction: Vector) -> float:
     """Compute the radius within which there is no KKT point, as the direction (n,) proves.
 
     Returns:
@@ -213,12 +220,12 @@ def dot_twice(rows: Matrix, vector: Vector, products: Vector, rounding: Vector) 
         rounding[j] = bound if loss != 0.0 else 0.0
 
 
-def _is_carried(qp: QP, w: Vector) -> NDArray[np.bool_]:
+def _is_carried(qp: QPViews, w: Vector) -> NDArray[np.bool_]:
     """Mark the entries of w (n,) that have the bound that they need, (n,)."""
     return np.asarray(np.where(w > 0.0, qp.lb > -np.inf, qp.ub < np.inf) | (w == 0.0))
 
 
-def _towards_bound(qp: QP, vector: Vector) -> NDArray[np.bool_]:
+def _towards_bound(qp: QPViews, vector: Vector) -> NDArray[np.bool_]:
     """Mark the entries of `vector` (n,) that point from the inside to a finite bound, (n,)."""
     return np.where(vector > 0.0, qp.ub < np.inf, (vector < 0.0) & (qp.lb > -np.inf))
 
@@ -229,15 +236,13 @@ def _scaled(vector: Vector) -> Vector:
 
 
 def _whole(vector: Vector) -> Vector:
-    """Return the multiple of a vector that is nearest to whole numbers, rounded to them."""
+    """Round a vector to whole numbers, of which the least is `_WHOLE`."""
     sizes = np.abs(vector)
     least = sizes.min(where=sizes > _SLIGHT * sizes.max(initial=0.0), initial=np.inf)
-    multiples = np.outer(_MULTIPLES, vector / least)
-    nearest = np.round(multiples)
-    return np.asarray(nearest[np.argmin(np.abs(multiples - nearest).max(axis=1, initial=0.0))])
+    return np.asarray(np.round(_WHOLE / least * vector))
 
 
-def _polished_multipliers(qp: QP, multipliers: Vector) -> Vector:
+def _polished_multipliers(qp: QPViews, multipliers: Vector) -> Vector:
     """Find the nearest multipliers on the same rows whose residual is zero to rounding."""
     used = np.abs(multipliers) > _SLIGHT
     polished = np.where(used, multipliers, 0.0)
@@ -250,7 +255,7 @@ def _polished_multipliers(qp: QP, multipliers: Vector) -> Vector:
     return polished
 
 
-def _polished_direction(qp: QP, direction: Vector) -> Vector:
+def _polished_direction(qp: QPViews, direction: Vector) -> Vector:
     """Find the nearest direction, along the same rows, whose residuals are zero to rounding."""
     moves = np.abs(direction) > _SLIGHT
     polished = np.where(moves, direction, 0.0)

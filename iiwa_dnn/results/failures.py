@@ -187,9 +187,7 @@ def _crosscheck(check: Mapping[str, Any], steps: int) -> Iterator[str]:
     """Report disagreements, and steps that the references could not judge."""
     first = check["first_disagreement"]
     if first is not None:
-        said = GAPS[first.get("quantity", "solution_gap")].format(
-            solver=first["solver"], gap=_show(first["gap"])
-        )
+        said = GAPS[first["quantity"]].format(solver=first["solver"], gap=_show(first["gap"]))
         tolerance = _show(first["tolerance"])
         yield (
             f"{_at(first)}: {said}, tolerance {tolerance}; {counted(check['disagreements'])} in all"

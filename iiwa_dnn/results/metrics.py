@@ -270,18 +270,17 @@ def _crosscheck(record: Record) -> dict[str, Any]:
     asked = ~(np.isnan(gap) & np.isnan(residual)) & (kind != _STOPPED)[:, np.newaxis]
     believed = asked & (residual <= check["reference_tolerance"]) & ~np.isinf(gap)
     excess = record.filled("excess")
-    judged = list(GAPS) if len(record.feasibility_gap) else ["solution_gap"]
-    gaps = np.hstack([*(getattr(record, name) for name in judged), excess[:, np.newaxis]])
+    gaps = np.hstack([*(getattr(record, name) for name in GAPS), excess[:, np.newaxis]])
     # Not `gap > tolerance`, which a NaN would pass.
     outside = ~(excess <= EXCESS_TOLERANCE) & (kind != _STOPPED)
-    beyond = np.tile(believed, len(judged)) & ~(gaps[:, :-1] <= check["tolerance"])
+    beyond = np.tile(believed, len(GAPS)) & ~(gaps[:, :-1] <= check["tolerance"])
     disagrees = np.column_stack([beyond, outside]) & converged
     checked = asked.all(axis=1) & bool(check["solvers"])
     first = _first(record, disagrees.any(axis=1))
     if first is not None:
         step = first["step"]
         worst = int(np.where(disagrees[step], gaps[step], -np.inf).argmax())
-        pairs = [(name, solver) for name in judged for solver in check["solvers"]]
+        pairs = [(name, solver) for name in GAPS for solver in check["solvers"]]
         quantity, solver = [*pairs, ("solution_gap", BOUNDS)][worst]
         first |= {
             "quantity": quantity,
@@ -299,7 +298,7 @@ def _crosscheck(record: Record) -> dict[str, Any]:
         "judged_by": _judged_by(record, asked),
         "disagreements": disagrees.any(axis=1).sum(),
         "reference_failures": (asked & ~believed).sum(),
-        **{f"max_{name}": _max(getattr(record, name)[believed]) for name in judged},
+        **{f"max_{name}": _max(getattr(record, name)[believed]) for name in GAPS},
         "max_reference_residual": _max(residual[np.isfinite(residual)]),
         "judged": converged and bool(check["solvers"]),
         "tolerance": check["tolerance"],

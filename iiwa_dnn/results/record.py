@@ -123,6 +123,9 @@ class Record:
         Array,
         Column("Difference in the objective to each reference, relative to its terms", ("N", "k")),
     ]
+    feasibility_gap: Annotated[
+        Array, Column("Largest violation of a bound or row, relative to its terms", ("N", "k"))
+    ]
     reference_residual: Annotated[
         Array, Column("Largest KKT residual of each reference's own answer", ("N", "k"))
     ]
@@ -222,14 +225,6 @@ class Record:
             "none",
             ("N", "k"),
             np.int8,
-        ),
-    ] = ABSENT
-    feasibility_gap: Annotated[
-        Array,
-        Column(
-            "Largest violation of a bound or row, relative to its terms; of length zero where only "
-            "`solution_gap` was judged",
-            ("N", "k"),
         ),
     ] = ABSENT
     frame_position: Annotated[
@@ -350,9 +345,7 @@ class Record:
             # Not np.load, which takes any file that is no archive for a pickled object.
             with Path(path).open("rb") as file:
                 stored = np.lib.npyio.NpzFile(file, allow_pickle=False)
-                names = COLUMNS.keys() - (LATER - set(stored.files))
-                former = {FORMER.get(name, name): name for name in stored.files}
-                arrays: dict[str, Any] = {name: stored[former.get(name, name)] for name in names}
+                arrays: dict[str, Any] = {name: stored[name] for name in COLUMNS}
                 settings = json.loads(str(stored["settings"]))
             if not len(arrays["dq_solver"]):
                 arrays["dq_solver"] = arrays["dq"]
@@ -376,12 +369,6 @@ OPTIONAL = frozenset(
     item.name for item in fields(Record) if item.default is not MISSING and item.name in COLUMNS
 )
 """Columns that may have the length zero."""
-
-FORMER = {"blocking": "limiting", "blocking_rows": "limiting_rows"}
-"""Names of columns that files of an earlier version have, and those of now."""
-
-LATER = frozenset({"feasibility_gap"})
-"""Optional columns that files of an earlier version lack."""
 
 Record.__doc__ = "\n        ".join(
     [

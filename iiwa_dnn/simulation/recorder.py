@@ -19,7 +19,7 @@ from iiwa_dnn.simulation.loop import Outcome
 SEARCHED = 100
 """Steps of the continuous mode of which one is tested for a solution."""
 
-_LATER = {"solution_gap", "objective_gap", "reference_residual", "t"}
+_LATER = {"solution_gap", "objective_gap", "feasibility_gap", "reference_residual", "t"}
 
 
 class Recorder:

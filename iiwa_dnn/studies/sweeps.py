@@ -5,15 +5,13 @@ else that its result depends on (`fingerprint`). A sweep that was killed, even b
 the finished cells the next time and computes the others; after any change there are new cells.
 
 The results come in the order of the cells, whatever the number of workers, and each worker keeps
-to one thread, so the same cells give the same numbers on one machine. Workers of a Dask cluster
-need the same package, and the folder if the sweep is to be resumable.
+to one thread, so the same cells give the same numbers on one machine.
 """
 
 import hashlib
 import inspect
 import os
 from collections.abc import Callable, Sequence
-from contextlib import nullcontext
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -23,7 +21,7 @@ import joblib
 from tqdm import tqdm
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import IiwaDnnError, import_extra
+from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.files import prepare_folder
 from iiwa_dnn.processes import end_with
 from iiwa_dnn.robot.loading import robots_folder
@@ -51,7 +49,6 @@ def sweep(
     folder: Path,
     *,
     workers: int | None = None,
-    dask: str | None = None,
     quiet: bool = False,
 ) -> list[Any]:
     """Compute the cells without stored results; return the results of all, in their order.
@@ -62,20 +59,16 @@ def sweep(
         cells: Arguments of the task, whose hashes distinguish them.
         folder: Folder of the finished cells; made if need be.
         workers: Number of processes, 1 for this one alone; None takes every core.
-        dask: Address of a Dask scheduler that carries the cells out; None stays with joblib.
         quiet: Show no progress bar.
 
     Raises:
         IiwaDnnError: A cell has an error, which is named with the cell.
-        OSError: There is no scheduler at that address.
-        MissingDependencyError: Dask is not installed.
         FileError: A file cannot be written.
     """
     if workers is not None:
         checks.integer("workers", workers, 1)
     kept = joblib.Memory(prepare_folder(folder), verbose=0).cache(_compute, ignore=["task"])
     calls = (joblib.delayed(kept)(task, cell, fingerprint(task)) for cell in cells)
-    client: Any = nullcontext()
     backend: dict[str, Any] = {
         "backend": "loky",
         "n_jobs": -1 if workers is None else workers,
@@ -83,11 +76,7 @@ def sweep(
         "initializer": end_with,
         "initargs": (os.getpid(),),
     }
-    if dask is not None:
-        distributed = import_extra("distributed", "pip install 'iiwa-dnn[dask]'")
-        client = distributed.Client(dask)
-        backend = {"backend": "dask"}
-    with client, joblib.parallel_config(**backend):
+    with joblib.parallel_config(**backend):
         # One cell a message, and no arrays in shared memory, which a killed sweep would leave.
         results = joblib.Parallel(batch_size=1, return_as="generator", max_nbytes=None)(calls)
         shown = tqdm(

@@ -9,8 +9,6 @@ import pytest
 
 from helpers_records import heart_record, make_record
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.results.failures import failures
-from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL, Record
 
 ROWS = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(3)]
@@ -56,7 +54,7 @@ def test_round_trip(tmp_path, steps, solvers):
 
 
 def test_columns_that_a_run_lacks_have_the_length_zero(tmp_path):
-    record = make_record(settings={"rows": ROWS}, feasibility_gap=())
+    record = make_record(settings={"rows": ROWS})
     for name in OPTIONAL:
         array = getattr(record, name)
         assert len(array) == 0
@@ -81,34 +79,6 @@ def test_copies_are_not_stored(heart, tmp_path):
             lengths.append((len(stored["dq_solver"]), len(stored["rotation_desired"])))
     assert lengths == [(0, 1), (40, 41)]
     np.testing.assert_array_equal(Record.load(tmp_path / "b.npz").rotation_desired, turning)
-
-
-def test_a_file_of_before_all_three_gaps_is_read_and_judged_by_the_first(tmp_path):
-    make_record().save(tmp_path / "new.npz")
-    with np.load(tmp_path / "new.npz") as stored:
-        arrays = dict(stored)
-    del arrays["feasibility_gap"]
-    arrays["objective_gap"][3] = np.nan  # as of a proof then; in other units, and not judged
-    np.savez(tmp_path / "old.npz", **arrays)
-    loaded = Record.load(tmp_path / "old.npz")
-    assert len(loaded.feasibility_gap) == 0
-    assert failures(loaded) == []
-    check = compute_metrics(loaded)["crosscheck"]
-    assert "max_objective_gap" not in check
-    assert check["max_solution_gap"] == 1e-9
-
-
-def test_a_file_of_before_the_fields_words_is_read(tmp_path):
-    limiting = np.zeros((10, 7), np.int8)
-    limiting[3, 2] = -4
-    make_record(limiting=limiting).save(tmp_path / "now.npz")
-    with np.load(tmp_path / "now.npz") as stored:
-        arrays = dict(stored)
-    arrays["blocking"] = arrays.pop("limiting")
-    arrays["blocking_rows"] = arrays.pop("limiting_rows")
-    np.savez(tmp_path / "before.npz", **arrays)
-    read = Record.load(tmp_path / "before.npz")
-    np.testing.assert_array_equal(read.limiting, limiting)
 
 
 def test_a_record_does_not_change_with_what_it_was_made_of():

@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -118,38 +117,3 @@ def test_an_error_names_the_cell(tmp_path: Path) -> None:
 def test_a_worker_with_another_version_refuses() -> None:
     with pytest.raises(IiwaDnnError, match="another version"):
         sweeps._compute(draw, {}, "other")
-
-
-@pytest.fixture
-def scheduler(tmp_path: Path, log: Path) -> Iterator[str]:
-    """A Dask scheduler and two workers, each a process of its own."""
-    distributed = pytest.importorskip("distributed")
-    file = tmp_path / "scheduler.json"
-    dask = [sys.executable, "-m", "distributed.cli.dask_scheduler"]
-    place = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
-    started = [subprocess.Popen([*dask, *place, "--scheduler-file", str(file)], cwd=tmp_path)]
-    deadline = time.monotonic() + 60.0
-    while not file.exists():
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
-    worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(file)]
-    options = ["--nthreads", "1", "--no-dashboard", "--no-nanny"]
-    started += [subprocess.Popen([*worker, *options], cwd=tmp_path) for _ in range(2)]
-    address = json.loads(file.read_text(encoding="utf-8"))["address"]
-    with distributed.Client(address) as client:
-        client.wait_for_workers(2, timeout=60.0)
-    yield address
-    for process in started[::-1]:
-        process.kill()
-    for process in started:
-        process.wait(30.0)
-
-
-def test_a_dask_cluster_brings_the_same_bytes(tmp_path: Path, log: Path, scheduler: str) -> None:
-    here = sweep(measure, RUNS, tmp_path / "here", workers=1, quiet=True)
-    there = sweep(measure, RUNS, tmp_path / "there", dask=scheduler, quiet=True)
-    assert json.dumps(there) == json.dumps(here)
-    sweep(draw, cells(log, 6, sleep=0.3), tmp_path / "draws", dask=scheduler, quiet=True)
-    lines = log.read_text(encoding="utf-8").splitlines()
-    assert len({line.split()[2] for line in lines}) == 2, "both workers"
-    assert sorted(computed(log)) == [0, 1, 2, 3, 4, 5]

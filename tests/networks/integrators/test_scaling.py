@@ -139,4 +139,4 @@ def test_the_budget_counts_the_linear_solves_of_all_attempts() -> None:
             solver = DNNSolver(solve_integrator=ImplicitEuler(max_steps=most))
             solution = solver.solve(qp)
             assert 0 < solution.iterations <= most
-            assert solver.sharpen(qp, solution).iterations <= most
+            assert solver.solve_cold(qp, sharpen=True).iterations <= most
