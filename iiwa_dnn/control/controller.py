@@ -19,7 +19,6 @@ from iiwa_dnn.control.paths import (
     References,
     beyond_reach,
     by_frame,
-    pair_warnings,
     paths_of,
     rank_warnings,
     setup_warnings,
@@ -377,10 +376,7 @@ class Controller:
         """
         self._state.warned.add("start")
         program = self.program
-        found = [
-            *setup_warnings(program, start, self.dt, self.mode),
-            *pair_warnings(program, start, t),
-        ]
+        found = [*setup_warnings(program, start, t, self.dt, self.mode)]
         if own:
             found += rank_warnings(program, start, t, self.dt, self.targets)
             found += target_warnings(self.scheme, program.target_frames, start, self.targets(t))

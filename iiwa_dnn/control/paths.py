@@ -66,13 +66,14 @@ def paths_of(reference: References | None, tip: str, frames: Sequence[str]) -> d
 
 
 def setup_warnings(
-    program: ProgramLayout, start: Configuration, dt: float, mode: str
+    program: ProgramLayout, start: Configuration, t: float, dt: float, mode: str
 ) -> Iterator[str]:
-    """Report settings of a loop that are most likely wrong.
+    """Report settings of a loop, or a place where it begins, that are most likely wrong.
 
     Args:
         program: The program of its steps.
         start: Where it begins.
+        t: Time at which it begins [s].
         dt: Control period [s].
         mode: ``"converged"`` or ``"continuous"``.
     """
@@ -95,6 +96,7 @@ def setup_warnings(
         )
     if program.constants_of(CollisionAvoidance) and (links := unwatched_links(robot)):
         yield unwatched(links)
+    yield from pair_warnings(program, start, t)
 
 
 def _gain_warnings(program: ProgramLayout, dt: float) -> Iterator[str]:

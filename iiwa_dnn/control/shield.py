@@ -48,7 +48,7 @@ from iiwa_dnn.control.arms import (
 from iiwa_dnn.control.command import Command, LogLayout
 from iiwa_dnn.control.controller import periods_of_step
 from iiwa_dnn.control.cycle import INVALID, ControlLayout
-from iiwa_dnn.control.paths import pair_warnings, setup_warnings
+from iiwa_dnn.control.paths import setup_warnings
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.requests import (
     ARGUMENTS,
@@ -509,6 +509,5 @@ class Shield:
             return
         self._warned.add("start")
         program = self.layout(self.robot.tip).step.program
-        doubtful = setup_warnings(program, start, self.dt, "converged")
-        for message in (*doubtful, *pair_warnings(program, start, 0.0)):
+        for message in setup_warnings(program, start, 0.0, self.dt, "converged"):
             warnings.warn(message, stacklevel=stacklevel + 1)
