@@ -11,19 +11,20 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from functools import lru_cache
-from itertools import combinations, product
+from itertools import chain, combinations, product
 from pathlib import Path
 from time import perf_counter
+from typing import Any, ClassVar
 
 import coal
 import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import FileError
+from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line, read_toml, write_text
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.loading import robots_folder
@@ -39,24 +40,38 @@ CLEARANCE = 0.02
 
 
 @dataclass(frozen=True)
-class LinkCapsule:
+class LinkCapsule(checks.Checked):
     """A capsule fixed to a link; a sphere where both ends are equal.
 
     Attributes:
         link: Name of the link's frame.
-        a: One end of its axis in that frame [m].
-        b: The other end [m].
-        radius: Radius [m].
+        a: One end of its axis in that frame [m], (3,).
+        b: The other end [m], (3,).
+        radius: Radius [m], above 0.
     """
 
+    _checks: ClassVar[checks.Checks] = {
+        "a": checks.vector3,
+        "b": checks.vector3,
+        "radius": checks.positive,
+    }
     link: str
-    a: checks.Vector3
-    b: checks.Vector3
+    a: Sequence[float]
+    b: Sequence[float]
     radius: float
 
 
+def _reasons(argument: str, value: Iterable[Any]) -> tuple[tuple[str, str, str], ...]:
+    """Return pairs of links with their reasons as tuples; refuse any other value."""
+    try:
+        return tuple((str(a), str(b), str(why)) for a, b, why in value)
+    except (TypeError, ValueError) as error:
+        problem = "must have two links and a reason in each entry"
+        raise InvalidInputError(argument, problem, value) from error
+
+
 @dataclass(frozen=True)
-class CollisionModel:
+class CollisionModel(checks.Checked):
     """Capsules of a robot's links, and the pairs of links that need no watching.
 
     Attributes:
@@ -65,14 +80,21 @@ class CollisionModel:
             ``"never"``, ``"start"`` or a text of one's own.
     """
 
+    _checks: ClassVar[checks.Checks] = {"left_out": _reasons}
     capsules: tuple[LinkCapsule, ...]
     left_out: tuple[tuple[str, str, str], ...]
 
     def pairs(self, robot: Robot) -> list[tuple[int, int]]:
-        """List the pairs of capsules that may meet, the one nearer to the base first."""
+        """List the pairs of capsules that may meet, the one nearer to the base first.
+
+        Raises:
+            NotFoundError: The robot has no link of a name.
+        """
         links = [capsule.link for capsule in self.capsules]
         joints = [_joint(robot, link) for link in links]
         left_out = {frozenset(pair[:2]) for pair in self.left_out}
+        for link in chain.from_iterable(left_out):
+            robot.frame_id(link)
         outward = sorted(range(len(joints)), key=joints.__getitem__)
         return [
             (i, k)
@@ -96,19 +118,11 @@ class CollisionModel:
         """
         tables = read_toml(path)
         try:
-            capsules = [
-                LinkCapsule(
-                    str(entry["link"]),
-                    checks.vector3("a", entry["a"]),
-                    checks.vector3("b", entry["b"]),
-                    checks.positive("radius", entry["radius"]),
-                )
-                for entry in tables["capsule"]
-            ]
-            pairs = tuple((str(a), str(b), str(why)) for a, b, why in tables["left_out"])
-            return cls(tuple(capsules), pairs)
+            capsules = tuple(LinkCapsule(**entry) for entry in tables["capsule"])
+            return cls(capsules, tables["left_out"])
         except (KeyError, ValueError, TypeError) as error:
-            raise FileError(path, f"no collision geometry: {one_line(error)}") from error
+            problem = one_line(error).rpartition("__init__() ")[2]  # of Python's own message
+            raise FileError(path, f"no collision geometry: {problem}") from error
 
 
 def collision_file(robot: Robot) -> Path:
@@ -228,21 +242,13 @@ def _capsules(robot: Robot) -> list[LinkCapsule]:
 
     Spheres that another capsule of the link holds, such as the ends of a cylinder, are left out.
     """
-    try:
-        shapes = read_shapes(robot, pin.GeometryType.COLLISION).geometryObjects
-    except (ValueError, RuntimeError) as error:
-        raise FileError(
-            source_of(robot)[0],
-            f"a shape cannot be read ({one_line(error)}); "
-            "ROS_PACKAGE_PATH names the folder of packages",
-        ) from error
+    shapes = read_shapes(robot, pin.GeometryType.COLLISION).geometryObjects
     found: list[LinkCapsule] = []
     for shape in sorted(shapes, key=lambda each: isinstance(each.geometry, coal.Sphere)):
         frame = robot.model.frames[shape.parentFrame]
         pose = frame.placement.actInv(shape.placement)
         a, b, radius = _fit(shape.geometry)
-        ends = [checks.vector3("end", pose.act(end)) for end in (a, b)]
-        fitted = LinkCapsule(frame.name, ends[0], ends[1], radius)
+        fitted = LinkCapsule(frame.name, pose.act(a), pose.act(b), radius)
         if not any(_holds(each, fitted) for each in found):
             found.append(fitted)
     return found

@@ -173,7 +173,8 @@ def _lock(model: pin.Model, locked: Collection[str]) -> tuple[pin.Model, dict[st
     reduced = _reduce(model, frozen, posture) if frozen else model
     for joint, *sizes in zip(reduced.names, reduced.nqs, reduced.nvs, strict=True):
         if max(sizes) > 1:
-            raise InvalidInputError("locked", f"joint {joint!r} has {sizes[0]} coordinates", joint)
+            problem = f"joint {joint!r} has {sizes[0]} coordinates, not 1: lock it"
+            raise InvalidInputError("locked", problem, joint)
     return reduced, dict(zip(locked, held, strict=True))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.robot.urdf import parser_messages
 
@@ -36,7 +36,7 @@ def read_shapes(robot: Robot, kind: pin.GeometryType) -> pin.GeometryModel:
 
     Raises:
         InvalidInputError: The robot does not come from a file.
-        ValueError, RuntimeError: A mesh is missing or damaged.
+        FileError: A mesh is missing or damaged.
     """
     return _read(robot.model, *source_of(robot), kind).copy()
 
@@ -45,18 +45,24 @@ def read_shapes(robot: Robot, kind: pin.GeometryType) -> pin.GeometryModel:
 def _read(model: pin.Model, path: Path, text: str, kind: pin.GeometryType) -> pin.GeometryModel:
     folders = [str(folder) for folder in (*path.absolute().parents, *path.resolve().parents)]
     loader = coal.CachedMeshLoader(coal.BV_OBB)  # half of the default's time
-    with parser_messages():  # which were told when the robot was loaded
-        return pin.buildGeomFromUrdfString(model, text, kind, None, folders, loader)
+    try:
+        with parser_messages():  # which were told when the robot was loaded
+            return pin.buildGeomFromUrdfString(model, text, kind, None, folders, loader)
+    except (ValueError, RuntimeError) as error:
+        # Behind where coal's source has it, before its advice.
+        reason = one_line(error).rpartition("message: ")[2].partition(" Hint: ")[0]
+        advice = "ROS_PACKAGE_PATH names the folder of packages"
+        raise FileError(path, f"a shape cannot be read ({reason}); {advice}") from error
 
 
 def visual_shapes(robot: Robot) -> pin.GeometryModel:
     """Read the <visual>s of a robot; if a mesh is missing, none, which a warning says."""
+    if robot.path is None:
+        return pin.GeometryModel()
     try:
         return read_shapes(robot, pin.GeometryType.VISUAL)
-    except (ValueError, RuntimeError) as error:
-        if robot.path is not None:
-            problem = f"{robot.name} is drawn without its shapes: {one_line(error)}"
-            warnings.warn(problem, stacklevel=2)
+    except FileError as error:
+        warnings.warn(f"{robot.name} is drawn without its shapes: {error}", stacklevel=2)
         return pin.GeometryModel()
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn.checks import Array
+from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.robot.shapes import read_shapes
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def _jacobians(robot: Robot, postures: Array, reach: float) -> Array:
 def _count_collisions(robot: Robot, postures: Array) -> Array:
     """Count the pairs of collision shapes that meet in some of the postures (k, n), (k,)."""
     geometry = pin.GeometryModel()
-    with suppress(ValueError, RuntimeError):  # no file, or a mesh is missing
+    with suppress(IiwaDnnError):  # no file, or a mesh is missing
         geometry = read_shapes(robot, pin.GeometryType.COLLISION)
     geometry.addAllCollisionPairs()
     data = robot.model.createData()

@@ -66,6 +66,7 @@ def _parse(data: bytes) -> ET.Element:
     a part of its name: ``p.name`` for ``p:name``, so that other parsers read the tree's text.
     """
     text = data.decode("utf-16" if data[:2] in _UTF_16 else "utf-8-sig", "replace")
+    text = text.partition("\0")[0]  # the end of a string in C
     # Lines keep their numbers.
     text = _UNREAD.sub(lambda found: "\n" * found[0].count("\n"), text)
     tree = ET.TreeBuilder()

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 import pytest
+import tomli_w
 
 import iiwa_dnn
 from iiwa_dnn.robot import collision
@@ -143,6 +144,40 @@ def test_pairs_are_those_of_all_distances(name: str) -> None:
         expected = "never" if min(others) > 0.02 else "start" if start <= 0.02 else None
         assert reasons.get(each) in (expected, "adjacent")
     assert len(set(reasons.values())) > 1
+
+
+CAPSULE = {"link": "p1", "a": [0, 0, 0], "b": [0, 0, 0.1], "radius": 0.1}
+
+
+@pytest.mark.parametrize(
+    ("capsule", "pair", "said"),
+    [
+        ({"radius": -0.1}, ["p1", "p2", "never"], "radius: must be a finite number above 0"),
+        ({"b": [0, 1]}, ["p1", "p2", "never"], r"b: must have shape \(3,\)"),
+        ({"radus": 0.1}, ["p1", "p2", "never"], "argument 'radus'"),
+        ({}, ["p1", "p2"], "left_out: must have two links and a reason in each entry"),
+        ({"link": "q1"}, ["p1", "p2", "never"], "^no frame 'q1'; there are: base, p1"),
+        ({}, ["p1", "q2", "never"], "^no frame 'q2'; there are: base, p1"),
+    ],
+)
+def test_a_fault_of_a_geometry_file_is_named(capsule, pair, said, tmp_path) -> None:
+    robot = arm_of(tmp_path)
+    content = {"left_out": [pair], "capsule": [CAPSULE | capsule]}
+    (tmp_path / "arm.collisions.toml").write_text(tomli_w.dumps(content))
+    with pytest.raises(iiwa_dnn.errors.IiwaDnnError, match=said) as caught:
+        collision_model(robot).pairs(robot)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("mesh", ["gone.stl", "text.stl", "part.step"])
+def test_a_damaged_mesh_is_named(mesh: str, tmp_path) -> None:
+    if mesh != "gone.stl":
+        (tmp_path / mesh).write_text("hello")
+    part = f"<collision><geometry><mesh filename='package://{mesh}'/></geometry></collision>"
+    said = rf"read \((Mesh package://|Could not load resource .*){mesh}.*\); ROS_PACKAGE_PATH"
+    with pytest.raises(iiwa_dnn.errors.FileError, match=said) as caught:
+        collision_model(arm_of(tmp_path, p1=part))
+    assert "\n" not in str(caught.value)
 
 
 def test_pairs_that_take_long_are_said(tmp_path, monkeypatch) -> None:

@@ -71,6 +71,7 @@ READ = {
     "another encoding declared": ARM.replace('"1.0"', '"1.0" encoding="utf-16"'),
     "not UTF-8": ARM.replace("<link", "<!-- Ger\xe4t --><link", 1).encode("latin-1"),
     "two declarations": '<?xml version="1.0"?>' + ARM,
+    "end of a string in C": ARM + "\0\0",
     "version 1.2": ARM.replace('name="arm"', 'name="arm" version="1.2"'),
 }
 
@@ -158,7 +159,7 @@ FAULTS = {
     "axis zero": (elbow('"0 1 0"', '"0 0 0"'), "the axis of joint 'elbow' is zero"),
     "angles in degrees": (elbow('"0 0.2 0"', '"0 90\xb0 0"'), "origin element for joint [elbow]"),
     "mimic of nobody": (elbow(LIMIT, LIMIT + "<mimic/>"), "mimic element for joint  [elbow]"),
-    "floating": (elbow("revolute", "floating"), "joint 'elbow' has 7 coordinates"),
+    "floating": (elbow("revolute", "floating"), "joint 'elbow' has 7 .*, not 1: lock it"),
     "tag left open": (elbow("</joint>", ""), "line 10"),
     "a key twice": (
         elbow('velocity="1"', 'velocity="1" velocity="2"'),
