@@ -117,7 +117,7 @@ def build_model(path: Path, root: ET.Element, text: str) -> tuple[pin.Model, lis
         with parser_messages() as messages:
             model = pin.buildModelFromXML(text)
     except (ValueError, RuntimeError, IndexError) as error:
-        reason = "; ".join(messages[:2]) or one_line(error)
+        reason = "; ".join(messages[-2:]) or one_line(error)  # it stops at the last one
         raise FileError(path, f"no URDF that Pinocchio can read: {reason}") from error
     known = {frame.name for frame in model.frames if frame.type != pin.FrameType.BODY}
     for joint in root.findall("joint"):

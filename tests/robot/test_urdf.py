@@ -114,6 +114,10 @@ def test_acceleration_and_jerk_limits_of_the_file(
 
 FAULTS = {
     "no type": (elbow(' type="revolute"', ""), "joint [elbow] has no type"),
+    "a type behind shapes that are left out": (
+        elbow("revolute", "ball").replace(BODY, BODY + BALL.replace("sphere", "torus")),
+        "Joint [elbow] has no known type [ball]",
+    ),
     "no joint name": (elbow(' name="elbow"', ""), "unnamed joint"),
     "no parent": (elbow('<parent link="upper"/>', ""), "Joint [elbow] is missing a parent"),
     "parent misspelt": (
