@@ -1,6 +1,6 @@
-"""Arms that can be loaded by name: URDF file, tip frame and start posture.
+"""Arms that can be loaded by name: URDF file, tip frames, start posture and rates.
 
-The files of `ARMS` come with the package ``example-robot-data`` (extra ``robots``), which is data
+Files that are not in the package come with ``example-robot-data`` (extra ``robots``), which is data
 only: the URDFs as their makers publish them.
 """
 
@@ -16,27 +16,39 @@ _PACKAGE = "example-robot-data"
 _FOLDER = "cmeel.prefix/share/example-robot-data/robots"
 
 
+def robots_folder() -> Path:
+    """Find the robots' folder: beside the rooms in an installed wheel, above in the repository."""
+    here = Path(__file__).resolve().parents[1]
+    inside = here / "robots"
+    return inside if inside.is_dir() else here.parent / "robots"
+
+
 @dataclass(frozen=True)
 class Arm:
     """Facts on an arm that its URDF does not hold.
 
     Attributes:
-        file: The URDF's path in the package's folder of robots.
-        tip: Frame that follows references.
+        file: The URDF's path in the robots' folder of this package or of ``example-robot-data``.
+        tips: Frames at its ends: the first follows references, joints that move one are free.
         start: Posture away from limits and singular postures [rad], (n,).
+        rates: Acceleration [rad/s^2] and jerk [rad/s^3] limits, (2, n); () for none.
     """
 
     file: str
-    tip: str
+    tips: tuple[str, ...]
     start: tuple[float, ...]
+    rates: tuple[tuple[float, ...], ...] = ()
 
     @property
     def path(self) -> Path:
         """The URDF file.
 
         Raises:
-            MissingDependencyError: The package of the files is not installed.
+            MissingDependencyError: The package of the file is not installed.
         """
+        own = robots_folder() / self.file
+        if own.is_file():
+            return own
         try:
             return Path(str(distribution(_PACKAGE).locate_file(_FOLDER))) / self.file
         except PackageNotFoundError as error:
@@ -58,11 +70,28 @@ _UR = (
 )
 
 ARMS = {
-    "baxter_left": Arm(_BAXTER, "left_gripper", _BENT),
-    "baxter_right": Arm(_BAXTER, "right_gripper", _BENT),
+    "fr3": Arm(
+        "fr3/fr3.urdf",
+        ("link8",),
+        (0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
+        ((9.999,) * 7, (4999.999,) * 7),
+    ),
+    "iiwa7": Arm(
+        "iiwa7/iiwa7.urdf",
+        ("iiwa7_flange",),
+        (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0),  # the paper's theta(0), section V
+        ((8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17), (np.inf,) * 7),
+    ),
+    "iiwa7_dual": Arm(
+        "iiwa7_dual/iiwa7_dual.urdf",
+        ("left_iiwa7_flange", "right_iiwa7_flange"),
+        (0.0, 0.6, 0.0, -1.4, 0.0, 1.1, 0.0) * 2,
+    ),
+    "baxter_left": Arm(_BAXTER, ("left_gripper",), _BENT),
+    "baxter_right": Arm(_BAXTER, ("right_gripper",), _BENT),
     "kinova": Arm(
         "kinova_description/robots/kinova.urdf",
-        "j2s6s200_end_effector",
+        ("j2s6s200_end_effector",),
         (
             3.222700497924974,
             4.445022339799348,
@@ -74,72 +103,53 @@ ARMS = {
     ),
     "panda": Arm(
         "panda_description/urdf/panda.urdf",
-        "panda_hand_tcp",
+        ("panda_hand_tcp",),
         (0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
+        (
+            (15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0),
+            (7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10000.0, 10000.0),
+        ),
     ),
     "so101": Arm(
-        "so_arm_description/urdf/so101.urdf", "gripper_frame_link", (0.0, -0.6, 0.6, 0.8, 0.0)
+        "so_arm_description/urdf/so101.urdf", ("gripper_frame_link",), (0.0, -0.6, 0.6, 0.8, 0.0)
     ),
     "talos_left": Arm(
         _TALOS,
-        "gripper_left_base_link",
+        ("gripper_left_base_link",),
         (0.0, 0.261799387799, -0.5235987755960001, 1.439896632895, 0.0, -1.178097245095, *_WRIST),
     ),
     "talos_left_arm": Arm(
         "talos_data/robots/talos_left_arm.urdf",
-        "gripper_left_base_link",
+        ("gripper_left_base_link",),
         (1.3, -0.9, -1.8, 0.2, -0.3, 0.1),
     ),
     "talos_right": Arm(
         _TALOS,
-        "gripper_right_base_link",
+        ("gripper_right_base_link",),
         (0.0, 0.261799387799, 0.5235987755959999, -1.439896632895, 0.0, -1.178097245095, *_WRIST),
     ),
     "tiago": Arm(
         "tiago_description/robots/tiago.urdf",
-        "arm_tool_link",
+        ("arm_tool_link",),
         (0.1, 1.8, -0.7, -0.9, 0.8, 0.7, -0.6, -0.6),
     ),
-    "ur3": Arm("ur_description/urdf/ur3_robot.urdf", "tool0", _UR),
-    "ur5": Arm("ur_description/urdf/ur5_robot.urdf", "tool0", (0.0, -1.2, 1.6, -1.97, -1.57, 0.0)),
-    "ur10": Arm("ur_description/urdf/ur10_robot.urdf", "tool0", _UR),
+    "ur3": Arm("ur_description/urdf/ur3_robot.urdf", ("tool0",), _UR),
+    "ur5": Arm(
+        "ur_description/urdf/ur5_robot.urdf", ("tool0",), (0.0, -1.2, 1.6, -1.97, -1.57, 0.0)
+    ),
+    "ur10": Arm("ur_description/urdf/ur10_robot.urdf", ("tool0",), _UR),
     "xarm7": Arm(
-        "xarm_description/urdf/xarm7.urdf", "link_eef", (0.0, -0.25, 0.0, 0.9, 0.0, 1.15, 0.0)
+        "xarm_description/urdf/xarm7.urdf", ("link_eef",), (0.0, -0.25, 0.0, 0.9, 0.0, 1.15, 0.0)
     ),
     "z1": Arm(
         "z1_description/urdf/z1.urdf",
-        "gripperStator",
+        ("gripperStator",),
         (0.0, 1.4835298641951802, -1.4398966328953218, 0.0, 0.0, 0.0),
     ),
 }
-"""By name; all joints that do not move the tip are held still."""
+"""By name; all joints that do not move a tip are held still.
 
-TIPS = {
-    "fr3": ("link8",),
-    "iiwa7": ("iiwa7_flange",),
-    "iiwa7_dual": ("left_iiwa7_flange", "right_iiwa7_flange"),
-}
-"""Tips of the package's own arms: the first follows references, joints that move one are free."""
-
-STARTS = {
-    "iiwa7": (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0),  # the paper's theta(0), section V
-    "fr3": (0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
-    "iiwa7_dual": (0.0, 0.6, 0.0, -1.4, 0.0, 1.1, 0.0) * 2,
-    **{name: arm.start for name, arm in ARMS.items()},
-}
-"""Known start postures by the robot's name [rad], each (n,)."""
-
-RATES: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
-    "fr3": ((9.999,) * 7, (4999.999,) * 7),
-    "iiwa7": ((8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17), (np.inf,) * 7),
-    "panda": (
-        (15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0),
-        (7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10000.0, 10000.0),
-    ),
-}
-"""Acceleration [rad/s^2] and jerk [rad/s^3] limits of each of an arm's joints, by its name.
-
-iiwa7: KUKA publishes none. These accelerations are `drake:acceleration` of
+Sources of the rates. iiwa7: KUKA publishes none. These accelerations are `drake:acceleration` of
 iiwa_description/sdf/iiwa7_no_collision.sdf in github.com/RobotLocomotion/models; its README derives
 them from measured ones of an iiwa 14 (C. Larsen, master's thesis, Chalmers 2019, table 4) by the
 ratio of torque limits times inverse mass matrices. panda: kMaxJointAcceleration and kMaxJointJerk

@@ -12,6 +12,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from itertools import chain, combinations, product
@@ -24,10 +25,9 @@ import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import FileError, InvalidInputError
+from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError
 from iiwa_dnn.files import one_line, read_toml, write_text
-from iiwa_dnn.robot.arms import ARMS
-from iiwa_dnn.robot.loading import robots_folder
+from iiwa_dnn.robot.arms import ARMS, robots_folder
 from iiwa_dnn.robot.obstacles import box_around
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.shapes import read_shapes, source_of
@@ -132,8 +132,9 @@ def collision_file(robot: Robot) -> Path:
         InvalidInputError: The robot does not come from a file.
     """
     path = source_of(robot)[0]
-    if robot.name in ARMS and ARMS[robot.name].path == path:
-        path = robots_folder() / robot.name / robot.name  # the arm's folder is somebody else's
+    with suppress(KeyError, MissingDependencyError):
+        if ARMS[robot.name].path == path:
+            path = robots_folder() / robot.name / robot.name  # the arm's may be somebody else's
     return path.with_suffix(".collisions.toml")
 
 

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
-from iiwa_dnn.robot.arms import ARMS, RATES, TIPS
+from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.robot import Robot, frame_id, model_limits
 from iiwa_dnn.robot.urdf import build_model, number_of, read_urdf
 
@@ -24,10 +24,13 @@ _LARGE = 40.0
 
 
 def available_robots() -> tuple[str, ...]:
-    """List the robots that `load_robot` knows by name: the package's own, then installed `ARMS`."""
-    with contextlib.suppress(MissingDependencyError):
-        return (*TIPS, *(name for name, arm in ARMS.items() if arm.path.is_file()))
-    return tuple(TIPS)
+    """List the robots that `load_robot` knows by name: those of `ARMS` whose files are there."""
+    found = []
+    with contextlib.suppress(MissingDependencyError):  # the package's own come first
+        for name, arm in ARMS.items():
+            if arm.path.is_file():
+                found.append(name)
+    return tuple(found)
 
 
 def load_robot(
@@ -115,13 +118,6 @@ def _load_warnings(robot: Robot, still: list[str], left_out: list[str]) -> Itera
         yield f"held still, since they do not move {robot.tip}: {', '.join(still)}"
 
 
-def robots_folder() -> Path:
-    """Find the robots' folder: beside the rooms in an installed wheel, above in the repository."""
-    here = Path(__file__).resolve().parents[1]
-    inside = here / "robots"
-    return inside if inside.is_dir() else here.parent / "robots"
-
-
 def _find(source: Any) -> tuple[Path | None, tuple[str, ...]]:
     """Find the file of a robot; return it with the tips of its arms if it is known by name."""
     if isinstance(source, pin.Model):
@@ -132,11 +128,9 @@ def _find(source: Any) -> tuple[Path | None, tuple[str, ...]]:
     is_file = isinstance(source, os.PathLike) or name.endswith((".urdf", ".xacro"))
     if is_file or os.sep in name:
         return Path(name), ()
-    if name in ARMS:
-        return ARMS[name].path, (ARMS[name].tip,)
-    if name not in TIPS:
-        raise NotFoundError("robot", name, (*TIPS, *ARMS))
-    return robots_folder() / name / f"{name}.urdf", TIPS[name]
+    if name not in ARMS:
+        raise NotFoundError("robot", name, ARMS)
+    return ARMS[name].path, ARMS[name].tips
 
 
 def _only_end(model: pin.Model) -> str:
@@ -197,7 +191,7 @@ def _rates(name: str, model: pin.Model, tips: Iterable[str]) -> dict[str, tuple[
     """
     idle = _idle_joints(model, tips)
     joints = [joint for joint in tuple(model.names)[1:] if joint not in idle]
-    rates = list(zip(*RATES.get(name, ()), strict=True))
+    rates = list(zip(*ARMS[name].rates, strict=True)) if name in ARMS else []
     return dict(zip(joints, rates, strict=True)) if len(rates) == len(joints) else {}
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
-from iiwa_dnn.robot.arms import STARTS
+from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.start import best_start
 
 _NO_LIMIT = 1e300
@@ -228,12 +228,12 @@ class Robot:
     def start_posture(self) -> checks.Array:
         """Return joint positions (n,) [rad] to start from, inside the limits.
 
-        If a start is known (`iiwa_dnn.robot.arms.STARTS`), it is that one, but for joints outside
+        If a start is known (`iiwa_dnn.robot.arms.ARMS`), it is that one, but for joints outside
         their limits there: they start a twentieth of their range inside the nearer limit. The
         start of any other robot is the best of a few random postures (`best_start`), each joint in
         the middle of its range.
         """
-        start = np.array(STARTS.get(self.name, ()))
+        start = np.array(ARMS[self.name].start if self.name in ARMS else ())
         if start.size != self.dof:
             return self._best_start.copy()
         inside = (self.q_lower < start) & (start < self.q_upper)

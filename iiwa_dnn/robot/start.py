@@ -27,8 +27,8 @@ def best_start(robot: Robot, postures: Array) -> Array:
 
     Its measure is the least singular value of the tip's Jacobian that is not zero everywhere, with
     the rows of rotation times the robot's reach, or without them if there are fewer than six
-    joints. Of the best ones it is the first in which the fewest collision shapes of the robot's file
-    meet. Pairs that meet in all of them are not counted.
+    joints. Of the best ones it is the first in which the fewest collision shapes of the robot's
+    file meet. Pairs that meet in all of them are not counted.
 
     Source: C. A. Klein, B. E. Blaho, "Dexterity measures for the design and control of
     kinematically redundant manipulators", Int. J. Robotics Research 6(2), 1987.

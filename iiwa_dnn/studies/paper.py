@@ -8,9 +8,9 @@ section V. Lengths are in [m], angles in [rad]; its Table II calls the mean squa
 from collections.abc import Mapping
 from typing import Any
 
-from iiwa_dnn.robot.arms import STARTS
+from iiwa_dnn.robot.arms import ARMS
 
-START = STARTS["iiwa7"]
+START = ARMS["iiwa7"].start
 """theta(0) [rad]."""
 
 JOINT_LIMIT = 2.5

@@ -24,7 +24,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.files import prepare_folder
 from iiwa_dnn.processes import end_with
-from iiwa_dnn.robot.loading import robots_folder
+from iiwa_dnn.robot.arms import robots_folder
 
 Task = Callable[[Any], Any]
 

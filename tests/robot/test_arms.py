@@ -13,9 +13,11 @@ import yourdfpy
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array, example_urdf
 from iiwa_dnn.robot import arms
-from iiwa_dnn.robot.arms import ARMS, TIPS
-from iiwa_dnn.robot.loading import robots_folder
+from iiwa_dnn.robot.arms import ARMS, robots_folder
+from iiwa_dnn.robot.collision import collision_file
 from iiwa_dnn.robot.shapes import visual_meshes
+
+OWN = ("fr3", "iiwa7", "iiwa7_dual")
 
 
 @pytest.fixture(autouse=True)
@@ -27,11 +29,10 @@ def is_inside(robot: d.Robot, q: Array) -> bool:
     return bool((q > robot.q_lower).all() and (q < robot.q_upper).all())
 
 
-@pytest.mark.parametrize("name", [*TIPS, *ARMS])
+@pytest.mark.parametrize("name", ARMS)
 def test_every_arm_starts_inside_its_limits_and_not_singular(name: str) -> None:
     robot = d.load_robot(name)
-    if name in ARMS:
-        np.testing.assert_array_equal(robot.start_posture(), ARMS[name].start)
+    np.testing.assert_array_equal(robot.start_posture(), ARMS[name].start)
     other = dataclasses.replace(robot, name="some")
     locked = d.load_robot(name, locked=robot.joint_names[0])
     free = 0.05 if name == "so101" else 0.1  # small, and its start is chosen by positions
@@ -62,7 +63,10 @@ def test_a_start_where_limits_are_on_one_side_or_on_none(lower: object, upper: o
 @pytest.mark.parametrize(
     ("name", "orientation"),
     # The five joints of the SO-101 have no pose to choose.
-    [*product(sorted({*ARMS} - {"so101"}), ["so3"]), *product(["ur5", "panda", "so101"], ["none"])],
+    [
+        *product(sorted({*ARMS} - {"so101", *OWN}), ["so3"]),
+        *product(["ur5", "panda", "so101"], ["none"]),
+    ],
 )
 def test_the_heart_with_any_redundancy(name: str, orientation: str) -> None:
     robot = d.load_robot(name)
@@ -79,7 +83,7 @@ def test_the_heart_with_any_redundancy(name: str, orientation: str) -> None:
 
 
 def test_without_the_package_one_line_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert d.available_robots() == (*TIPS, *ARMS)
+    assert d.available_robots() == tuple(ARMS)
 
     def missing(name: str) -> None:
         raise arms.PackageNotFoundError(name)
@@ -87,7 +91,10 @@ def test_without_the_package_one_line_says_what_to_install(monkeypatch: pytest.M
     monkeypatch.setattr(arms, "distribution", missing)
     with pytest.raises(d.MissingDependencyError, match=r"pip install 'iiwa-dnn\[robots\]'"):
         d.load_robot("panda")
-    assert "panda" not in d.available_robots()
+    assert d.available_robots() == OWN
+    # A file of one's own may have the name of such an arm.
+    own = dataclasses.replace(d.load_robot("iiwa7"), name="panda")
+    assert collision_file(own).name == "iiwa7.collisions.toml"
 
 
 def test_the_iiwa_7_has_the_limits_of_its_data_sheet() -> None:
@@ -100,8 +107,8 @@ def test_the_iiwa_7_has_the_limits_of_its_data_sheet() -> None:
 
 
 def test_robots_of_the_package_need_no_file_of_another_package() -> None:
-    assert {path.stem for path in robots_folder().glob("*/*.urdf")} == set(TIPS)
-    for name in TIPS:
+    assert {path.stem for path in robots_folder().glob("*/*.urdf")} == set(OWN)
+    for name in OWN:
         root = ET.fromstring(d.load_robot(name).urdf)
         assert root.get("name") == name
         assert root.findall(".//visual")
@@ -122,7 +129,7 @@ def reader_of(robot: d.Robot) -> yourdfpy.URDF:
 
 
 CASES = [
-    *[(name, ()) for name in (*TIPS, *ARMS)],
+    *[(name, ()) for name in ARMS],
     ("panda", ("panda_link8", "panda_joint3", "panda_joint4")),  # which is not held at zero
     ("kinova", (None, "j2s6s200_joint_1", "j2s6s200_joint_4")),  # continuous
 ]
@@ -136,8 +143,7 @@ def test_joints_limits_and_poses_of_all_links(name: str, words: tuple[str, ...])
     movable = {joint.name for joint in reader.robot.joints if joint.type != "fixed"}
     assert movable == {*robot.joint_names, *robot.locked}
     assert set(locked) <= set(robot.locked)
-    named = ARMS[name].tip if name in ARMS else TIPS[name][0]
-    assert (robot.name, robot.tip) == (name, tip or named)
+    assert (robot.name, robot.tip) == (name, tip or ARMS[name].tips[0])
     whole = d.load_robot(name)
     known = dict(zip(whole.joint_names, whole.limits.T, strict=True))
     for i, joint in enumerate(robot.joint_names):

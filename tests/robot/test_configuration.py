@@ -22,7 +22,7 @@ def q() -> Array:
 
 @pytest.mark.parametrize("name", ["iiwa7", "panda", "tiago"])
 def test_the_jacobian_of_any_frame_is_the_derivative_of_its_pose(name: str) -> None:
-    if name in ARMS:
+    if not name.startswith("iiwa7"):
         example_urdf(ARMS[name].file)
     robot = load_robot(name)
     random = np.random.default_rng(5)
