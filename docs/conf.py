@@ -36,10 +36,17 @@ myst_links_external_new_tab = False
 default_role = "py:obj"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
-_ALIASES = (
-    "ArrayLike Array IntArray CodeArray Vector Matrix IntVector Mode Motion Policy checks".split()
-)
-autodoc_type_aliases = {name: name for name in _ALIASES}
+_ALIASES = [
+    "ArrayLike",
+    "Vector",
+    "Matrix",
+    "IntVector",
+    "Array",
+    "IntArray",
+    "CodeArray",
+    "checks",
+]
+autodoc_type_aliases = {name: name for name in [*_ALIASES, "Mode", "Motion", "Policy"]}
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 # The classes say it in their docstrings; the field's own comment would say it twice.
