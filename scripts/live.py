@@ -100,9 +100,9 @@ class Live:
         if self.shield is not None:
             self.shield = None
             self.controller.reference = self.goal
-        way = np.asarray(self.ball.position) - self.center
-        most = SPEED * STEPS * DT  # of the ball's way in a tick
-        self.center = self.center + way * min(1.0, most / max(np.linalg.norm(way), 1e-9))
+        left = np.asarray(self.ball.position) - self.center
+        most = SPEED * STEPS * DT  # of the ball's path in a tick
+        self.center = self.center + left * min(1.0, most / max(np.linalg.norm(left), 1e-9))
         chosen = {name: slider.value for name, slider in self.sliders.items()}
         scheme = replace(self.controller.scheme, **chosen)
         if scheme != self.controller.scheme:

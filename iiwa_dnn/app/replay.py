@@ -115,7 +115,7 @@ def show_robot(server: Any, robot: Robot) -> Any:
 def aim(server: Any, point: Vector) -> None:
     """Aim the cameras at the arm and a point in front of it (3,) [m]; on a phone from afar."""
     middle = 0.6 * point + [0.0, 0.0, 0.2]
-    # The first vector lies across the way from the base to the point.
+    # The first vector lies across the line from the base to the point.
     view = 1.6 * np.array([point[1], -point[0], 0.0]) + 0.4 * point + [0.0, 0.0, 0.4]
     server.initial_camera.look_at = tuple(middle)
     server.initial_camera.position = tuple(middle + view)

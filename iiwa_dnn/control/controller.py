@@ -179,7 +179,8 @@ class Controller:
         Args:
             q: Measured joint positions [rad], (n,).
             t: Time [s]; the reference is asked for the time `path_lag` before it.
-            target: Target in place of the reference's; for tasks towards the next one `ahead` too.
+            target: Target in place of the reference's; with ``sample="end"`` as
+                `Reference.feed_forward` gives it.
             dt: Period for which this command will be held [s]. Without a `longest_period`, velocity
                 and acceleration limits hold all the same, jerk and position limits as far as these
                 allow (docs/limits.md).

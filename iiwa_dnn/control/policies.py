@@ -8,7 +8,7 @@ the bounds and the inequality rows. It is handed out, recorded and checked as it
 ``slow``
     Along a path, the scaled program: the task velocity becomes s b with the largest feasible
     :math:`s \in [0, 1]`, less a thousandth of it. The reference's clock advances by s dt, so
-    without limits on acceleration or jerk the arm goes along the same path, later. The task is
+    without limits on acceleration or jerk the arm follows the same path, later. The task is
     relaxed where the reference rests, where s is below a tenth, and where the joints race while
     the tip hardly moves, as in a singular pose.
     Along a path the clock then advances by the fraction of the task velocity that is reached, at

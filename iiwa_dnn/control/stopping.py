@@ -60,7 +60,8 @@ GROWTH = 1.1
 """Factor between the numbers of periods that are tried."""
 
 STRETCH = 1.01
-"""Factor by which a motion in hand becomes longer where periods vary, until its jerk is small."""
+"""Factor by which a stored stopping motion is stretched where periods vary, until its jerk is
+small."""
 
 SLACK = 1e-12
 """Relative excess of a limit that is rounding."""

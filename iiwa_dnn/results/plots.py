@@ -190,7 +190,7 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     """Draw one curve a joint over time, distinguished by luminance and dashes.
 
     The name is ``"q"``, ``"dq"``, ``"acceleration"``, ``"jerk"`` or ``"torque"``. If the limits of
-    the joints differ, all but positions are drawn as shares of them; a position limit near the
+    the joints differ, all but positions are drawn as fractions of them; a position limit near the
     curves is a mark of its joint's color at the end of the time axis.
     """
     import matplotlib

@@ -47,7 +47,7 @@ SHORTEST = 30.0
 """Length of the first backward Euler step [rho]."""
 GROWTH = 10.0
 """Growth of that length from round to round."""
-STUCK = 15
+STALLED = 15
 """Rounds in which the smallest rate so far is not halved, before the end: there is no solution, or
 rounding keeps the residuals above the tolerance."""
 MAX_NEWTON = 50
@@ -152,14 +152,14 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
     step = SHORTEST
     linear_solves = 0
     time = 0.0
-    stuck = 0
+    stalled = 0
     rate = field(qp, s, now)
     smallest = np.inf
     while linear_solves < budget:
-        stuck += 1
+        stalled += 1
         if rate < 0.5 * smallest:
             smallest = rate
-            stuck = 0
+            stalled = 0
         if not rate > tol:
             primal, dual, gap = kkt_point(qp, s, point)
             if within(primal, dual, gap, tol):
@@ -174,9 +174,9 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
                 rate = new_rate
                 time += LONGEST
                 continue
-        if stuck > 0:
+        if stalled > 0:
             kkt_point(qp, s, point)
-            if stuck > STUCK or fits(qp, point, tol, 0.0):
+            if stalled > STALLED or fits(qp, point, tol, 0.0):
                 break
         taken = backward_euler(
             qp, s, step, new, 0.1 * rate, min(MAX_NEWTON, budget - linear_solves), matrix
