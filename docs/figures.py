@@ -497,24 +497,47 @@ def braking() -> Figure:
 # Speed -----------------------------------------------------------------------------------------
 
 
-def median_step(robot: iiwa_dnn.Robot, scheme: iiwa_dnn.Scheme, steps: int = 600) -> float:
-    """Measure the median time of a step along a circle [µs]."""
+ARMS = (1, 4, 16, 64, 256, 1024, 4096)
+ARM_STEPS = 5
+"""Numbers of arms whose shields are timed, and steps of each."""
+
+ROUNDS = 40
+"""Times that steps are timed; the quietest round counts."""
+
+
+def median_step(robot: iiwa_dnn.Robot, scheme: iiwa_dnn.Scheme, steps: int = 300) -> float:
+    """Measure the median time of a step along a circle [µs], in the quietest round."""
     q = np.array(robot.start_posture())
     circle = iiwa_dnn.Circle(radius=0.02, period=4.0).anchored(iiwa_dnn.Configuration(robot, q))
     controller = iiwa_dnn.Controller(robot, scheme, circle, dt=1e-3)
     controller.warm_up(q)
-    taken = []
-    for k in range(steps):
+    taken = np.empty((ROUNDS, steps))
+    for k in range(taken.size):
         began = time.perf_counter_ns()
         command = controller.step(q, k * 1e-3)
-        taken.append(time.perf_counter_ns() - began)
+        taken.flat[k] = time.perf_counter_ns() - began
         q = command.next_q
-    return float(1e-3 * np.median(taken))
+    return float(1e-3 * np.median(taken, axis=1).min())
+
+
+def time_of_an_arm(count: int) -> float:
+    """Measure the median time of a step of many shields, for each arm [µs], likewise."""
+    robot = iiwa_dnn.load_robot("iiwa7").with_limits(jerk=500.0)
+    shields = iiwa_dnn.Shields(robot, count, dt=1e-3)
+    q = np.tile(robot.start_posture(), (count, 1))
+    requests = np.random.default_rng(0).uniform(-1.0, 1.0, q.shape)
+    taken = np.empty((ROUNDS, ARM_STEPS))
+    for k in range(taken.size):
+        began = time.perf_counter_ns()
+        command = shields.step(q, requests)
+        taken.flat[k] = time.perf_counter_ns() - began
+        q = command.next_q
+    return float(1e-3 * np.median(taken, axis=1).min()) / count
 
 
 @figure
 def speed() -> Figure:
-    """Draw the time of a step over joints and over pairs of bodies."""
+    """Draw the time of a step over joints, over pairs of bodies and over arms."""
     counts = (3, 5, 7, 9, 12, 14, 18, 21)
     turn = np.pi / 2
     times = []
@@ -525,7 +548,7 @@ def speed() -> Figure:
             [iiwa_dnn.CyclicMotion()], [iiwa_dnn.PositionTask()], [iiwa_dnn.JointLimits()]
         )
         times.append(median_step(robot, scheme))
-    made, axes = panels(2, 1.7)
+    made, axes = panels(3, 1.6)
     axes[0].plot(counts, times, "o-", color=BLUE)
     axes[0].set(xlabel="joints, position task", ylabel="step [µs]", ylim=0.0)
     robot = iiwa_dnn.load_robot("iiwa7")
@@ -539,6 +562,11 @@ def speed() -> Figure:
         found.append((pairs, median_step(robot, scheme)))
     axes[1].plot(*np.array(found).T, "o-", color=GREEN)
     axes[1].set(xlabel="watched pairs of an iiwa 7", ylabel="step [µs]", ylim=0.0)
+    axes[2].plot(ARMS, [time_of_an_arm(count) for count in ARMS], "o-", color=ORANGE)
+    axes[2].set(xlabel="arms of a Shields, on two cores", ylabel="for each [µs]", ylim=0.0)
+    axes[2].set_xscale("log", base=4)
+    axes[2].set_xticks(ARMS, [f"{count:,}" for count in ARMS])
+    axes[2].minorticks_off()
     return made
 
 

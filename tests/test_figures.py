@@ -53,6 +53,8 @@ def test_a_figure_is_drawn_in_the_readers_colors(
     monkeypatch.setattr(figures, "FRACTIONS", (0.4,))
     monkeypatch.setattr(figures, "SIZES", (7, 14))
     monkeypatch.setattr(figures, "GAINS", (10.0, 100.0))
+    monkeypatch.setattr(figures, "ARMS", (1, 16))
+    monkeypatch.setattr(figures, "ROUNDS", 2)
     text = figures.save(name, tmp_path).read_text(encoding="utf-8")
     ElementTree.fromstring(text)
     assert "currentColor" in text
