@@ -1,15 +1,16 @@
 """Exported controllers, and the programs that compile them."""
 
-import importlib.util
+import importlib
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from iiwa_dnn import Shield
+from iiwa_dnn import Controller, Shield
 from iiwa_dnn.export import load, python
 
 QUICK = ("-std=c99", "-O0")
@@ -36,15 +37,19 @@ def run(*words: str | Path, cwd: Path | None = None) -> str:
     return done.stdout
 
 
-def packaged(shield: Shield, folder: Path, name: str, q0: Any = None) -> Any:
-    """Export a shield as a package of Python, compile and import it."""
-    project = python(shield, folder, name, q0=q0)
+def packaged(
+    made: Controller | Shield, folder: Path, name: str, q0: Any = None, flags: Sequence[str] = ()
+) -> Any:
+    """Export a controller or a shield as a package of Python, compile and import it."""
+    project = python(made, folder, name, q0=q0)
     package = project / name
-    flags = ["-std=c99", "-O1", "-ffp-contract=off", "-shared", "-fPIC"]
-    run("gcc", *flags, package / "shield.c", "-o", package / "_shield.bin", "-lm")
-    spec = importlib.util.spec_from_file_location(name, package / "__init__.py")
-    assert spec
-    assert spec.loader
-    module = sys.modules[name] = importlib.util.module_from_spec(spec)  # pickles find it there
-    spec.loader.exec_module(module)
-    return module
+    (source,) = package.glob("*.c")
+    own = ["-std=c99", "-O1", "-ffp-contract=off", "-shared", "-fPIC", *flags]
+    run("gcc", *own, source, "-o", package / "_library.bin", "-lm")
+    for inner in [each for each in sys.modules if each.partition(".")[0] == name]:
+        del sys.modules[inner]  # of an earlier export by this name
+    sys.path.insert(0, str(project))
+    try:
+        return importlib.import_module(name)
+    finally:
+        sys.path.remove(str(project))

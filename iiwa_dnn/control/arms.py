@@ -607,27 +607,51 @@ def come_nearer(
 def _note_limits(plan: ArmPlan, own: ArmState, log: StepLog, periods: Periods, action: int) -> None:
     """Note which bounds and rows keep the command from the request, and whether they do."""
     qp = program_views(log.program, plan.step.arrays.sizes)
-    n = own.positions.size
-    own.limiting[:] = 0.0
+    limits = write_limiting(log, qp, plan.motion, periods, action, own.limiting)
     differs = 0
-    limits = 0
-    for i in range(n):
-        side = _side_of_bound(log, qp, i, action)
-        if side != 0.0:
-            rates = joint_rates(plan.motion, i)
-            bounds = (log.lower[i], log.upper[i])
-            code = bound_kind(bounds, log.last[i], log.before[i], side, rates, periods)
-            own.limiting[i] = code if side > 0.0 else -code
-            limits += 1
+    for i in range(own.positions.size):
         differs += log.dq[i] != own.request[i]
-    for j in range(qp.h.size):
-        if _side_of_row(log, qp, j, action) != 0.0:
-            own.limiting[n + j] = 1.0
-            limits += 1
     reason = first_reason(own)
     own.is_clipped = limits > 0 or reason != Reason.NONE
     if own.answered == Request.VELOCITY and reason == Reason.NONE:
         own.is_clipped = differs > 0
+
+
+@compiled
+def write_limiting(
+    log: StepLog,
+    qp: QPViews,
+    limits: MotionConstants,
+    periods: Periods,
+    action: int,
+    limiting: Vector,
+) -> int:
+    """Write the kinds of the bounds and the rows that limit a command; return their number.
+
+    Args:
+        log: The log of its step.
+        qp: The program that was answered.
+        limits: Limits of the joints.
+        periods: Periods of the step.
+        action: Action that was taken.
+        limiting: As in `ArmState`, (dof + m,), overwritten.
+    """
+    n = log.dq.size
+    limiting[:] = 0.0
+    count = 0
+    for i in range(n):
+        side = _side_of_bound(log, qp, i, action)
+        if side != 0.0:
+            rates = joint_rates(limits, i)
+            bounds = (log.lower[i], log.upper[i])
+            code = bound_kind(bounds, log.last[i], log.before[i], side, rates, periods)
+            limiting[i] = code if side > 0.0 else -code
+            count += 1
+    for j in range(qp.h.size):
+        if _side_of_row(log, qp, j, action) != 0.0:
+            limiting[n + j] = 1.0
+            count += 1
+    return count
 
 
 @compiled

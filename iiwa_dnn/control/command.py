@@ -1,5 +1,6 @@
 """A command and its answer: the log of one step, which the step writes and records keep."""
 
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,9 +14,9 @@ from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.naming import DONE, active_limits, describe
 from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
-from iiwa_dnn.qp.layout import Sizes, data_size, offsets
+from iiwa_dnn.qp.layout import QPViews, Sizes, data_size, offsets
 from iiwa_dnn.schemes.limits import Periods
-from iiwa_dnn.schemes.program import ACCELERATION, LimitNames, ProgramSizes
+from iiwa_dnn.schemes.program import ACCELERATION, LimitNames, ProgramSizes, program_views
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 PLACEMENT = 12
@@ -26,7 +27,23 @@ ACTIVE = 1e-9
 
 EXCEEDED = "period exceeded"
 
+
+class RankLoss(IntEnum):
+    """Reasons why joints do not fulfil the tasks though no limit is active."""
+
+    NONE = 0
+    SINGULAR = 1
+    FEW = 2
+
+
 SINGULAR = "a singular posture, or tasks that contradict each other"
+
+
+def rank_words(joints: int, rows: int) -> tuple[str, str, str]:
+    """Name each `RankLoss` of a program with so many rows of tasks."""
+    return "", SINGULAR, f"{joints} joints for {rows} rows of the tasks"
+
+
 DAMPED = 4.0
 """Squared singular value of the tasks' rows below which damping counts, in units of its own."""
 
@@ -109,6 +126,38 @@ def note_command(log: StepLog, next_motion_state: MotionState, dq: Vector, dt: f
         log.dq[i] = dq[i]
         next_motion_state.last[i] = dq[i]
         log.next_q[i] = log.q[i] + dt * dq[i]
+
+
+@compiled
+def eigenvalues_above(P: Matrix, least: float) -> int:
+    """Count the eigenvalues of a symmetric matrix (n, n) above a number, by Sylvester's law."""
+    n = len(P)
+    K = P.copy()
+    count = 0
+    for k in range(n):
+        K[k, k] -= least
+    for k in range(n):
+        count += K[k, k] > 0.0
+        for i in range(k + 1, n):
+            factor = K[i, k] / K[k, k] if K[k, k] != 0.0 else 0.0
+            for j in range(k + 1, n):
+                K[i, j] -= factor * K[k, j]
+    return count
+
+
+@compiled
+def rank_loss(qp: QPViews) -> int:
+    """Return a `RankLoss` of the tasks in a relaxed program, whose rows of A are then zero."""
+    rows = 0
+    for j in range(qp.b.size):
+        size = 0.0
+        for i in range(qp.q.size):
+            size += abs(qp.A[j, i])
+        rows += size == 0.0
+    rank = eigenvalues_above(qp.P, DAMPED * DAMPING * DAMPING)
+    if rank >= rows:
+        return RankLoss.NONE
+    return RankLoss.SINGULAR if rank < min(qp.q.size, rows) else RankLoss.FEW
 
 
 class LogLayout(NamedTuple):
@@ -252,7 +301,8 @@ class Command:
             sides, rows = layout.multipliers(self.data, ACTIVE)
         words = [*map(describe, active_limits(layout.names.settings, self.codes(sides), rows))]
         if not words and self.kind is ProgramKind.RELAXED:
-            words = self._rank_loss
+            lost = rank_loss(program_views(self.log.program, layout.sizes))
+            words = [rank_words(layout.sizes.n, layout.sizes.p)[lost]] * bool(lost)
         return (*self.reasons, *words, *self.conditions)
 
     def codes(self, sides: Vector) -> NDArray[np.int8]:
@@ -262,15 +312,6 @@ class Command:
             self.bounds, sides, self.motion_state, self.periods
         )
         return found
-
-    @property
-    def _rank_loss(self) -> list[str]:
-        """State that the rows of the relaxed program's tasks, or the joints, are not enough."""
-        qp = self.qp
-        rows = (~qp.A.any(axis=1)).sum()
-        rank = (np.linalg.eigvalsh(qp.P) > DAMPED * DAMPING**2).sum()
-        few = f"{qp.q.size} joints for {rows} rows of the tasks"
-        return [SINGULAR if rank < min(qp.q.size, rows) else few] * bool(rank < rows)
 
     @property
     def conditions(self) -> tuple[str, ...]:

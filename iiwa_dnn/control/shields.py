@@ -24,37 +24,15 @@ from iiwa_dnn.control.arms import (
     rest_arm,
     step_arms,
 )
-from iiwa_dnn.control.requests import REASONS, TWIST, Request
+from iiwa_dnn.control.requests import TWIST, Request
 from iiwa_dnn.control.shield import Margin, Shield, ShieldCommand, one_request
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.naming import KINDS, active_limits, describe
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.limits import stated_periods
 
 BLOCK = 64
 """Arms that a thread takes at a time."""
-
-
-def limit_words(shield: Shield) -> list[str]:
-    """Name what may keep a shield's command from a request, by codes.
-
-    They are the reasons, then for each joint the lower and the upper bound of each of
-    `naming.KINDS`, then the rows.
-    """
-    settings: dict[str, Any] = shield.layout(shield.robot.tip).step.program.settings()
-    rows = settings["rows"]
-    codes = [sign * kind for kind in range(1, 1 + len(KINDS)) for sign in (-1, 1)]
-    n = shield.robot.dof
-    bounds = [
-        limit
-        for joint in range(n)
-        for code in codes
-        for limit in active_limits(
-            settings, code * np.eye(n, dtype=int)[joint], np.zeros(len(rows))
-        )
-    ]
-    return [*REASONS, *map(describe, [*bounds, *rows])]
 
 
 class ShieldsCommand(NamedTuple):

@@ -6,6 +6,8 @@ import hashlib
 import inspect
 import json
 import re
+from collections.abc import Sequence
+from enum import IntEnum
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -29,24 +31,29 @@ from iiwa_dnn.control.arms import (
     send_arm,
     step_arm,
     stopping_time_of,
+    write_limiting,
 )
-from iiwa_dnn.control.command import log_of
+from iiwa_dnn.control.command import RankLoss, log_of, rank_loss, rank_words
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.cycle import ControlPlan, PathColumn, sample_targets, take_step
-from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.requests import Reason, Request
+from iiwa_dnn.control.policies import Action, ProgramKind
+from iiwa_dnn.control.requests import REASONS, Reason, Request
 from iiwa_dnn.control.shield import Shield
-from iiwa_dnn.control.shields import limit_words
+from iiwa_dnn.control.state import count_as_sent
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.robot import Robot
+from iiwa_dnn.naming import ACTIONS, KINDS, active_limits, describe
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.program import Column
+from iiwa_dnn.schemes.limits import MotionLimits
+from iiwa_dnn.schemes.program import Column, ProgramLayout, program_views
 
 _PACKAGE = Path(__file__).parents[1]
 
 TEMPLATES = _PACKAGE / "export" / "templates"
-"""Templates of the files, in a folder for each kind of export."""
+"""Templates of the files, in folders."""
+
+PARTS = TEMPLATES / "parts"
+"""Templates of what stands within files."""
 
 WIDTH = 120
 """Largest length of a line of C."""
@@ -64,11 +71,11 @@ _SECTIONS = {
 """Titles of the sections of the code, by the packages that they are translated from."""
 
 
-def filled(template: str, values: dict[str, Any]) -> str:
+def filled(template: Path, values: dict[str, Any]) -> str:
     """Fill the values into a template by their names."""
-    text = (TEMPLATES / template).read_text(encoding="utf-8")
+    text = template.read_text(encoding="utf-8")
     text = re.sub(r"@(\w+)@", lambda found: str(values[found[1]]), text)
-    if not template.endswith((".c", ".h")):
+    if template.suffix not in (".c", ".h"):
         return text
     text = re.sub(r"\bint64_t\b", "ptrdiff_t", text).replace("INT64_", "PTRDIFF_")
     return "\n".join(part for line in text.split("\n") for part in wrapped(line))
@@ -95,7 +102,7 @@ def wrapped(line: str) -> list[str]:
     return [*lines, line]
 
 
-def code_of(controller: Controller) -> dict[str, Any]:
+def controller_code(controller: Controller) -> dict[str, Any]:
     """Translate a controller whose scheme is anchored.
 
     Returns:
@@ -116,28 +123,25 @@ def code_of(controller: Controller) -> dict[str, Any]:
             "controller", f"{name} answers in Python, as obstacles that move do", refused[0]
         )
     model = model_tables(robot, program.kinematics.frame_ids, program.needs_inertia)
+    limits = (program.rate_limits or MotionLimits()).constants(robot)
     inertia = "c->inertia" if program.needs_inertia else "NULL"
     code = _Code("c->jacobian", "c->placements", inertia, "c->fallback")
     lengths = _lengths(controller)
+    n, m, p = program.sizes
     texts: dict[str, Any] = {
         "plan": code.initializer("plan", code.numbered(step.given)),
         "model": code.initializer("model", model),
-        "take_step": code.kernel(take_step),
-        "log_of": code.kernel(log_of),
-        "kinematics": code.kernel(write_kinematics),
+        "limits": code.initializer("limits", limits),
+        **code.kernels(take_step, log_of, write_kinematics, write_limiting, program_views),
+        **code.kernels(rank_loss, count_as_sent),
         "target_function": "",
+        "target_declaration": "\n",
     }
     if step.plan.samples:
-        sample = {
-            "sample": code.kernel(sample_targets),
-            "pairs": len(program.pairs),
-            "motion": step.width,
-        }
-        texts["target_function"] = filled("controller/target.c", sample)
-    return {
-        **texts,
-        **dict(zip("nmp", program.sizes, strict=True)),
-        **_about(robot, controller.dt, code),
+        sample = {"sample": code.kernel(sample_targets)}
+        texts["target_function"] = filled(PARTS / "target.c", sample)
+        texts["target_declaration"] = filled(PARTS / "target.h", {})
+    texts |= {
         "pairs": len(program.pairs),
         "width": lengths["log"],
         "motion": lengths["motion_state"],
@@ -146,35 +150,83 @@ def code_of(controller: Controller) -> dict[str, Any]:
         "frame_names": ", ".join(program.target_frames),
         "fields": "\n".join(f"    double {name}[{k}];" for name, k in lengths.items() if k),
         "size": 8 * sum(lengths.values()),
-        "actions": "\n".join(f"#define CONTROLLER_{each.name} {each.value}" for each in Action),
+        "memory": sum(lengths.values()),
+        "scratch": 8 * n * (n + m + p + 10),  # twice what the package's kernels take
         "has_reference": step.plan.samples,
+        "actions": _members("CONTROLLER", Action),
+        "programs": _members("CONTROLLER", ProgramKind),
+        "rank_losses": _members("CONTROLLER_RANK", RankLoss),
+        "action_names": ", ".join(json.dumps(ACTIONS.get(k, "")) for k in range(1 + max(Action))),
+        "action_count": 1 + max(Action),
     }
+    return _about("controller", controller, texts, code, rank_words(n, p), program)
 
 
-def _about(robot: Robot, dt: float, code: _Code) -> dict[str, Any]:
-    """Return the texts about the robot, and the code."""
-    return {
+def _members(prefix: str, kind: type[IntEnum]) -> str:
+    """Return the members of an enumeration in C."""
+    return "\n".join(f"    {prefix}_{own.name} = {own.value}," for own in kind)
+
+
+def _about(
+    kind: str,
+    made: Controller | Shield,
+    texts: dict[str, Any],
+    code: _Code,
+    reasons: Sequence[str],
+    program: ProgramLayout,
+) -> dict[str, Any]:
+    """Return texts with those about the robot, the names of limits and the code."""
+    names = [json.dumps(name) for name in [*reasons, *limit_words(program)]]
+    robot = made.robot
+    n, m, p = program.sizes
+    texts = texts | {
+        "kind": kind,
+        "KIND": kind.upper(),
         "robot": robot.name,
         "version": version("iiwa-dnn"),
         "dof": robot.dof,
+        "n": n,
+        "m": m,
+        "p": p,
         "joint_names": ", ".join(robot.joint_names),
-        "dt": repr(dt),
+        "dt": repr(made.dt),
         "code": code.text(),
         "map": "\n".join(f" * - {title}" for title in _SECTIONS.values()),
+        "reason_count": len(reasons),
+        "limit_count": len(names),
+        "names": ",\n".join(f"        {name}" for name in names),
     }
+    texts["interface"] = filled(PARTS / "interface.c", texts)
+    own = repr(sorted((name, str(value)) for name, value in texts.items()))
+    return texts | {"digest": hashlib.sha256(own.encode()).hexdigest()[:16]}
+
+
+def limit_words(program: ProgramLayout) -> list[str]:
+    """Name what may limit a command, by codes.
+
+    They are for each joint the lower and the upper bound of each of `naming.KINDS`, then the rows.
+    """
+    settings: dict[str, Any] = program.settings()
+    rows = settings["rows"]
+    codes = [sign * kind for kind in range(1, 1 + len(KINDS)) for sign in (-1, 1)]
+    n = program.robot.dof
+    bounds = [
+        limit
+        for joint in range(n)
+        for code in codes
+        for limit in active_limits(
+            settings, code * np.eye(n, dtype=int)[joint], np.zeros(len(rows))
+        )
+    ]
+    return [*map(describe, [*bounds, *rows])]
 
 
 def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
-    """Translate a shield, whose twists are those of one frame; returns what `code_of` does."""
-    plan, _, memory, _ = shield.layout(frame)
+    """Translate a shield, whose twists are those of one frame; returns what the controller's do."""
+    plan, step, memory, _ = shield.layout(frame)
     code = _Code("NULL", "NULL", "NULL", "NULL")
     text = code.initializer("plan", plan._replace(step=code.numbered(plan.step)))
     code.unfold()
-    kernels = (
-        *(arm_state, rest_arm, halt_arm, send_arm, step_arm),
-        *(place_arm, motion_of, margin_of, stopping_time_of),
-    )
-    calls = {source_of(each).__name__: code.kernel(each) for each in kernels}
     centers = ArmState.of(memory, *plan.sizes).obstacles.ravel().tolist()
     arrays = plan.step.arrays
     n, m, _ = arrays.sizes[:3]
@@ -182,13 +234,10 @@ def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
     taken += 2 * arrays.constants.size + 12 * (len(arrays.placements) + 4 * n) + memory.size
     avoidance = avoidance_of(shield)
     obstacles = avoidance.obstacles if avoidance else ()
-    names = [json.dumps(name) for name in limit_words(shield)]
     texts = {
-        **calls,
-        **_about(shield.robot, shield.dt, code),
         "plan": text,
-        "n": n,
-        "m": m,
+        **code.kernels(arm_state, rest_arm, halt_arm, send_arm, step_arm),
+        **code.kernels(place_arm, motion_of, margin_of, stopping_time_of),
         "frame": frame,
         "longest": repr(shield.longest_period or 0.0),
         "timeout": repr(shield.settings.timeout),
@@ -201,21 +250,16 @@ def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
         "places": ", ".join(map(repr, centers or [0.0])),
         "memory": -(-memory.size // 8) * 8,
         "scratch": taken,
-        "sides": plan.sizes.limiting,
-        "limit_count": len(names),
-        "names": ",\n".join(f"        {name}" for name in names),
-        "requests": "\n".join(f"    SHIELD_REQUEST_{own.name} = {own}," for own in Request),
-        "reasons": "\n".join(f"    SHIELD_{own.name} = {own}," for own in Reason),
+        "requests": _members("SHIELD_REQUEST", Request),
+        "reasons": _members("SHIELD", Reason),
     }
-    own = repr(sorted((name, str(value)) for name, value in texts.items()))
-    return texts | {"digest": hashlib.sha256(own.encode()).hexdigest()[:16]}
+    return _about("shield", shield, texts, code, REASONS, step.program)
 
 
 def _lengths(controller: Controller) -> dict[str, int]:
     """Count the numbers of each field of the struct."""
     step = controller.control_layout
     dof = controller.robot.dof
-    n, m, p = step.program.sizes
     return {
         "log": step.log_layout.width,
         "motion_state": step.width,
@@ -226,7 +270,7 @@ def _lengths(controller: Controller) -> dict[str, int]:
         "placements": 12 * controller.robot.model.nframes,
         "inertia": dof * dof * step.program.needs_inertia,
         "steps": 1,
-        "scratch": 8 * n * (n + m + p + 10),  # twice what the package's kernels take
+        "action": 1,
     }
 
 
@@ -265,6 +309,10 @@ class _Code:
             self._parts.append(self._translated(Entry.functions[address], like))
             self._numbers[address] = len(self._parts)
         return self._numbers[address]
+
+    def kernels(self, *kernels: Any) -> dict[str, str]:
+        """Translate kernels; return how a call of each begins, by its name."""
+        return {source_of(each).__name__: self.kernel(each) for each in kernels}
 
     def kernel(self, kernel: Any) -> str:
         """Translate a kernel; return how a call of it in C begins."""
@@ -333,7 +381,7 @@ class _Code:
         shared = prelude("kernels.h").split("\n\n")
         found = [re.match(r"static inline \S+ \*?(\w+)\(", each) for each in shared]
         used = [e for e, own in zip(shared, found, strict=True) if not own or own[1] in text]
-        return "\n\n".join([*used, filled("arena.c", {}), text])
+        return "\n\n".join([*used, filled(PARTS / "arena.c", {}), text])
 
 
 def _tag(own: Any) -> str:

@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Sequence
+from enum import IntEnum
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -19,15 +20,17 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import by_frame
+from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.requests import TWIST, Reason, Request
 from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.control.shields import Shields
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
-from iiwa_dnn.export.code import TEMPLATES, code_of, filled, shield_code
+from iiwa_dnn.export.code import PARTS, TEMPLATES, controller_code, filled, shield_code
 from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Lissajous
 from iiwa_dnn.robot import Configuration
+from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 STEPS = 500
@@ -48,15 +51,15 @@ _POSE = np.repeat([1.0, 0.0], [12, 6])
 
 
 def c99(
-    controller: Controller | Shield,
+    made: Controller | Shield,
     folder: str | os.PathLike[str],
     q0: ArrayLike | None = None,
 ) -> Path:
     """Write a controller or a shield as a folder of C99.
 
     Args:
-        controller: The controller or shield; it stays as it is. The twists of a shield are those of
-            its robot's tip.
+        made: The controller or shield; it stays as it is. The twists of a shield are those of its
+            robot's tip.
         folder: The folder; files of an earlier export are overwritten.
         q0: Joint positions where the arm begins [rad], (n,): the home of a scheme without one, and
             the beginning of the vectors; None: where the controller is, or the start posture.
@@ -69,51 +72,37 @@ def c99(
             named.
         FileError: The folder cannot be written.
     """
-    if isinstance(controller, Shield):
-        return _write("shield", shield_texts(controller, None, q0), folder)
-    if controller.longest_period is not None:
-        raise InvalidInputError("controller", "with longest_period has no C", controller)
-    twin = copy.copy(controller)
-    start = Configuration(twin.robot, twin.positions if q0 is None else q0)
-    twin.reset()
-    twin.anchor(start)
-    texts = code_of(twin)
-    rows = run(twin, start.q, STEPS)
-    texts |= _texts(twin, start, rows[0], texts["has_reference"])
-    counts = {"q": texts["dof"], "target": 18 * texts["frames"], "dq": texts["dof"]}
-    names = [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
-    return _write("controller", texts | {"vectors": (["t", *names, "action"], rows)}, folder)
-
-
-def _write(kind: str, texts: dict[str, Any], folder: str | os.PathLike[str]) -> Path:
-    """Fill the templates of a kind, and write them beside the vectors of a run."""
+    texts = _texts(made, None, q0)
     folder = prepare_folder(folder)
     write_csv(folder / "vectors.csv", *texts["vectors"])
-    for path in sorted((TEMPLATES / kind).iterdir()):
-        if path.stem != "target":
-            write_text(folder / path.name, filled(f"{kind}/{path.name}", texts))
+    for path in _templates("c", texts["kind"]):
+        write_text(folder / path.name, filled(path, texts))
     return folder
 
 
+def _templates(*folders: str) -> list[Path]:
+    return [path for folder in folders for path in sorted((TEMPLATES / folder).iterdir())]
+
+
 def python(
-    shield: Shield,
+    made: Controller | Shield,
     folder: str | os.PathLike[str],
     name: str,
     frame: str | None = None,
     q0: ArrayLike | None = None,
     platforms: Sequence[str] = (),
 ) -> Path:
-    """Write a shield as a package of Python that needs numpy alone, for ``pip install folder``.
+    """Write a controller or a shield as a package of Python that needs numpy alone.
 
-    Where it is built, it is compiled for that machine; with `platforms` it is compiled here by zig
+    ``pip install folder`` compiles it for that machine; with `platforms` it is compiled here by zig
     (``pip install ziglang``), and its wheel is for all of them.
 
     Args:
-        shield: The shield; it stays as it is.
+        made: The controller or shield; it stays as it is.
         folder: The folder of the project; files of an earlier export are overwritten.
         name: Name by which the package is imported.
-        frame: Frame of twists; None stands for the tip.
-        q0: Joint positions where the vectors of its own test begin [rad], (n,).
+        frame: Frame of a shield's twists; None stands for the tip.
+        q0: As for `c99`.
         platforms: Machines of `PLATFORMS`, or ``"all"``.
 
     Returns:
@@ -125,58 +114,71 @@ def python(
         MissingDependencyError: `platforms` are given, and ziglang is not installed.
         FileError: The folder cannot be written.
     """
-    checks.instance("shield", shield, Shield)
     if not re.fullmatch("[a-z][a-z0-9_]*", name) or keyword.iskeyword(name):
         raise InvalidInputError("name", f"must be small letters, digits and _, not {name!r}", name)
-    robot = shield.robot
-    texts = shield_texts(shield, frame, q0)
-    words = ("lower", "upper", "velocity", "acceleration", "jerk")
-    own = (*robot.limits[:2], robot.dq_max, robot.ddq_max, robot.dddq_max)
-    limits = {word: values.tolist() for word, values in zip(words, own, strict=True)}
-    texts |= {
-        "name": name,
-        "package_version": "0.1.0",
-        "joints": repr(tuple(robot.joint_names)),
-        "longest_or_none": repr(shield.longest_period),
-        "limits": re.sub(r"\binf\b", "np.inf", repr(limits)),
-        "reason_members": "\n".join(f"    {each.name} = {each.value}" for each in Reason),
-    }
+    texts = _texts(made, frame, q0) | {"name": name, "package_version": "0.1.0"}
+    kind = texts["kind"]
     package = prepare_folder(Path(folder) / name)
     write_csv(package / "vectors.csv", *texts["vectors"])
-    for file in ("shield.c", "shield.h"):
-        write_text(package / file, filled(f"shield/{file}", texts))
-    for path in sorted((TEMPLATES / "python").iterdir()):
-        inner = path.name.startswith("__") or path.name == "py.typed"
-        place = package if inner else package.parent
-        write_text(place / path.name.removesuffix(".in"), filled(f"python/{path.name}", texts))
+    sources = [TEMPLATES / kind / f"{kind}{end}" for end in (".c", ".h")]
+    for path in (*sources, *_templates("python", f"python_{kind}")):
+        is_outer = path.name in ("README.md", "hatch_build.py.in", "pyproject.toml.in")
+        place = package.parent if is_outer else package
+        write_text(place / path.name.removesuffix(".in"), filled(path, texts))
     for platform in PLATFORMS if "all" in platforms else platforms:
-        _compile_for(package, platform)
+        _compile_for(package, kind, platform)
     return package.parent
 
 
-def _compile_for(package: Path, platform: str) -> None:
+def _compile_for(package: Path, kind: str, platform: str) -> None:
     """Compile the library of a package for a platform, by zig."""
     if platform not in PLATFORMS:
         raise NotFoundError("platform", platform, PLATFORMS)
     if not find_spec("ziglang"):
         raise MissingDependencyError("ziglang", "pip install ziglang")
     flags = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC", "-s")
-    output = package / f"_shield_{platform}.bin"
+    output = package / f"_library_{platform}.bin"
     words = [sys.executable, "-m", "ziglang", "cc", "-target", PLATFORMS[platform], *flags]
     done = subprocess.run(
-        [*words, str(package / "shield.c"), "-o", str(output)],
+        [*words, str(package / f"{kind}.c"), "-o", str(output), "-lm"],
         capture_output=True,
         text=True,
         check=False,
     )
     if done.returncode:
         raise FileError(output, done.stderr[:500])
-    for other in package.glob(f"_shield_{platform}.*"):  # what a linker leaves beside it
+    for other in package.glob(f"_library_{platform}.*"):  # what a linker leaves beside it
         if other != output:
             other.unlink()
 
 
-def shield_texts(shield: Shield, frame: str | None, q0: ArrayLike | None) -> dict[str, Any]:
+def _texts(made: Controller | Shield, frame: str | None, q0: ArrayLike | None) -> dict[str, Any]:
+    """Return the texts of a controller or a shield, and the vectors of a run."""
+    if isinstance(made, Shield):
+        texts = _shield_texts(made, frame, q0)
+    else:
+        texts = _controller_texts(checks.instance("made", made, Controller), q0)
+    robot = made.robot
+    words = ("lower", "upper", "velocity", "acceleration", "jerk")
+    own = (*robot.limits[:2], robot.dq_max, robot.ddq_max, robot.dddq_max)
+    limits = {word: values.tolist() for word, values in zip(words, own, strict=True)}
+    return texts | {
+        "Kind": texts["kind"].capitalize(),
+        "call": filled(PARTS / f"{texts['kind']}_call.c", texts),
+        "steps": STEPS,
+        "columns": len(texts["vectors"][0]),
+        "velocity_limits": _numbers(np.where(robot.dq_max < np.inf, robot.dq_max, 1.0)),
+        "joints": repr(tuple(robot.joint_names)),
+        "joint_limits": re.sub(r"\binf\b", "np.inf", repr(limits)),
+    }
+
+
+def _names(**counts: int) -> list[str]:
+    """Number columns, as many of each name as is said."""
+    return [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
+
+
+def _shield_texts(shield: Shield, frame: str | None, q0: ArrayLike | None) -> dict[str, Any]:
     """Return the texts of a shield, and vectors of a run with requests of all kinds.
 
     Raises:
@@ -187,11 +189,19 @@ def shield_texts(shield: Shield, frame: str | None, q0: ArrayLike | None) -> dic
     texts = shield_code(shield, tip)
     start = Configuration(robot, robot.start_posture() if q0 is None else q0).q
     width = max(robot.dof, TWIST)
-    counts = {"q": robot.dof, "kind": 1, "dt": 1, "request": width, "dq": robot.dof, "reason": 1}
-    names = [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
-    rows = _shield_run(shield, tip, start, width)
-    own = {"steps": STEPS, "request": width, "q0": _numbers(start), "vectors": (names, rows)}
-    return texts | own
+    n = robot.dof
+    names = _names(q=n, kind=1, dt=1, request=width, dq=n, reason=1)
+    return texts | {
+        "tolerance": "0.0",
+        "q0": _numbers(start),
+        "longest_or_none": repr(shield.longest_period),
+        "reason_members": _members(Reason),
+        "vectors": (names, _shield_run(shield, tip, start, width)),
+    }
+
+
+def _members(kind: type[IntEnum]) -> str:
+    return "\n".join(f"    {each.name} = {each.value}" for each in kind)
 
 
 def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
@@ -234,10 +244,20 @@ def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
     return np.array(rows)
 
 
+def take_exported_kinematics(controller: Controller) -> None:
+    """Let the kernel that is exported compute a controller's kinematics, not Pinocchio."""
+    own = controller.program.kinematics
+    needs_inertia = controller.program.needs_inertia
+    tables = model_tables(controller.robot, own.frame_ids, needs_inertia)
+    own.update = lambda q: write_kinematics(  # type: ignore[method-assign]
+        tables, np.ascontiguousarray(q), own.jacobian, own.placements, own.inertia
+    )
+
+
 def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
     """Run a controller from joint positions q0 (n,) [rad], with an arm that follows every command.
 
-    Without a reference its frames follow a small figure of eight.
+    Without a reference its frames follow a small figure of eight. The kinematics are those of C.
 
     Returns:
         Rows of the time [s], joint positions, targets of all frames, the command and the action.
@@ -249,6 +269,7 @@ def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
             name: Lissajous((0.01, 0.01, 0.0), begin=0.0).anchored(start.frame(name))
             for name in twin.program.target_frames
         }
+    take_exported_kinematics(twin)
     q = q0.copy()
     rows = []
     for k in range(steps):
@@ -260,35 +281,49 @@ def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
     return np.array(rows)
 
 
-def _texts(
-    controller: Controller, start: Configuration, first: Vector, has_reference: bool
-) -> dict[str, Any]:
-    """Return the texts that are about the settings and a run, whose first row is given."""
-    robot = controller.robot
-    paths = by_frame(controller.reference, controller.program.target_frames[0])
-    resting = first[1 + robot.dof : -1 - robot.dof].reshape(-1, TARGET_SIZE) * _POSE
+def _controller_texts(controller: Controller, q0: ArrayLike | None) -> dict[str, Any]:
+    """Return the texts of a controller, and vectors of a run.
+
+    Raises:
+        InvalidInputError: A part of it has no C; it is named.
+    """
+    if controller.longest_period is not None:
+        raise InvalidInputError("controller", "with longest_period has no C", controller)
+    twin = copy.copy(controller)
+    robot = twin.robot
+    start = Configuration(robot, twin.positions if q0 is None else q0)
+    twin.reset()
+    twin.anchor(start)
+    texts = controller_code(twin)
+    rows = run(twin, start.q, STEPS)
+    frames = twin.program.target_frames
+    sampled = texts["has_reference"]
+    paths = by_frame(twin.reference, frames[0])
+    n = robot.dof
+    resting = rows[0, 1 + n : -1 - n].reshape(-1, TARGET_SIZE) * _POSE
     settings = {
         "q_lower": robot.q_lower,
         "q_upper": robot.q_upper,
         "dq_max": robot.dq_max,
-        "mode": controller.mode,
-        "policy": controller.policy,
-        "tolerance": controller.solver.tol,
-        "network": controller.solver.network.settings(),
+        "mode": twin.mode,
+        "policy": twin.policy,
+        "tolerance": twin.solver.tol,
+        "network": twin.solver.network.settings(),
         "reference": {name: path.settings() for name, path in paths.items()},
-        "scheme": controller.scheme.settings(),
+        "scheme": twin.scheme.settings(),
     }
-    return {
-        "steps": STEPS,
-        "velocity_limits": _numbers(np.where(robot.dq_max < np.inf, robot.dq_max, 1.0)),
-        "tolerance": f"{10.0 * controller.solver.tol:g}",
+    return texts | {
+        "vectors": (["t", *_names(q=n, target=18 * len(frames), dq=n), "action"], rows),
+        "tolerance": f"{10.0 * twin.solver.tol:g}",
         "q0": _numbers(start.q),
         "target": _numbers(resting.ravel()),
-        "sample": "        controller_target(&c, k * CONTROLLER_DT, target);\n" * has_reference,
-        "fri_sample": "        controller_target(&controller_, t_, target);\n" * has_reference,
-        "usage": "controller_target(&c, t, target);  /* the reference */\n" * has_reference,
-        "target_declaration": filled("controller/target.h", {}) * has_reference,
+        "sample": "        controller_target(&c, k * CONTROLLER_DT, target);\n" * sampled,
+        "fri_sample": "        controller_target(&controller_, t_, target);\n" * sampled,
+        "usage": "controller_target(&c, t, target);  /* the reference */\n" * sampled,
         "settings": json.dumps(plain(settings), indent=2),
+        "frame_tuple": repr(tuple(frames)),
+        "action_members": _members(Action),
+        "program_members": _members(ProgramKind),
     }
 
 

@@ -11,7 +11,7 @@ from iiwa_dnn import Shield, Sphere, export, load_robot, robot_from_dh
 SMOOTH = load_robot("iiwa7").with_limits(acceleration=10.0, jerk=500.0)
 START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
 BALL = Sphere([0.36, 0.16, 0.64], 0.05)
-SAME = "500 steps: 0 commands differ from Python's"
+SAME = "500 steps: 0 commands differ from Python's by more than 0 "
 
 pytestmark = needs("gcc", "make")
 
@@ -41,10 +41,10 @@ def test_every_compiler_gives_the_bits_of_python(
     folder: Path, tmp_path: Path, compiler: str, flags: str, runner: tuple[str, ...]
 ) -> None:
     program = tmp_path / "test"
-    sources = [folder / "shield_test.c", folder / "shield.c"]
-    own = [*WARNINGS, "-ffp-contract=off", *flags.split()]
+    sources = [folder / "compare.c", folder / "shield.c"]
+    own = [*WARNINGS, "-DROUNDS=1", "-ffp-contract=off", *flags.split()]
     run(compiler, *own, *sources, "-o", program, "-lm")
-    assert run(*runner, program, folder / "vectors.csv").strip() == SAME
+    assert run(*runner, program, folder / "vectors.csv").startswith(SAME)
 
 
 def test_another_command_is_found(folder: Path, tmp_path: Path) -> None:
@@ -52,9 +52,9 @@ def test_another_command_is_found(folder: Path, tmp_path: Path) -> None:
     cells = lines[9].split(",")
     cells[-2] = repr(float(np.nextafter(float(cells[-2]), 10.0)))
     (tmp_path / "vectors.csv").write_text("\n".join([*lines[:9], ",".join(cells), *lines[10:], ""]))
-    run("make", "shield_test", "CFLAGS=-O0", cwd=folder)
+    run("make", "compare", "CFLAGS=-O0 -DROUNDS=1", cwd=folder)
     with pytest.raises(AssertionError, match="500 steps: 1 commands differ"):
-        run(folder / "shield_test", tmp_path / "vectors.csv")
+        run(folder / "compare", tmp_path / "vectors.csv")
 
 
 def test_the_vectors_have_all_kinds_and_reasons(folder: Path) -> None:

@@ -191,14 +191,14 @@ def test_a_library_that_is_missing_or_another_is_said_in_a_line(tmp_path: Path) 
     command = [sys.executable, "-c", "import lonely"]
     done = subprocess.run(command, cwd=project, capture_output=True, text=True, check=False)
     assert "ImportError: lonely has no library for linux" in done.stderr
-    (tmp_path / "lonely" / "_shield.bin").write_bytes(b"no library")
+    (tmp_path / "lonely" / "_library.bin").write_bytes(b"no library")
     done = subprocess.run(command, cwd=project, capture_output=True, text=True, check=False)
     assert "ImportError: lonely's library is none for this machine" in done.stderr
     text = (tmp_path / "lonely" / "shield.c").read_text(encoding="utf-8")
     other = tmp_path / "other.c"
     other.write_text(text.replace("return SHIELD_DIGEST;", 'return "another";'))
     flags = ["-std=c99", "-O0", "-shared", "-fPIC", "-I", tmp_path / "lonely"]
-    run("gcc", *flags, other, "-o", tmp_path / "lonely" / "_shield.bin", "-lm")
+    run("gcc", *flags, other, "-o", tmp_path / "lonely" / "_library.bin", "-lm")
     done = subprocess.run(command, cwd=project, capture_output=True, text=True, check=False)
     assert "ImportError: lonely's library is of another version" in done.stderr
 
@@ -237,7 +237,7 @@ def test_one_wheel_serves_the_platforms_that_are_compiled_for(tmp_path: Path) ->
     pytest.importorskip("hatchling")
     project = export.python(Shield(SMOOTH, DT), tmp_path / "project", "fat", q0=START)
     package = project / "fat"
-    name = f"_shield_linux_{platform.machine()}.bin"
+    name = f"_library_linux_{platform.machine()}.bin"
     flags = ["-std=c99", "-O1", "-ffp-contract=off", "-shared", "-fPIC"]
     run("gcc", *flags, package / "shield.c", "-o", package / name, "-lm")
     run(sys.executable, "-m", "hatchling", "build", "-t", "wheel", cwd=project)

@@ -4,7 +4,7 @@
  * from. Programs have @n@ variables, @m@ inequality rows, @p@ equality rows. In this order stand:
  *
 @map@
- * - Interface: `controller_step` and what the header declares beside it
+ * - Interface: what the header declares
  */
 #include "controller.h"
 
@@ -12,12 +12,7 @@
 
 /* ---- Interface ---- */
 
-static inline struct arena controller_arena(struct controller *c, bool *full)
-{
-    char *start = (char *)c->scratch;
-    const struct arena arena = {start, start, start + sizeof c->scratch, full};
-    return arena;
-}
+@interface@
 
 /* What a step is laid out with; tables, and the kinematics in the controller. */
 static inline control_cycle_ControlPlan controller_plan(struct controller *c)
@@ -25,6 +20,19 @@ static inline control_cycle_ControlPlan controller_plan(struct controller *c)
     (void)c;
     const control_cycle_ControlPlan plan = @plan@;
     return plan;
+}
+
+static inline control_state_MotionState controller_motion(const struct controller *c)
+{
+    const Vector numbers = {(double *)c->motion_state, @motion@};
+    return control_state_MotionState_of(numbers, CONTROLLER_DOF, @pairs@);
+}
+
+static inline control_command_StepLog controller_log(const struct controller *c)
+{
+    const control_cycle_ControlPlan plan = controller_plan((struct controller *)c);
+    const Vector numbers = {(double *)c->log, @width@};
+    return @log_of@numbers, &plan.arrays.sizes);
 }
 
 static bool controller_is_finite(const double *x, int count)
@@ -42,14 +50,26 @@ void controller_init(struct controller *c)
     memset(c, 0, sizeof *c);
 }
 
+void controller_halt(struct controller *c)
+{
+    controller_motion(c).at->halts = 1.0;
+}
+
+void controller_send(struct controller *c, const double *dq, double fraction)
+{
+    const control_state_MotionState motion = controller_motion(c);
+    const Vector sent = {(double *)dq, CONTROLLER_DOF};
+    @count_as_sent@&motion, sent, CONTROLLER_DT);
+    motion.at->path_lag += CONTROLLER_DT * (1.0 - fraction);
+    c->steps[0] += 1.0;
+}
+
 int controller_step(struct controller *c, const double *q, const double *target, double *dq)
 {
-    bool full = false;
-    struct arena arena = controller_arena(c, &full);
+    CONTROLLER_ARENA;
     const control_cycle_ControlPlan plan = controller_plan(c);
     const robot_kinematics_kernel_ModelTables model = @model@;
-    const Vector data = {c->log, @width@};
-    const control_command_StepLog log = @log_of@data, &plan.arrays.sizes);
+    const control_command_StepLog log = controller_log(c);
     const Vector motion_state = {c->motion_state, @motion@};
     const Vector next_motion_state = {c->next_motion_state, @motion@};
     const Vector state = {c->state, @state@};
@@ -60,8 +80,9 @@ int controller_step(struct controller *c, const double *q, const double *target,
         return CONTROLLER_INVALID;
     }
     memcpy(log.targets.data, target, sizeof(double) * 18 * CONTROLLER_FRAMES);
-    @kinematics@&model, joints, plan.arrays.jacobian, plan.arrays.placements, plan.arrays.inertia);
-    const ptrdiff_t action = @take_step@data, &plan, joints, motion_state, next_motion_state, state, t);
+    @write_kinematics@&model, joints, plan.arrays.jacobian, plan.arrays.placements, plan.arrays.inertia);
+    const ptrdiff_t action =
+        @take_step@log.numbers, &plan, joints, motion_state, next_motion_state, state, t);
     if (full || action == CONTROLLER_INVALID) {
         memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
         return CONTROLLER_INVALID;
@@ -69,6 +90,50 @@ int controller_step(struct controller *c, const double *q, const double *target,
     memcpy(dq, log.dq.data, sizeof(double) * CONTROLLER_DOF);
     memcpy(c->motion_state, c->next_motion_state, sizeof c->motion_state);
     c->steps[0] += 1.0;
+    c->action[0] = (double)action;
     return (int)action;
 }
 @target_function@
+const double *controller_next_q(const struct controller *c)
+{
+    return controller_log(c).next_q.data;
+}
+
+double controller_fraction(const struct controller *c)
+{
+    return controller_log(c).at->fraction;
+}
+
+double controller_path_lag(const struct controller *c)
+{
+    return controller_motion(c).at->path_lag;
+}
+
+int controller_program(const struct controller *c)
+{
+    return (int)controller_log(c).at->kind;
+}
+
+int controller_active_limits(const struct controller *c, int *codes)
+{
+    CONTROLLER_ARENA;
+    const control_cycle_ControlPlan plan = controller_plan((struct controller *)c);
+    const schemes_limits_MotionConstants joints = @limits@;
+    const control_command_StepLog log = controller_log(c);
+    const qp_layout_QPViews qp = @program_views@log.program, &plan.arrays.sizes);
+    double numbers[CONTROLLER_DOF + @m@];
+    const Vector limiting = {numbers, CONTROLLER_DOF + @m@};
+    @write_limiting@&log, &qp, &joints, &plan.timing, (ptrdiff_t)c->action[0], limiting);
+    const int count = controller_codes(limiting, codes);
+    if (count == 0 && controller_program(c) == CONTROLLER_RELAXED) {
+        codes[0] = (int)@rank_loss@&qp);
+        return codes[0] != CONTROLLER_RANK_NONE;
+    }
+    return count;
+}
+
+const char *controller_action_name(int action)
+{
+    static const char *const names[] = {@action_names@};
+    return action >= 0 && action < @action_count@ ? names[action] : "invalid";
+}

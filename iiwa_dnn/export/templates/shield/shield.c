@@ -14,13 +14,7 @@
 
 /* ---- Interface ---- */
 
-#define SHIELD_SCRATCH @scratch@ /* numbers that a step takes for itself, on the stack */
-
-/* Memory that kernels take from the stack; if it ever were too little, the step is refused. */
-#define SHIELD_ARENA \
-    double scratch[SHIELD_SCRATCH]; \
-    bool full = false; \
-    struct arena arena = {(char *)scratch, (char *)scratch, (char *)(scratch + SHIELD_SCRATCH), &full}
+@interface@
 
 /* What a step is laid out with: tables. */
 static inline control_arms_ArmPlan shield_plan(void)
@@ -154,23 +148,7 @@ int shield_active_limits(const struct shield *s, int *codes)
             codes[count++] = k;
         }
     }
-    for (int k = 0; k < @sides@; k++) {
-        const int kind = (int)state.limiting.data[k];
-        if (k >= SHIELD_JOINTS && kind != 0) {
-            codes[count++] = SHIELD_SINGULAR + 1 + 7 * SHIELD_JOINTS + k;
-        } else if (kind != 0) {
-            codes[count++] = SHIELD_SINGULAR + 1 + 8 * k + 2 * (kind > 0 ? kind : -kind) - 2 + (kind > 0);
-        }
-    }
-    return count;
-}
-
-const char *shield_limit_name(int code)
-{
-    static const char *const names[SHIELD_LIMITS] = {
-@names@
-    };
-    return code >= 0 && code < SHIELD_LIMITS ? names[code] : "";
+    return count + shield_codes(state.limiting, codes + count);
 }
 
 void shield_margin(const struct shield *s, double *joint, double *distance)
@@ -186,9 +164,4 @@ double shield_stopping_time(const struct shield *s)
 {
     const control_arms_ArmPlan plan = shield_plan();
     return @stopping_time_of@&plan, shield_memory(s));
-}
-
-const char *shield_digest(void)
-{
-    return SHIELD_DIGEST;
 }
