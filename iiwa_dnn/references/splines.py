@@ -64,10 +64,8 @@ def spline_through(times: Array, rows: Array, closed: bool, jointly: bool = Fals
     steps = _sizes(np.diff(rows, axis=0), jointly)
     rounding = _ROUNDING * steps[:count].max()
     pauses = (steps <= rounding).all(axis=1)
-    pauses[count:] = False
     steps[count:] = np.inf
     allowed = ALLOWED * np.minimum(np.roll(steps, 1, 0), np.roll(steps, -1, 0)) + rounding
-    allowed[count:] = np.inf
     around = np.cumsum(np.pad(lengths, (2, 1), mode="wrap"))
     preserving = PchipInterpolator(around, rows[[-2, *range(len(rows)), 1]]).c[2, 1:-1]
     at_rest = np.zeros(steps.shape, bool)
