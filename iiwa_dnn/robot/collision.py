@@ -154,9 +154,11 @@ def collision_model(robot: Robot) -> CollisionModel:
     began = perf_counter()
     model = make_collision_model(robot)
     if (taken := perf_counter() - began) > 1.0:
-        problem = f"capsules and pairs of {robot.name} took {taken:.1f} s"
-        advice = f"`iiwa-dnn collisions` keeps them beside {robot.path}"
-        warnings.warn(f"{problem}; {advice}", stacklevel=2)
+        warnings.warn(
+            f"capsules and pairs of {robot.name} took {taken:.1f} s; "
+            f"`iiwa-dnn collisions` keeps them beside {robot.path}",
+            stacklevel=2,
+        )
     return model
 
 
@@ -209,11 +211,10 @@ def _near_pairs(robot: Robot, geometry: pin.GeometryModel, postures: checks.Arra
     near: set[int] = set()
     for q in postures:
         if pin.computeCollisions(robot.model, data, geometry, scratch, q):
-            results = enumerate(scratch.collisionResults)
-            found = {i for i, result in results if result.isCollision()} - near
-            for i in found:
-                scratch.deactivateCollisionPair(i)
-            near |= found
+            for i, result in enumerate(scratch.collisionResults):
+                if result.isCollision():
+                    near.add(i)
+                    scratch.deactivateCollisionPair(i)
     return near
 
 

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
-from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn.robot.arms import ARMS, robots_folder
 from iiwa_dnn.robot.robot import Robot, frame_id, model_limits
 from iiwa_dnn.robot.urdf import build_model, number_of, read_urdf
 
@@ -25,12 +25,9 @@ _LARGE = 40.0
 
 def available_robots() -> tuple[str, ...]:
     """List the robots that `load_robot` knows by name: those of `ARMS` whose files are there."""
-    found = []
-    with contextlib.suppress(MissingDependencyError):  # the package's own come first
-        for name, arm in ARMS.items():
-            if arm.path.is_file():
-                found.append(name)
-    return tuple(found)
+    with contextlib.suppress(MissingDependencyError):
+        return tuple(name for name, arm in ARMS.items() if arm.path.is_file())
+    return tuple(name for name, arm in ARMS.items() if (robots_folder() / arm.file).is_file())
 
 
 def load_robot(

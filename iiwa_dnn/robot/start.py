@@ -34,19 +34,15 @@ def best_start(robot: Robot, postures: Array) -> Array:
     kinematically redundant manipulators", Int. J. Robotics Research 6(2), 1987.
     """
     reach = robot.reach if 0.0 < robot.reach < np.inf else 1.0
-    values = np.linalg.svd(_jacobians(robot, postures, reach), compute_uv=False)
-    least = (values > _ZERO * values.max()).sum(axis=1).max() - 1
-    best = postures[np.argsort(-values[:, least], kind="stable")[:_TESTED]]
-    return np.array(best[_count_collisions(robot, best).argmin()])
-
-
-def _jacobians(robot: Robot, postures: Array, reach: float) -> Array:
-    """Compute the tip's Jacobians (k, 6, n) with the rows of rotation times the reach [m], or 0."""
     data = robot.model.createData()
     at_tip = (robot.tip_id, pin.LOCAL_WORLD_ALIGNED)
     found = [pin.computeFrameJacobian(robot.model, data, q, *at_tip) for q in postures]
-    units = np.repeat([1.0, reach if robot.dof >= 6 else 0.0], 3)[:, np.newaxis]
-    return np.asarray(units * np.reshape(found, (-1, 6, robot.dof)))
+    jacobians = np.reshape(found, (-1, 6, robot.dof))
+    jacobians[:, 3:] *= reach if robot.dof >= 6 else 0.0
+    values = np.linalg.svd(jacobians, compute_uv=False)
+    least = (values > _ZERO * values.max()).sum(axis=1).max() - 1
+    best = postures[np.argsort(-values[:, least], kind="stable")[:_TESTED]]
+    return np.array(best[_count_collisions(robot, best).argmin()])
 
 
 def _count_collisions(robot: Robot, postures: Array) -> Array:
