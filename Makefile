@@ -11,7 +11,7 @@ FULL := $(VENV)/.full
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help force heart test setup lint docs figures notebooks ros integrations clean
+.PHONY: help force heart test setup lint docs figures notebooks ros cuda integrations clean
 
 help:  ## list what can be made
 	@echo 'usage: make TARGET [PYTHON=python3.12] [EXTRAS=view] [ARGS="..."]'
@@ -43,6 +43,10 @@ notebooks: $(FULL)  ## run the notebooks; what they print is not kept
 
 ros: $(FULL)  ## try the ROS 2 node in an environment of its own, build/ros2, 255 MB
 	$(VENV_PYTHON) -m pytest integrations/ros2_shield $(ARGS)
+
+cuda: $(FULL)  ## compile an exported shield for GPUs by NVRTC's wheel, build/cuda, 142 MB, no GPU needed
+	@test -d build/cuda/nvidia || $(VENV_PYTHON) -m pip install -q --disable-pip-version-check --target build/cuda -c constraints.txt nvidia-cuda-nvrtc
+	PYTHONPATH=build/cuda $(VENV_PYTHON) -m pytest tests/export/compile_cuda.py $(ARGS)
 
 integrations: ros  ## the same for LeRobot, 5 GB, Python >= 3.12 (PYTHON_OF_LEROBOT=), and for Franka
 	$(VENV_PYTHON) -m pytest integrations/lerobot_robot_shielded tests/scripts/test_franka.py $(ARGS)

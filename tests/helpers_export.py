@@ -38,10 +38,15 @@ def run(*words: str | Path, cwd: Path | None = None) -> str:
 
 
 def packaged(
-    made: Controller | Shield, folder: Path, name: str, q0: Any = None, flags: Sequence[str] = ()
+    made: Controller | Shield,
+    folder: Path,
+    name: str,
+    q0: Any = None,
+    flags: Sequence[str] = (),
+    cuda: bool = False,
 ) -> Any:
     """Export a controller or a shield as a package of Python, compile and import it."""
-    project = python(made, folder, name, q0=q0)
+    project = python(made, folder, name, q0=q0, cuda=cuda)
     package = project / name
     (source,) = package.glob("*.c")
     own = ["-std=c99", "-O1", "-ffp-contract=off", "-shared", "-fPIC", *flags]

@@ -119,7 +119,8 @@ def _export_package(options: ExportWords, tables: Tables, arguments: Arguments) 
     check_folder(folder, tables, options.overwrite)
     write_settings(folder, tables)
     q0 = arguments.q0
-    exports.python(shield, folder, options.python, q0=q0, platforms=options.platforms)
+    platforms = options.platforms
+    exports.python(shield, folder, options.python, q0=q0, platforms=platforms, cuda=options.cuda)
     if not options.quiet:
         print(f"written to {folder}; to install it: pip install ./{folder}")
     return 0

@@ -195,6 +195,8 @@ class OfExports(Common):
     """write a shield of the robot as a package of Python, in the folder NAME"""
     platforms: Annotated[tuple[str, ...], shown("NAME ...")] = ()
     """machines that the package is compiled for here, by ziglang: linux_aarch64, ... or all"""
+    cuda: Flag = False
+    """write Shields(count, device="cuda") of the package too"""
 
 
 def _options(name: str, base: type[Common], without: frozenset[str] = frozenset()) -> Any:

@@ -26,6 +26,7 @@ from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.control.shields import Shields
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.export.code import PARTS, TEMPLATES, controller_code, filled, shield_code
+from iiwa_dnn.export.cuda import write_cuda
 from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Lissajous
@@ -91,6 +92,7 @@ def python(
     frame: str | None = None,
     q0: ArrayLike | None = None,
     platforms: Sequence[str] = (),
+    cuda: bool = False,
 ) -> Path:
     """Write a controller or a shield as a package of Python that needs numpy alone.
 
@@ -104,6 +106,7 @@ def python(
         frame: Frame of a shield's twists; None stands for the tip.
         q0: As for `c99`.
         platforms: Machines of `PLATFORMS`, or ``"all"``.
+        cuda: Write a shield's ``Shields(count, device="cuda")`` too, compiled where it is used.
 
     Returns:
         The folder.
@@ -118,6 +121,9 @@ def python(
         raise InvalidInputError("name", f"must be small letters, digits and _, not {name!r}", name)
     texts = _texts(made, frame, q0) | {"name": name, "package_version": "0.1.0"}
     kind = texts["kind"]
+    if cuda and kind != "shield":
+        raise InvalidInputError("cuda", "is for a shield", made)
+    texts["extras"] = filled(PARTS / "cuda.toml", {}) * cuda
     package = prepare_folder(Path(folder) / name)
     write_csv(package / "vectors.csv", *texts["vectors"])
     sources = [TEMPLATES / kind / f"{kind}{end}" for end in (".c", ".h")]
@@ -125,6 +131,8 @@ def python(
         is_outer = path.name in ("README.md", "hatch_build.py.in", "pyproject.toml.in")
         place = package.parent if is_outer else package
         write_text(place / path.name.removesuffix(".in"), filled(path, texts))
+    if cuda:
+        write_cuda(package, texts)
     for platform in PLATFORMS if "all" in platforms else platforms:
         _compile_for(package, kind, platform)
     return package.parent

@@ -1,0 +1,72 @@
+"""A shield's kernels compiled for GPUs by NVRTC's wheel: ``make cuda``, without a GPU.
+
+The suite does not collect this file: the wheel has 142 MB.
+"""
+
+import ctypes
+import re
+import time
+from importlib.metadata import files
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from hostile_arms import make_shield
+from iiwa_dnn import export
+
+SECONDS = 60.0
+"""Time of the processor for one architecture; on a quiet machine it takes 15 s."""
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("cuda")
+    return export.python(make_shield(), folder, "cuda_shield", cuda=True) / "cuda_shield"
+
+
+@pytest.fixture(scope="module")
+def nvrtc() -> Any:
+    found = [each for each in files("nvidia-cuda-nvrtc") or () if "libnvrtc.so" in each.name]
+    return ctypes.CDLL(str(found[0].locate()))
+
+
+def compiled(nvrtc: Any, package: Path, architecture: str) -> dict[str, bytes]:
+    """Compile the kernels with the options of the package and of cupy; return PTX and cubin."""
+    options = re.search(r"^OPTIONS = \((.*)\)$", (package / "_cuda.py").read_text(), re.M)
+    assert options
+    words = [*re.findall(r'"(.+?)"', options[1]), "-ftz=true", f"-arch={architecture}"]
+    words.append("--device-as-default-execution-space")
+    program, size = ctypes.c_void_p(), ctypes.c_size_t()
+    source = (package / "shields.cu").read_bytes()
+    nvrtc.nvrtcCreateProgram(ctypes.byref(program), source, b"shields.cu", 0, None, None)
+    texts = (ctypes.c_char_p * len(words))(*map(str.encode, words))
+    result = nvrtc.nvrtcCompileProgram(program, len(words), texts)
+
+    def got(kind: str) -> bytes:
+        getattr(nvrtc, f"nvrtcGet{kind}Size")(program, ctypes.byref(size))
+        data = ctypes.create_string_buffer(size.value)
+        getattr(nvrtc, f"nvrtcGet{kind}")(program, data)
+        return data.raw
+
+    log = got("ProgramLog").decode()
+    assert (result, log.strip("\0\n ")) == (0, "")
+    return {kind: got(kind) for kind in ("PTX", "CUBIN")}
+
+
+def test_ptx_and_cubin_round_every_sum_and_product(nvrtc: Any, package: Path) -> None:
+    began = time.process_time()
+    made = compiled(nvrtc, package, "sm_90")
+    assert time.process_time() - began < SECONDS
+    assert made["CUBIN"].startswith(b"\x7fELF")
+    text = made["PTX"].decode()
+    found = re.split(r"^\.(?:func|visible \.entry) ", text, flags=re.MULTILINE)[1:]
+    names = {kernel for kernel in ("grid_step", "grid_rest") if f".entry {kernel}(" in text}
+    assert names == {"grid_step", "grid_rest"}
+    # No sum with a product in one rounding, no elementary function, no double made shorter: but in
+    # a function for feed-forward along a path, which a shield has not.
+    loose = re.compile(r"\bfma\.|\b(?:add|sub|mul)\.f64|\.approx|\.f32|\.ftz")
+    others = [each.splitlines()[0] for each in found if loose.search(each)]
+    assert all("rotation_log" in each for each in others), others
+    assert "samples = false;" in (package / "shields.cu").read_text(encoding="utf-8")
+    assert len(re.findall(r"\b(?:add|mul)\.rn\.f64", text)) > 1000

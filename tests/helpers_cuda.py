@@ -1,0 +1,119 @@
+"""A stand-in for cupy, whose GPU is the CPU: kernels of `shields.cu` run over a grid, in C++."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from helpers_export import packaged, run
+from iiwa_dnn import Shield
+
+FREE = 10**11
+"""Bytes that are free on the stand-in."""
+
+LOCAL = 40_000
+"""Bytes of stack of a thread."""
+
+
+class DeviceArray(np.ndarray):
+    """An array on the GPU: whoever reads its numbers waits for the GPU."""
+
+    device = 0
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return 2, 0
+
+    def __bool__(self) -> bool:
+        raise AssertionError("waits for the GPU")
+
+    __float__ = __int__ = __iter__ = tolist = __bool__  # type: ignore[assignment]
+
+
+def to_device(value: Any) -> Any:
+    return np.array(value).view(DeviceArray)
+
+
+class Device:
+    """The one GPU."""
+
+    id = 0
+    attributes = {"MultiProcessorCount": 132, "MaxThreadsPerMultiProcessor": 2048}  # noqa: RUF012
+    mem_info = (FREE, FREE)
+
+    def __init__(self, number: int | None = None) -> None:
+        pass
+
+    def __eq__(self, other: object) -> bool:
+        return self.id == other
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, *about: object) -> None:
+        pass
+
+
+class Kernel:
+    """A kernel, launched over a grid with its arguments in memory, as by CUDA's driver."""
+
+    local_size_bytes = LOCAL
+
+    def __init__(self, library: ctypes.CDLL, name: str) -> None:
+        self._run = getattr(library, f"run_{name}")
+
+    def __call__(self, grid: tuple[int], block: tuple[int], arguments: tuple[Any, ...]) -> None:
+        cells = [
+            np.uintp(each.ctypes.data) if isinstance(each, np.ndarray) else each
+            for each in arguments
+        ]
+        stored = [ctypes.create_string_buffer(each.tobytes()) for each in cells]
+        pointers = (ctypes.c_void_p * len(stored))(*map(ctypes.addressof, stored))
+        self._run(ctypes.c_uint(grid[0]), ctypes.c_uint(block[0]), pointers)
+
+
+def stand_in(library: ctypes.CDLL, streams: list[int]) -> Any:
+    """Return what the package takes from cupy; the streams that it works on are noted."""
+
+    @contextlib.contextmanager
+    def from_external(stream: Any) -> Iterator[None]:
+        streams.append(stream.__cuda_stream__()[1])
+        yield
+
+    module = SimpleNamespace(get_function=lambda name: Kernel(library, name))
+    cuda = SimpleNamespace(Device=Device, Stream=SimpleNamespace(from_external=from_external))
+    return SimpleNamespace(
+        RawModule=lambda code, options, backend: module,
+        ndarray=type("ndarray", (), {}),  # those of the tests are somebody else's
+        from_dlpack=lambda value: value,
+        asarray=to_device,
+        ascontiguousarray=np.ascontiguousarray,
+        asnumpy=np.array,
+        empty=lambda shape, dtype: np.empty(shape, dtype).view(DeviceArray),
+        get_default_memory_pool=lambda: SimpleNamespace(free_bytes=lambda: 0),
+        cuda=cuda,
+    )
+
+
+def packaged_with_grid(shield: Shield, folder: Path, name: str, *flags: str) -> tuple[Any, Any]:
+    """Export a shield as a package with CUDA; return it, and the streams of the stand-in."""
+    package = packaged(shield, folder, name, flags=flags, cuda=True)
+    library = folder / "grid.so"
+    own = ["-std=c++20", "-O1", "-ffp-contract=off", "-fno-math-errno", "-w", "-shared", "-fPIC"]
+    source = Path(__file__).with_name("cuda_grid.cpp")
+    run("g++", *own, *flags, "-I", folder / name, source, "-o", library)
+    streams: list[int] = []
+    sys.modules["cupy"] = stand_in(ctypes.CDLL(str(library)), streams)
+    try:
+        package.Shields(1, device="cuda")
+    finally:
+        del sys.modules["cupy"]
+    return package, streams
