@@ -8,7 +8,6 @@ import importlib
 import logging
 import time
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import draccus
@@ -17,6 +16,9 @@ from lerobot.robots import Robot, RobotConfig, make_robot_from_config
 
 EARLY = 0.8
 """Share of the shield's period before which a next action is not yet taken."""
+
+REST = 1e-9
+"""Velocity of a joint at rest [rad/s]: at a position limit it may back off by rounding."""
 
 
 @RobotConfig.register_subclass("shielded")
@@ -28,13 +30,16 @@ class ShieldedConfig(RobotConfig):
         robot: Settings of the robot that is wrapped, with its type.
         shield: Name of the exported package, whose period is 1 / fps.
         joints: Names of the robot's motors in the order of the shield's joints; none: its own.
-        delay: Time by which the motors are behind their goals [s].
     """
 
     robot: dict[str, Any]  # a choice of RobotConfig would contain itself
     shield: str
     joints: list[str] = field(default_factory=list)
-    delay: float = 0.0
+
+
+def wrapped(name: str) -> Any:
+    """Return a property that is the one of the robot that is wrapped."""
+    return property(lambda own: getattr(own.robot, name))
 
 
 class Shielded(Robot):
@@ -42,11 +47,17 @@ class Shielded(Robot):
 
     Attributes:
         robot: The robot that is wrapped.
-        shield: The shield.
+        shields: The shield, of one arm.
     """
 
     config_class = ShieldedConfig
     name = "shielded"
+    observation_features = wrapped("observation_features")
+    action_features = wrapped("action_features")
+    is_connected = wrapped("is_connected")
+    is_calibrated = wrapped("is_calibrated")
+    calibrate = wrapped("calibrate")
+    configure = wrapped("configure")
 
     def __init__(self, config: ShieldedConfig) -> None:
         """Make the robot and its shield.
@@ -58,9 +69,9 @@ class Shielded(Robot):
         self.config = config
         self.robot = make_robot_from_config(draccus.decode(RobotConfig, config.robot))
         package = importlib.import_module(config.shield)
-        self.shield = package.Shield()
+        # Of one arm: it brakes at joint positions that are not finite, where `Shield` raises.
+        self.shields = package.Shields(1)
         self._dt = package.DT
-        self._period = {"dt": package.DT} if package.LONGEST_PERIOD else {}
         self._keys = [f"{each}.pos" for each in config.joints or package.JOINT_NAMES]
         missing = [each for each in self._keys if each not in self.robot.action_features]
         if missing or len(self._keys) != len(package.JOINT_NAMES):
@@ -69,11 +80,10 @@ class Shielded(Robot):
         self._restart()
 
     def _restart(self) -> None:
-        self.shield.reset()
+        self.shields.reset()
         self._measured: Any = None
         self._command: Any = None
         self._sent: dict[str, Any] = {}
-        self._pending: list[Any] = []
         self._time = 0.0
         self._said = ""
 
@@ -83,44 +93,15 @@ class Shielded(Robot):
             raise AttributeError(name)
         return getattr(self.robot, name)
 
-    @cached_property
-    def observation_features(self) -> dict[str, Any]:
-        """Features of the robot's observations."""
-        return self.robot.observation_features
-
-    @cached_property
-    def action_features(self) -> dict[str, Any]:
-        """Features of the robot's actions."""
-        return self.robot.action_features
-
-    @property
-    def is_connected(self) -> bool:
-        """Test whether the robot is connected."""
-        return self.robot.is_connected
-
-    @property
-    def is_calibrated(self) -> bool:
-        """Test whether the robot is calibrated; its offsets are its own."""
-        return self.robot.is_calibrated
-
     def connect(self, calibrate: bool = True) -> None:
         """Connect the robot, which stands."""
         self.robot.connect(calibrate)
         self._restart()
 
-    def calibrate(self) -> None:
-        """Calibrate the robot."""
-        self.robot.calibrate()
-
-    def configure(self) -> None:
-        """Configure the robot."""
-        self.robot.configure()
-
     def get_observation(self) -> dict[str, Any]:
         """Return the robot's observation, and keep its joint positions for the next action."""
         found = self.robot.get_observation()
-        measured = np.radians([found[key] for key in self._keys])
-        self._measured = measured if np.isfinite(measured).all() else None
+        self._measured = np.radians([[found[key] for key in self._keys]])
         return found
 
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
@@ -131,46 +112,35 @@ class Shielded(Robot):
         now = time.perf_counter()
         if now - self._time < EARLY * self._dt:
             return self._sent
-        if self._command is None and self._measured is None:
-            self.get_observation()
         self._time = now
-        goal = np.radians([action.get(key, np.nan) for key in self._keys])
-        self._step(goal)
-        self._sent = self.robot.send_action(action | self._goals())
-        return self._sent
-
-    def _step(self, goal: Any) -> None:
-        """Take a step of the shield towards joint positions [rad]."""
-        pending = self._pending[: int(np.ceil(self.config.delay / self._dt))]
-        shares = np.clip(self.config.delay / self._dt - np.arange(len(pending)), 0.0, 1.0)
-        way = sum(share * self._dt * dq for share, dq in zip(shares, pending, strict=True))
-        if self._measured is not None:
-            q = self._measured + way
-        elif self._command is not None:  # no measured positions: it brakes on its own
-            q = self._command.next_q
-            goal = goal + np.nan
-        else:
-            raise ValueError("the robot's joint positions are not finite")
-        self._command = self.shield.step(q, position=goal, **self._period)
-        self._measured = None
-        self._pending = [self._command.dq, *pending]
-        words = "; ".join(self._command.active_limits)
+        self._step(action)
+        words = "; ".join(self.shields.active_limits(0))
         if words != self._said:
             logging.info("shield: %s", words or "follows the actions")
         self._said = words
+        return self._sent
 
-    def _goals(self) -> dict[str, float]:
-        return dict(zip(self._keys, np.degrees(self._command.next_q).tolist(), strict=True))
+    def _step(self, action: dict[str, Any]) -> None:
+        """Take a step towards an action; it brakes without joint positions since the last one."""
+        if self._command is None:
+            self.get_observation()
+            if not np.isfinite(self._measured).all():
+                raise ValueError("the robot's joint positions are not finite")
+        goal = np.radians([[action.get(key, np.nan) for key in self._keys]])
+        q = np.full_like(goal, np.nan) if self._measured is None else self._measured
+        self._command = self.shields.step(q, position=goal, dt=self._dt)
+        self._measured = None
+        goals = np.degrees(self._command.next_q[0]).tolist()
+        self._sent = self.robot.send_action(action | dict(zip(self._keys, goals, strict=True)))
 
     def disconnect(self) -> None:
         """Bring the arm to rest, and disconnect the robot."""
-        self.shield.halt()
-        count = 0 if self._command is None else int(2.0 * self._command.stopping_time / self._dt)
-        for _ in range(count + 10):
-            if self._command is None or not self._command.dq.any():
+        self.shields.halt()
+        end = time.perf_counter() + 1.0 + 2.0 * self.shields.stopping_time(0)
+        while self._command is not None and np.abs(self._command.dq).max() > REST:
+            if time.perf_counter() > end:
                 break
             time.sleep(self._dt)
             self.get_observation()
-            self._step(self._command.next_q)
-            self._sent = self.robot.send_action(self._sent | self._goals())
+            self._step(self._sent)
         self.robot.disconnect()

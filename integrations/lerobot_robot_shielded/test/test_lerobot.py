@@ -6,18 +6,16 @@ names.
 
 import os
 import subprocess
-import sys
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import iiwa_dnn
+from integrations.environment import environment
 from judge_limits import breaches
 
 HERE = Path(__file__).resolve().parent
-FOLDER = HERE.parents[2] / "build" / "lerobot"
 PYTHON = os.environ.get("PYTHON_OF_LEROBOT", "python3.12")
 DT = 1.0 / 30.0
 ROBOT = iiwa_dnn.load_robot("iiwa7").with_limits(acceleration=10.0, jerk=200.0)
@@ -41,16 +39,11 @@ RECORD = (
 
 @pytest.fixture(scope="module")
 def commands() -> Path:
-    """Install LeRobot, both robots and the exported shield; return the folder of its commands."""
-    run = partial(subprocess.run, check=True)
-    pip = [sys.executable, "-m", "pip", "--python", str(FOLDER / "bin" / "python"), "install", "-q"]
-    if not FOLDER.exists():
-        run([PYTHON, "-m", "venv", "--without-pip", FOLDER])
-        run([*pip, "lerobot[dataset]==0.6.1"])
+    """Return the folder of LeRobot's commands, beside both robots and the exported shield."""
+    folder = HERE.parents[2] / "build" / "lerobot"
     shield = iiwa_dnn.Shield(ROBOT, DT, obstacles=[])
-    folder = iiwa_dnn.export.python(shield, FOLDER / "arm_shield", name="arm_shield")
-    run([*pip, "--force-reinstall", "--no-deps", folder, HERE.parent, HERE / "ideal"])
-    return FOLDER / "bin"
+    packages = ("lerobot[dataset]==0.6.1",)
+    return environment(folder, PYTHON, packages, shield, HERE.parent, HERE / "ideal").parent
 
 
 @pytest.mark.parametrize("command", ["record", "teleoperate"])

@@ -10,6 +10,7 @@ import signal
 import sys
 import time
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,19 +33,24 @@ NEWEST = QoSProfile(depth=1)
 LEAST = 1e-6
 """Shortest period that a shield is told [s]."""
 
-PARAMETERS: dict[str, tuple[Any, str, tuple[float, float] | None]] = {
-    "shield": ("", "name of the package that iiwa-dnn exported", None),
-    "command": ("velocity", "what is sent: velocity, position or trajectory", None),
-    "pacing": ("joint_states", "what begins a period: joint_states or timer", None),
-    "base_frame": ("base_link", "frame of the twists that are accepted", None),
-    "timeout": (0.1, "age up to which a request counts [s]", (1e-3, 10.0)),
-    "delay": (0.0, "time by which the drives are behind their commands [s]", (0.0, 1.0)),
-    "longest_period": (0.0, "longest period to reckon with [s]; 0: the shield's", (0.0, 1.0)),
-    "report_rate": (10.0, "rate of the diagnostics [1/s]", (0.1, 100.0)),
+REST = 1e-9
+"""Velocity of a joint at rest [rad/s]: at a position limit it may back off by rounding."""
+
+REPORT = 0.1
+"""Period of the diagnostics [s]."""
+
+PARAMETERS: dict[str, tuple[Any, str]] = {
+    "shield": ("", "name of the package that iiwa-dnn exported"),
+    "command": ("velocity", "what is sent: velocity, position or trajectory"),
+    "pacing": ("joint_states", "what begins a period: joint_states or timer"),
+    "base_frame": ("base_link", "frame of the twists that are accepted"),
+    "timeout": (0.1, "age up to which requests and joint states count [s]"),
 }
-"""Default, meaning and range of each parameter."""
+"""Default and meaning of each parameter."""
 
 CHOICES = {"command": ("velocity", "position", "trajectory"), "pacing": ("joint_states", "timer")}
+
+TIMEOUTS = FloatingPointRange(from_value=1e-3, to_value=10.0)
 
 
 class RefusedError(Exception):
@@ -52,26 +58,17 @@ class RefusedError(Exception):
 
 
 @dataclass
-class Request:
-    """The request that counts: its kind and numbers, none of them for a reason."""
-
-    kind: str = ""
-    numbers: Any = None
-    reason: str = "no request"
-    times: tuple[float, ...] = ()  # of its stamp and its arrival [s]
-
-
-@dataclass
 class Cycle:
-    """What one period leaves for the next."""
+    """Values that one period leaves for the next."""
 
     time: float = 0.0  # of the last command [s]
     command: Any = None  # the last one
-    sent: list[tuple[float, Any]] = field(default_factory=list)  # periods [s], velocities [rad/s]
-    measured: Any = None  # joint positions since then [rad]
+    measured: Any = np.nan  # joint positions (1, n) [rad]
     seen: float = 0.0  # time of the last joint states [s]
-    fault: str = "no joint states"
-    request: Request = field(default_factory=Request)
+    fault: str = "no joint states"  # why measured positions do not count
+    request: dict[str, Any] = field(default_factory=dict)  # the last one
+    counts: tuple[float, float] = (0.0, 0.0)  # from when until when it counts [s]
+    refused: str = "no request"  # why it does not count
     reason: str = ""  # why the arm brakes
     longest: float = 0.0  # longest period since the last report [s]
 
@@ -91,115 +88,86 @@ class ShieldNode(Node):
             RefusedError: A parameter has no such value, or the shield does not fit to it.
         """
         super().__init__("shield", **options)
-        own = {name: self._parameter(name, *each) for name, each in PARAMETERS.items()}
+        self._own = {name: self._parameter(name, *each) for name, each in PARAMETERS.items()}
         try:
-            package = importlib.import_module(own["shield"])
+            self._package = package = importlib.import_module(self._own["shield"])
         except (ImportError, ValueError) as error:
-            raise RefusedError(f"parameter shield: {own['shield']!r}: {error}") from error
-        self._shield = package.Shield()
-        self._joints = package.JOINT_NAMES
-        self._dt = package.DT
-        self._varies = package.LONGEST_PERIOD is not None
-        self._longest = own["longest_period"] or package.LONGEST_PERIOD or package.DT
-        if own["command"] == "velocity" and self._longest > (package.LONGEST_PERIOD or 0.0):
-            known = f"the shield is made for {package.LONGEST_PERIOD or 'constant periods'}"
-            raise RefusedError(f"parameter longest_period: {self._longest} s, but {known}")
-        self._patience = max(self._longest - self._dt, 1.5 * self._dt)
-        self._own = own
+            raise RefusedError(f"parameter shield: {self._own['shield']!r}: {error}") from error
+        if self._own["command"] == "velocity" and package.LONGEST_PERIOD is None:
+            raise RefusedError("parameter command: velocity needs a shield with a longest_period")
+        self._longest = package.LONGEST_PERIOD or package.DT
+        # Of one arm: it brakes at joint positions that are not finite, where `Shield` raises.
+        self._shields = package.Shields(1)
         self._cycle = Cycle()
-        self._columns: dict[tuple[str, ...], list[int]] = {}
-        self._subscribe()
-        kind = JointTrajectory if own["command"] == "trajectory" else Float64MultiArray
-        self._commands = self.create_publisher(kind, "~/commands", NEWEST)
+        takers = {
+            "~/delta_twist_cmds": (TwistStamped, "twist", self._twist),
+            "~/velocity_cmds": (Float64MultiArray, "dq", self._velocities),
+            "~/position_cmds": (JointTrajectory, "position", self._positions),
+        }
+        for topic, (message, kind, numbers) in takers.items():
+            self.create_subscription(message, topic, partial(self._take, kind, numbers), NEWEST)
+        self.create_subscription(JointState, "/joint_states", self._on_joint_states, NEWEST)
+        is_trajectory = self._own["command"] == "trajectory"
+        sent = JointTrajectory if is_trajectory else Float64MultiArray
+        self._commands = self.create_publisher(sent, "~/commands", NEWEST)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self.create_service(Trigger, "~/halt", self._on_halt)
         self.create_service(Trigger, "~/reset", self._on_reset)
-        self.create_timer(self._dt, self._on_timer)
-        self.create_timer(1.0 / own["report_rate"], self._report)
+        self.create_timer(package.DT, self._on_timer)
+        self.create_timer(REPORT, self._report)
 
-    def _parameter(self, name: str, default: Any, text: str, span: Any) -> Any:
+    def _parameter(self, name: str, default: Any, text: str) -> Any:
         """Declare a parameter that is set at the start alone; return its value."""
         about = ParameterDescriptor(description=text, read_only=True)
-        if span:
-            lowest, highest = span
-            about.floating_point_range = [FloatingPointRange(from_value=lowest, to_value=highest)]
+        if isinstance(default, float):
+            about.floating_point_range = [TIMEOUTS]
         value = self.declare_parameter(name, default, about).value
         if name in CHOICES and value not in CHOICES[name]:
             raise RefusedError(f"parameter {name}: {value!r} is none of {CHOICES[name]}")
         return value
 
-    def _subscribe(self) -> None:
-        """Subscribe to the joint states and to each kind of request."""
-        takers = {
-            "~/delta_twist_cmds": (TwistStamped, self._twist),
-            "~/velocity_cmds": (Float64MultiArray, self._velocity),
-            "~/position_cmds": (JointTrajectory, self._position),
-        }
-        for topic, (kind, take) in takers.items():
-            self.create_subscription(kind, topic, self._taking(take), NEWEST)
-        self.create_subscription(JointState, "/joint_states", self._on_joint_states, NEWEST)
-
     # ---- Requests
 
-    def _taking(self, take: Any) -> Any:
-        """Return a callback that keeps a request, or the reason why it is none."""
+    def _take(self, kind: str, numbers: Any, message: Any) -> None:
+        """Keep a request of a kind, or the reason why it is none."""
+        now = self._now()
+        stamp = seconds(message.header.stamp) if hasattr(message, "header") else 0.0
+        age = now - stamp if stamp else 0.0
+        timeout = self._own["timeout"]
+        try:
+            if abs(age) > timeout:
+                raise RefusedError(f"request stamped {age:.3g} s ago")
+            self._cycle.request = {kind: np.array([numbers(message)])}
+            self._cycle.counts = (now, now + timeout - max(age, 0.0))
+            self._cycle.refused = ""
+        except RefusedError as error:
+            self._cycle.refused = str(error)
 
-        def callback(message: Any) -> None:
-            now = self._now()
-            stamp = seconds(message.header.stamp) if hasattr(message, "header") else 0.0
-            try:
-                kind, numbers = take(message)
-                if not np.isfinite(numbers).all():
-                    raise RefusedError("request not finite")
-                times = (stamp, now) if stamp else (now,)
-                self._cycle.request = Request(kind, numbers, "", times)
-            except RefusedError as error:
-                self._cycle.request = Request(reason=str(error))
-
-        return callback
-
-    def _twist(self, message: TwistStamped) -> tuple[str, Any]:
+    def _twist(self, message: TwistStamped) -> list[float]:
         frame = message.header.frame_id
         if frame not in ("", self._own["base_frame"]):
             raise RefusedError(f"request in frame {frame!r}, not {self._own['base_frame']!r}")
         linear, angular = message.twist.linear, message.twist.angular
-        numbers = [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
-        return "twist", np.array(numbers)
+        return [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
 
-    def _velocity(self, message: Float64MultiArray) -> tuple[str, Any]:
-        count = len(self._joints)
+    def _velocities(self, message: Float64MultiArray) -> Any:
+        count = len(self._package.JOINT_NAMES)
         if len(message.data) != count:
             raise RefusedError(f"request of {len(message.data)} velocities, not {count}")
-        return "dq", np.array(message.data)
+        return message.data
 
-    def _position(self, message: JointTrajectory) -> tuple[str, Any]:
+    def _positions(self, message: JointTrajectory) -> list[float]:
         if len(message.points) != 1:
             raise RefusedError(f"trajectory of {len(message.points)} points, not one")
-        return "position", self._ordered(message.joint_names, message.points[0].positions)
+        return self._ordered(message.joint_names, message.points[0].positions)
 
-    def _ordered(self, names: Any, positions: Any) -> Any:
+    def _ordered(self, names: Any, positions: Any) -> list[float]:
         """Return positions in the order of the shield's joints, by their names."""
-        key = tuple(names)
-        if key not in self._columns:
-            missing = [each for each in self._joints if each not in key]
-            if missing:
-                raise RefusedError(f"joint {missing[0]!r} is missing")
-            self._columns[key] = [key.index(each) for each in self._joints]
-        if len(positions) != len(key):
-            raise RefusedError(f"{len(positions)} positions of {len(key)} joints")
-        return np.array(positions)[self._columns[key]]
-
-    def _asked(self, now: float) -> tuple[dict[str, Any], str]:
-        """Return the request that counts at a time [s], or the reason why the arm brakes."""
-        request = self._cycle.request
-        ages = [now - each for each in request.times]
-        if request.times and max(ages) > self._own["timeout"]:
-            self._cycle.request = request = Request(reason="request timed out")
-        elif request.times and min(ages) < -self._own["timeout"]:
-            self._cycle.request = request = Request(reason="request from the future")
-        if request.reason:
-            return {"dq": np.zeros(len(self._joints))}, request.reason
-        return {request.kind: request.numbers}, ""
+        found = dict(zip(names, positions, strict=False))
+        missing = [each for each in self._package.JOINT_NAMES if each not in found]
+        if missing:
+            raise RefusedError(f"joint {missing[0]!r} is missing")
+        return [found[each] for each in self._package.JOINT_NAMES]
 
     # ---- Periods
 
@@ -211,141 +179,124 @@ class ShieldNode(Node):
         cycle.seen = self._now()
         cycle.fault = ""
         try:
-            measured = self._ordered(message.name, message.position)
-            if not np.isfinite(measured).all():
-                raise RefusedError("joint positions not finite")
-            cycle.measured = measured
+            cycle.measured = np.array([self._ordered(message.name, message.position)])
         except RefusedError as error:
             cycle.fault = str(error)
         if self._own["pacing"] == "joint_states":
-            self._step(seconds(message.header.stamp) or cycle.seen)
+            self._step(seconds(message.header.stamp) or cycle.seen, cycle.measured)
 
     def _on_timer(self) -> None:
         """Begin a period of the node's clock, or one that joint states fail to begin."""
         cycle = self._cycle
         now = self._now()
+        age = now - cycle.seen
         is_paced = self._own["pacing"] == "timer"
-        if now - cycle.seen > (self._own["timeout"] if is_paced else self._patience):
+        dt = self._package.DT
+        patience = max(self._longest - dt, 1.5 * dt)
+        if age > (self._own["timeout"] if is_paced else patience):
             cycle.fault = "joint states are silent"
-            is_paced = True
-        if is_paced:
-            self._step(now)
-
-    def _step(self, now: float) -> None:
-        """Send the command of a period that begins at a time [s]."""
-        cycle = self._cycle
-        if cycle.command is None and (cycle.fault or cycle.measured is None):
+        elif not is_paced:
             return
-        shield = self._shield
-        elapsed = now - cycle.time if cycle.command else self._dt
+        moved = 0.0 if cycle.command is None else age * cycle.command.dq
+        self._step(now, cycle.measured + moved)
+
+    def _step(self, now: float, q: Any) -> None:
+        """Send the command of a period that begins at a time [s], at positions q (1, n) [rad]."""
+        cycle = self._cycle
+        elapsed = now - cycle.time
+        if cycle.command is None:
+            elapsed = self._package.DT
+            if cycle.fault or not np.isfinite(q).all():
+                return
+        if -self._longest < elapsed < LEAST:  # the timer has begun this period
+            return
+        cycle.time = now
         cycle.longest = max(cycle.longest, elapsed)
-        if cycle.fault:
-            cycle.request = Request(reason=cycle.fault)
-        elif not 0.0 < elapsed <= self._longest * (1.0 + 1e-6):
-            cycle.request = Request(reason=f"period of {elapsed:.6g} s")
         said = cycle.reason
-        request, cycle.reason = self._asked(now)
+        if not 0.0 < elapsed <= self._longest * (1.0 + 1e-6):
+            cycle.refused = f"period of {elapsed:.6g} s"
+            elapsed = self._package.DT  # of a clock that jumps; positions are measured anew
+        cycle.reason = self._why_none()
+        request = {"dq": np.zeros_like(q)} if cycle.reason else dict(cycle.request)
         if self._own["command"] == "velocity":
-            elapsed = min(max(elapsed, LEAST), self._longest)
             request["elapsed"] = elapsed
         else:
-            elapsed = self._dt
-            if self._varies:
-                request["dt"] = elapsed
-        cycle.command = shield.step(self._positions(elapsed), **request)
-        cycle.measured = None
-        cycle.time = now
+            request["dt"] = self._package.DT
+        cycle.command = self._shields.step(np.nan * q if cycle.fault else q, **request)
+        code = cycle.command.reason[0]
+        if not cycle.reason and 0 < code <= self._package.Reason.Q_NOT_FINITE:
+            cycle.reason = self._shields.active_limits(0)[0]
         self._send(cycle.command)
         if cycle.reason != said:
             self._report()
 
-    def _positions(self, elapsed: float) -> Any:
-        """Return measured positions with the way that is still to come, or the commanded ones."""
+    def _why_none(self) -> str:
+        """Return why no request counts now, or nothing."""
         cycle = self._cycle
-        if cycle.command is None:
-            return cycle.measured
-        last = cycle.command.dq
-        cycle.sent = [(elapsed, last), *cycle.sent]
-        way = 0.0 * last
-        left = self._own["delay"]
-        for k, (period, dq) in enumerate(cycle.sent):
-            if left <= 0.0:
-                del cycle.sent[k:]
-                break
-            way += min(left, period) * dq
-            left -= period
-        if cycle.measured is None:
-            return cycle.command.next_q + (elapsed - self._dt) * last
-        return cycle.measured + way
+        begin, end = cycle.counts
+        if not cycle.refused and not begin <= self._now() <= end:
+            cycle.refused = "request timed out"
+        return cycle.fault or cycle.refused
 
     def _send(self, command: Any) -> None:
         """Publish a command in the form of the parameter."""
         kind = self._own["command"]
         if kind != "trajectory":
             numbers = command.dq if kind == "velocity" else command.next_q
-            self._commands.publish(Float64MultiArray(data=numbers.tolist()))
+            self._commands.publish(Float64MultiArray(data=numbers[0].tolist()))
             return
-        point = JointTrajectoryPoint(positions=command.next_q.tolist())
-        point.time_from_start.nanosec = round(1e9 * self._dt)
-        message = JointTrajectory(joint_names=self._joints, points=[point])
+        point = JointTrajectoryPoint(positions=command.next_q[0].tolist())
+        point.time_from_start.nanosec = round(1e9 * self._package.DT)
+        message = JointTrajectory(joint_names=self._package.JOINT_NAMES, points=[point])
         self._commands.publish(message)
 
     # ---- Halt, reset, state
 
     def _on_halt(self, _: Any, response: Any) -> Any:
-        self._shield.halt()
+        self._shields.halt()
         response.success = True
         response.message = "brakes until ~/reset"
         return response
 
     def _on_reset(self, _: Any, response: Any) -> Any:
         """Forget a halt and the request, if the arm is at rest."""
-        response.success = self.is_at_rest
-        response.message = (
-            "waits for requests" if self.is_at_rest else "the arm moves: ~/halt first"
-        )
-        if self.is_at_rest:
-            self._shield.reset()
+        response.success = self._is_at_rest()
+        response.message = "waits for requests" if response.success else "moves: ~/halt first"
+        if response.success:
+            self._shields.reset()
             self._cycle = Cycle()
         return response
 
-    @property
-    def is_at_rest(self) -> bool:
-        """Test whether the last command was zero, or there was none."""
-        return self._cycle.command is None or not self._cycle.command.dq.any()
+    def _is_at_rest(self) -> bool:
+        """Test whether the last command was one to rest, or there was none."""
+        command = self._cycle.command
+        return command is None or bool(np.abs(command.dq).max() <= REST)
 
     def come_to_rest(self, executor: Any) -> str:
         """Brake within the limits; return why that was not possible, or nothing."""
-        self._shield.halt()
-        end = time.monotonic() + 1.0
-        if not self.is_at_rest:
-            end += 2.0 * self._cycle.command.stopping_time
-        while not self.is_at_rest and time.monotonic() < end:
+        self._shields.halt()
+        end = time.monotonic() + 1.0 + 2.0 * self._shields.stopping_time(0)
+        while not self._is_at_rest() and time.monotonic() < end:
             executor.spin_once(timeout_sec=0.01)
-        return "" if self.is_at_rest else f"velocities left: {self._cycle.command.dq.round(4)}"
+        return "" if self._is_at_rest() else f"velocities left: {self._cycle.command.dq.round(4)}"
 
     def _report(self) -> None:
         cycle = self._cycle
         status = DiagnosticStatus(name=f"{self.get_name()}: {self._own['shield']}")
-        command = cycle.command
-        if command is None:
+        if cycle.command is None:
             status.level = DiagnosticStatus.STALE
             status.message = cycle.fault
         else:
-            limits = command.active_limits
-            status.level = (
-                DiagnosticStatus.ERROR
-                if cycle.reason
-                else DiagnosticStatus.WARN
-                if limits
-                else DiagnosticStatus.OK
-            )
+            limits = self._shields.active_limits(0)
+            margin = self._shields.margin(0)
+            status.level = DiagnosticStatus.WARN if limits else DiagnosticStatus.OK
+            status.level = DiagnosticStatus.ERROR if cycle.reason else status.level
             status.message = cycle.reason or (limits[0] if limits else "follows the request")
             values = {
                 "active limits": "; ".join(limits),
-                "margin of joints [rad]": f"{command.margin.joint:.6g}",
-                "margin of distances [m]": f"{command.margin.distance:.6g}",
-                "stopping time [s]": f"{command.stopping_time:.6g}",
+                "margin of joints [rad]": f"{margin.joint:.6g}",
+                "margin of distances [m]": f"{margin.distance:.6g}",
+                "stopping time [s]": f"{self._shields.stopping_time(0):.6g}",
                 "longest period [s]": f"{cycle.longest:.6g}",
             }
             status.values = [KeyValue(key=key, value=value) for key, value in values.items()]

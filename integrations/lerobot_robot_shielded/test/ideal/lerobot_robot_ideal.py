@@ -30,7 +30,6 @@ class Ideal(Robot):
     def __init__(self, config):
         super().__init__(config)
         self.cameras = {}
-        self.is_connected = False
         self.goals = [[*START, 50.0]]
 
     is_connected = False
