@@ -2,12 +2,14 @@
 
 The arm begins where it stands, keeps the maker's limits and comes to rest at the end, and at
 Ctrl-C. Requests come as JSON, one a UDP packet or a line of stdin: {"dq": [...]}, {"twist": [...]}
-or {"position": [...]}, in rad/s, m/s and rad/s, or rad. It was tried on franka-sim, a server of the
-robot's protocol, never on an arm: see docs/real_arm.md before the first day.
+or {"position": [...]}, in rad/s, m/s and rad/s, or rad; they pass the shield of `make_shield`, an
+exported package. It was tried on franka-sim, a server of the robot's protocol, never on an arm: see
+docs/real_arm.md before the first day.
 """
 
 import dataclasses
 import gc
+import importlib
 import json
 import os
 import signal
@@ -47,8 +49,9 @@ def with_reserve(robot):
     )
 
 
-def make_controller(robot, q, radius, period):
+def make_controller(q, radius, period):
     """Return a controller for a circle of this radius [m] and period [s] from q (7,) [rad]."""
+    robot = with_reserve(iiwa_dnn.load_robot("fr3"))
     limits = (
         iiwa_dnn.AccelerationLimits(),
         iiwa_dnn.JerkLimits(),
@@ -62,12 +65,12 @@ def make_controller(robot, q, radius, period):
     return controller
 
 
-def make_shield(robot, q):
-    """Return a shield for whatever is requested, from q (7,) [rad]."""
+def make_shield():
+    """Return a shield to export for requests to an FR3."""
     # The robot judges where the arm is; where commands are lost, it is not where they lead.
+    robot = with_reserve(iiwa_dnn.load_robot("fr3"))
     shield = iiwa_dnn.Shield(robot, dt=DT, obstacles=[], tracking_error=1e-3)
-    shield.limits.append(iiwa_dnn.TipSpeedLimit(2.5))  # [m/s]
-    shield.warm_up(q, [robot.tip])
+    shield.limits += (iiwa_dnn.TipSpeedLimit(2.5),)  # [m/s]
     return shield
 
 
@@ -88,7 +91,7 @@ class Requests:
         self._socket.setblocking(False)
 
     def newest(self):
-        """Return the request as an argument of `Shield.step`; nothing: there is no new one."""
+        """Return the request as an argument of a shield's step; nothing: there is no new one."""
         found = None
         try:
             while self._socket:
@@ -114,6 +117,7 @@ def main(
     radius: float = 0.02,
     period: float = 5.0,
     requests: str = "",
+    shield: str = "fr3_shield",
 ):
     """Draw a circle, or follow requests, and come to rest.
 
@@ -123,14 +127,17 @@ def main(
         radius: radius of the circle [m]
         period: time of one round [s]
         requests: address and port of requests by UDP, or "stdin", in place of a circle
+        shield: name of the exported package that requests pass
     """
     import pylibfranka as franka
 
     arm = franka.Robot(host, franka.RealtimeConfig.kIgnore)
     q = np.array(arm.read_once().q)
-    robot = with_reserve(iiwa_dnn.load_robot("fr3"))
     source = Requests(requests) if requests else None
-    driver = make_shield(robot, q) if source else make_controller(robot, q, radius, period)
+    if source:
+        driver = importlib.import_module(shield).Shield()
+    else:
+        driver = make_controller(q, radius, period)
     ended = []
 
     def end(*_):

@@ -278,7 +278,6 @@ class Shield:
         longest_period: Longest control period where periods vary [s]; None: they do not.
         delay: Time by which the arm is behind its commands [s].
         settings: Control period, timeout and tracking error.
-        limits: Limits that every command keeps.
     """
 
     def __init__(
@@ -325,11 +324,21 @@ class Shield:
             tracking_error=checks.not_negative("tracking_error", tracking_error),
             delay=self.delay,
         )
-        self.limits: list[Limit] = [JointLimits(), *own_rate_limits(robot)]
-        if obstacles is not None:
-            self.limits.append(CollisionAvoidance(obstacles, distance=distance, left_out=left_out))
         self._warned: set[str] = set()
         self._kept: tuple[Vector, str]  # memory of the arm, never overwritten; frame of twists
+        limits: list[Limit] = [JointLimits(), *own_rate_limits(robot)]
+        if obstacles is not None:
+            limits.append(CollisionAvoidance(obstacles, distance=distance, left_out=left_out))
+        self.limits = tuple(limits)
+
+    @property
+    def limits(self) -> tuple[Limit, ...]:
+        """Limits that every command keeps; a shield that is given others begins anew."""
+        return self._limits
+
+    @limits.setter
+    def limits(self, limits: tuple[Limit, ...]) -> None:
+        self._limits = limits
         self._begin()
         self.reset()
 

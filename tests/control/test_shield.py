@@ -312,6 +312,17 @@ def test_next_q_is_where_the_command_leads() -> None:
     np.testing.assert_array_equal(command.next_q, START + DT * command.dq)
 
 
+def test_a_limit_that_is_added_holds() -> None:
+    """The speed of the tip is that of finite differences of Pinocchio's placements."""
+    shield = d.Shield(SMOOTH, DT)
+    shield.limits += (d.TipSpeedLimit(0.2),)
+    path, commands = drive(shield, 300, dq=np.full(7, 1.0))
+    tips = np.array([d.Configuration(SMOOTH, q).position for q in path])
+    speeds = np.linalg.norm(np.diff(tips, axis=0), axis=1) / DT
+    assert 0.19 < speeds.max() < 0.2 + 1e-4
+    assert "TipSpeedLimit" in commands[-1].active_limits[0]
+
+
 def test_a_warm_shield_takes_its_first_steps_as_any_other() -> None:
     shield = d.Shield(SMOOTH, DT, [BALL])
     shield.warm_up(START, [SMOOTH.tip])

@@ -25,6 +25,7 @@ import pytest
 import iiwa_dnn
 from helpers_physics import ROOT, run_python
 from judge_distances import Judge
+from scripts import franka
 
 FOLDER = ROOT / "build" / "franka-sim"
 PYTHON = FOLDER / "bin" / "python"
@@ -120,7 +121,7 @@ def test_the_motion_is_accepted_with_reserve_for_lost_commands(
 
 RECORDING = """
 import numpy as np
-from iiwa_dnn import Shield
+from fr3_shield import Shield
 step, log = Shield.step, []
 def recorded(shield, q, **request):
     begin = time.perf_counter()
@@ -151,6 +152,10 @@ def ask(place: tuple[str, int], ended: Event) -> None:
 
 
 def test_hostile_requests_of_a_slow_policy_abort_no_motion(server, tmp_path: Path) -> None:
+    folder = iiwa_dnn.export.python(franka.make_shield(), tmp_path / "fr3_shield", "fr3_shield")
+    installed = tmp_path / "installed"
+    pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "-q", "--no-deps")
+    subprocess.run([*pip, "--no-build-isolation", "--target", installed, folder], check=True)
     seconds = float(os.environ.get("SECONDS_OF_HOSTILE_REQUESTS", "5"))
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
         link.bind(("127.0.0.1", 0))
@@ -164,7 +169,7 @@ def test_hostile_requests_of_a_slow_policy_abort_no_motion(server, tmp_path: Pat
         "from scripts import franka\n"
         f"franka.main('127.0.0.1', {seconds}, requests='{place[0]}:{place[1]}')"
     )
-    done = run_python(code, timeout=300.0 + 5.0 * seconds)
+    done = run_python(code, timeout=300.0 + 5.0 * seconds, PYTHONPATH=str(installed))
     ended.set()
     sender.join()
     assert done.returncode == 0, done.stderr
