@@ -12,13 +12,8 @@ STUDIES = {
 }
 """Commands whose reports are quoted, by their titles."""
 
-JUDGES = {
-    "Hostile targets of controllers": ("tests/hostile.py", "controller", "{steps}"),
-    "Hostile requests of shields": ("tests/hostile.py", "shield", "{steps}"),
-    "Controllers in C": ("tests/hostile.py", "controller", "{steps}", "--exported"),
-    "Shields in C": ("tests/hostile.py", "shield", "{steps}", "--exported"),
-}
-"""Judges of hostile motion by their titles; their last lines sum up."""
+JUDGES = (("controller",), ("shield",), ("controller", "--exported"), ("shield", "--exported"))
+"""Words of tests/hostile.py, a judge of hostile motion whose last lines sum up."""
 
 
 def report(steps: int) -> int:
@@ -29,10 +24,11 @@ def report(steps: int) -> int:
             out = Path(folder) / words[0]
             failed |= run("-m", "iiwa_dnn", *words, "--out", str(out), "-q").returncode
             print(f"\n## {title}\n\n{(out / 'report.md').read_text(encoding='utf-8')}", flush=True)
-    for title, words in JUDGES.items():
-        done = run(*(word.format(steps=10 * steps) for word in words))
+    for kind, *words in JUDGES:
+        done = run("tests/hostile.py", kind, str(10 * steps), *words)
         failed |= done.returncode
-        print(f"\n## {title}\n", *done.stdout.splitlines()[-8:], sep="\n", flush=True)
+        print(f"\n## Hostile motion: {' '.join([kind, *words])}\n")
+        print(*done.stdout.splitlines()[-8:], sep="\n", flush=True)
     return int(failed != 0)
 
 

@@ -1,8 +1,8 @@
 """Drive a Franka arm (FR3) at 1 kHz through libfranka: a circle, or what a slow policy asks for.
 
 The arm begins where it stands, keeps the maker's limits and comes to rest at the end, and at
-Ctrl-C. Requests come as JSON, one a UDP packet or a line of stdin: {"dq": [...]}, {"twist": [...]}
-or {"position": [...]}, in rad/s, m/s and rad/s, or rad; they pass the shield of `make_shield`, an
+Ctrl-C. Requests come as JSON, one a UDP packet: {"dq": [...]}, {"twist": [...]} or
+{"position": [...]}, in rad/s, m/s and rad/s, or rad; they pass the shield of `make_shield`, an
 exported package. It was tried on franka-sim, a server of the robot's protocol, never on an arm: see
 docs/real_arm.md before the first day.
 """
@@ -11,7 +11,6 @@ import dataclasses
 import gc
 import importlib
 import json
-import os
 import signal
 import socket
 import sys
@@ -75,17 +74,12 @@ def make_shield():
 
 
 class Requests:
-    """The newest request that came by UDP, at "127.0.0.1:5005" say, or by "stdin"."""
+    """The newest request that came by UDP, at "127.0.0.1:5005" say."""
 
-    def __init__(self, source):
+    def __init__(self, address):
         """Listen at an address."""
         self.refused = 0
-        self._socket = None
-        self._rest = b""
-        if source == "stdin":
-            os.set_blocking(sys.stdin.fileno(), False)
-            return
-        place, _, port = source.rpartition(":")
+        place, _, port = address.rpartition(":")
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.bind((place, int(port)))
         self._socket.setblocking(False)
@@ -94,10 +88,8 @@ class Requests:
         """Return the request as an argument of a shield's step; nothing: there is no new one."""
         found = None
         try:
-            while self._socket:
+            while True:
                 found = self._socket.recv(4096)
-            *lines, self._rest = (self._rest + os.read(0, 65536)).split(b"\n")
-            found = lines[-1] if lines else None
         except BlockingIOError:
             pass
         if found is None:
@@ -126,7 +118,7 @@ def main(
         duration: length of the motion [s]
         radius: radius of the circle [m]
         period: time of one round [s]
-        requests: address and port of requests by UDP, or "stdin", in place of a circle
+        requests: address and port of requests by UDP, in place of a circle
         shield: name of the exported package that requests pass
     """
     import pylibfranka as franka

@@ -88,7 +88,7 @@ def test_the_heart_around_an_obstacle(example: Example, tmp_path: Path) -> None:
     assert nearest[0] < -0.03
     assert 0.02 <= nearest[1] < 0.021
     assert "failures []" in text
-    assert (tmp_path / "figures" / "obstacle.png").exists()
+    assert (tmp_path / "figures" / "with.npz").exists()
 
 
 def test_a_second_paper(example: Example) -> None:
