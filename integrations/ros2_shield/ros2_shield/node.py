@@ -41,14 +41,12 @@ REPORT = 0.1
 
 PARAMETERS: dict[str, tuple[Any, str]] = {
     "shield": ("", "name of the package that iiwa-dnn exported"),
-    "command": ("velocity", "what is sent: velocity, position or trajectory"),
-    "pacing": ("joint_states", "what begins a period: joint_states or timer"),
+    "command": (("velocity", "position", "trajectory"), "what is sent"),
+    "pacing": (("joint_states", "timer"), "what begins a period"),
     "base_frame": ("base_link", "frame of the twists that are accepted"),
     "timeout": (0.1, "age up to which requests and joint states count [s]"),
 }
-"""Default and meaning of each parameter."""
-
-CHOICES = {"command": ("velocity", "position", "trajectory"), "pacing": ("joint_states", "timer")}
+"""Default, or choices of which the first is it, and meaning of each parameter."""
 
 TIMEOUTS = FloatingPointRange(from_value=1e-3, to_value=10.0)
 
@@ -121,9 +119,11 @@ class ShieldNode(Node):
         about = ParameterDescriptor(description=text, read_only=True)
         if isinstance(default, float):
             about.floating_point_range = [TIMEOUTS]
-        value = self.declare_parameter(name, default, about).value
-        if name in CHOICES and value not in CHOICES[name]:
-            raise RefusedError(f"parameter {name}: {value!r} is none of {CHOICES[name]}")
+        if not isinstance(default, tuple):
+            return self.declare_parameter(name, default, about).value
+        value = self.declare_parameter(name, default[0], about).value
+        if value not in default:
+            raise RefusedError(f"parameter {name}: {value!r} is none of {default}")
         return value
 
     # ---- Requests

@@ -54,7 +54,7 @@ def stamp(t):
 class Arm(Node):
     """An ideal arm, and whoever asks for motion."""
 
-    def __init__(self, package):
+    def __init__(self, package, is_timed):
         super().__init__("arm")
         self.names = list(package.JOINT_NAMES)
         self.dt = package.DT
@@ -68,6 +68,9 @@ class Arm(Node):
         self.words = set()  # of the diagnostics
         self.publishers_of = {kind: self.create_publisher(kind, TOPICS[kind], 1) for kind in TOPICS}
         self.create_subscription(DiagnosticArray, "/diagnostics", self.on_state, 10)
+        kind = JointTrajectory if is_timed else Float64MultiArray
+        take = self.on_position if is_timed else self.on_velocity
+        self.create_subscription(kind, "/shield/commands", take, 1000)
 
     def on_velocity(self, message):
         self.dq = np.array(message.data)
@@ -75,13 +78,10 @@ class Arm(Node):
         self.log.append([0.0, *message.data])
 
     def on_position(self, message):
-        q = np.array(message.points[0].positions)
+        goal = np.array(message.points[0].positions)
         if not self.times:  # commands before the discovery are not seen
-            self.start = self.q = q
-        self.dq = (q - self.q) / self.dt
-        self.q = q
-        self.times.append(time.perf_counter())
-        self.log.append([self.dt, *self.dq])
+            self.start = self.q = goal
+        self.on_velocity(Float64MultiArray(data=((goal - self.q) / self.dt).tolist()))
 
     def on_state(self, message):
         self.words.add(message.status[0].message)
@@ -92,11 +92,11 @@ class Arm(Node):
     def velocity(self, size):
         return Float64MultiArray(data=[size] * len(self.names))
 
-    def show(self, t=None, q=None, names=None):
+    def show(self, q=None, names=None):
         """Publish joint states, in another order than the shield's and with a joint more."""
         message = JointState(name=["finger", *(names or self.names)[::-1]])
         message.position = [0.0, *(self.q if q is None else q)[::-1].tolist()]
-        message.header.stamp = stamp(t or self.t + self.jump)
+        message.header.stamp = stamp(self.t + self.jump)
         self.publish(message)
 
     def turn(self, request=None, periods=1, patience=PATIENCE, is_silent=False, **shown):
@@ -128,8 +128,14 @@ class Arm(Node):
         return np.abs(self.dq).max() < 1e-9
 
 
-def hostile(random, arm):
-    """Return a request that should not be fulfilled, or None for silence."""
+def shuffled(random, deck):
+    """Draw from a deck that is shuffled again and again."""
+    while True:
+        yield from (deck[k] for k in random.permutation(len(deck)))
+
+
+def hostile(random, arm, kind):
+    """Return a request of a kind that should not be fulfilled, or None for silence."""
     n = len(arm.names)
     asked = random.choice([1.0, 10.0]) * arm.limits["velocity"] * random.normal(size=n)
     twist = TwistStamped()
@@ -149,7 +155,7 @@ def hostile(random, arm):
         JointTrajectory(joint_names=arm.names, points=2 * points),
         None,
     )
-    return messages[random.choice(8, p=[0.25, 0.15, 0.2, *5 * [0.08]])]
+    return messages[kind]
 
 
 def drive(arm, seconds):
@@ -159,21 +165,27 @@ def drive(arm, seconds):
     """
     random = np.random.default_rng(0)
     nan = np.full(len(arm.names), np.nan)
-    faults = (*8 * [{}], {"q": nan}, {"names": ["x", *arm.names[1:]]}, SILENCE)
+    wrong = [{"q": nan}, {"names": ["x", *arm.names[1:]]}, SILENCE]
+    faults = shuffled(random, [*8 * [{}], *wrong])
+    kinds = shuffled(random, [0, 0, 0, 1, 1, 2, 2, 3, 4, 5, 6, 7])
     end = arm.t + seconds
     due = held = arm.t
     moving = 0
+    is_answered = True
     while arm.t < end:
+        has_jumped = False
         if arm.t >= held:
-            request = hostile(random, arm)
-            fault = faults[random.integers(len(faults))]
+            request = hostile(random, arm, next(kinds))
+            fault = next(faults)
             held = arm.t + random.choice([0.03, 0.1, 0.2])
-            if not fault and random.random() < 0.1:
-                arm.jump += random.choice([-50.0, 50.0])
+            has_jumped = not fault and is_answered and random.random() < 0.1
+            arm.jump += has_jumped * random.choice([-50.0, 50.0])
+        # No clock says how long a period was in which it has jumped, and the longest one is stated.
+        dropped = random.choice([0, 1, 2], p=[0.95, 0.025, 0.025])
+        periods = 1 if fault or has_jumped or not is_answered else 1 + dropped
         is_due = arm.t >= due
         due = arm.t + EVERY if is_due else due
-        dropped = (random.random() < 0.05) * random.integers(1, 3)
-        is_answered = arm.turn(request if is_due else None, 1 + dropped, **fault)
+        is_answered = arm.turn(request if is_due else None, periods, **fault)
         assert is_answered or fault is SILENCE, f"no command at {arm.t} s"
         moving += not arm.rests()
     assert moving > 0.5 * len(arm.times), "does not go on after a fault"
@@ -205,53 +217,34 @@ def check_services(arm):
     assert "halted" in arm.words
 
 
-def waiting(arm, seconds):
-    """Drive the node by a clock that waits for it."""
-    arm.create_subscription(Float64MultiArray, "/shield/commands", arm.on_velocity, 1000)
-    arm.ask(None, until=lambda: arm.times, patience=0.2)
-    drive(arm, seconds)
-    check_services(arm)
-    print("stop", flush=True)  # the node is ended now, in motion
-    arm.ask(None, until=arm.rests, patience=0.5)
-    assert arm.rests(), f"the node left the arm moving: {arm.dq}"
-
-
-def timed(arm, seconds):
-    """Ask by the machine's clock; measure periods, and from rest the time until an answer."""
-    arm.create_subscription(JointTrajectory, "/shield/commands", arm.on_position, 1000)
-
-    def wait(seconds, request=None, until=lambda: False):
-        due = time.perf_counter()
-        end = due + seconds
-        while time.perf_counter() < end and not until():
-            rclpy.spin_once(arm, timeout_sec=0.001)
-            if time.perf_counter() >= due:
-                due += arm.dt
-                arm.show(t=time.time())
-                if request is not None:
-                    arm.publish(request)
-
+def measure(arm, seconds):
+    """Ask hostile requests; measure periods, and from rest the time until an answer."""
     random = np.random.default_rng(0)
     latencies = []
-    wait(PATIENCE, until=lambda: len(arm.log) > 20)
     end = time.perf_counter() + seconds
     while time.perf_counter() < end:
-        wait(random.choice([0.1, 0.4]), hostile(random, arm))
-        wait(1.0, arm.velocity(0.0), lambda: np.abs(arm.log[-20:])[:, 1:].max() < 1e-9)
-        arm.publish(arm.velocity(0.1 * random.choice([-1.0, 1.0])))
+        arm.ask(hostile(random, arm, random.integers(8)), random.choice([25, 100]))
+        arm.ask(arm.velocity(0.0), until=arm.rests)
         asked = time.perf_counter()
-        wait(0.1, until=lambda: not arm.rests())
+        arm.ask(arm.velocity(0.1 * random.choice([-1.0, 1.0])), 20, lambda: not arm.rests())
         if not arm.rests():
             latencies.append(time.perf_counter() - asked)
     for words, times in (("period", np.diff(arm.times)), ("request to command", latencies)):
         p50, p99 = 1e3 * np.percentile(times, [50, 99])
         print(f"{words}: {len(times)}, p50 {p50:.2f} ms, p99 {p99:.2f} ms", flush=True)
-    print("stop", flush=True)
 
 
 if __name__ == "__main__":
     name, file, seconds, mode = sys.argv[1:]
     rclpy.init()
-    arm = Arm(importlib.import_module(name))
-    {"waiting": waiting, "timed": timed}[mode](arm, float(seconds))
+    arm = Arm(importlib.import_module(name), mode == "timed")
+    arm.ask(None, until=lambda: arm.times, patience=0.2)
+    if mode == "timed":
+        measure(arm, float(seconds))
+    else:
+        drive(arm, float(seconds))
+        check_services(arm)
+    print("stop", flush=True)  # the node is ended now, in motion
+    arm.ask(None, until=arm.rests, patience=0.5)
+    assert arm.rests(), f"the node left the arm moving: {arm.dq}"
     np.savez(file, start=arm.start, log=arm.log)

@@ -13,34 +13,37 @@ FEATURES = {f"{name}.pos": float for name in (*NAMES, "gripper")}
 CHUNK = 15  # actions of a policy
 
 
+class Idle:
+    """Parts of LeRobot's interfaces without motors."""
+
+    observation_features = action_features = feedback_features = FEATURES
+    is_connected = is_calibrated = True
+    cameras = ()
+
+    def connect(self, calibrate=True):
+        pass
+
+    def nothing(self, *_):
+        pass
+
+    calibrate = configure = send_feedback = disconnect = nothing
+
+
 @RobotConfig.register_subclass("ideal")
 @dataclass(kw_only=True)
 class IdealConfig(RobotConfig):
     """Settings of a robot without motors."""
 
 
-class Ideal(Robot):
+class Ideal(Idle, Robot):
     """A robot that is where it was told to be."""
 
     config_class = IdealConfig
     name = "ideal"
-    observation_features = action_features = FEATURES
-    is_calibrated = True
 
     def __init__(self, config):
         super().__init__(config)
-        self.cameras = {}
         self.goals = [[*START, 50.0]]
-
-    is_connected = False
-
-    def connect(self, calibrate=True):
-        self.is_connected = True
-
-    def calibrate(self):
-        pass
-
-    configure = calibrate
 
     def get_observation(self):
         return dict(zip(FEATURES, self.goals[-1], strict=True))
@@ -50,7 +53,6 @@ class Ideal(Robot):
         return action
 
     def disconnect(self):
-        self.is_connected = False
         np.save(os.environ["GOALS_FILE"], self.goals)
 
 
@@ -60,13 +62,11 @@ class ChunksConfig(TeleoperatorConfig):
     """Settings of a policy that replans without regard to where the arm is."""
 
 
-class Chunks(Teleoperator):
+class Chunks(Idle, Teleoperator):
     """Chunks of smooth actions that begin anywhere; some are no numbers."""
 
     config_class = ChunksConfig
     name = "chunks"
-    action_features = feedback_features = FEATURES
-    is_connected = is_calibrated = True
 
     def __init__(self, config):
         super().__init__(config)
@@ -82,11 +82,3 @@ class Chunks(Teleoperator):
         if self.count % 100 == 0:
             joints = joints + np.nan
         return dict(zip(FEATURES, [*joints, float(self.count % 100)], strict=True))
-
-    def connect(self, calibrate=True):
-        pass
-
-    def nothing(self, *_):
-        pass
-
-    calibrate = configure = send_feedback = disconnect = nothing
