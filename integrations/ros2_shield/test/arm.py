@@ -25,7 +25,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 PATIENCE = 20.0  # for an answer of the node [s]
 START = (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0)
 EVERY = 0.01  # period of requests [s]
-SILENCE = {"is_silent": True, "patience": 0.02}
+SILENCE = {"is_silent": True, "patience": 0.15}
 REASONS = (
     "request not finite",
     "request of 6 velocities, not 7",
