@@ -1,14 +1,25 @@
 """Names of limits and actions, the same in commands, errors, records, reports and pages."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
+from enum import IntEnum
 from typing import Any
 
-KINDS = ("position", "velocity", "acceleration", "jerk")
-"""Kinds of a joint's bound; the code of one in commands and records is its position here, from
-1."""
 
-POSITION_DEPENDENT = "position-dependent velocity"
-"""Velocity limit that is zero before a position limit, and counts in its place."""
+class LimitKind(IntEnum):
+    """Kinds of limits that bound a joint's velocity; their codes in commands and records."""
+
+    POSITION = 1
+    VELOCITY = 2
+    ACCELERATION = 3
+    JERK = 4
+    POSITION_DEPENDENT_VELOCITY = 5
+    """A velocity limit that is zero before a position limit, and counts in its place."""
+    OTHER = 6
+    """The first of a scheme's limits; the others have the codes after it."""
+
+
+KINDS = ("position", "velocity", "acceleration", "jerk", "position-dependent velocity")
+"""Words for the kinds of limits, in the order of their codes."""
 
 ACTIONS = {2: "slow", 3: "relax", 4: "stop", 5: "euler"}
 """Actions at a step in place of the network's answer by their codes in commands and records."""
@@ -22,32 +33,9 @@ DONE = {
 """Participles of the actions: a step is slowed."""
 
 
-def bound_words(settings: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the words for a bound of each of `KINDS` in a run of these settings.
-
-    A bound of kind 1 may come from any limit in their ``bounding``.
-    """
-    bounding = settings.get("bounding", ["JointLimits"])
-    own = "bound of " + " or ".join(name for name in bounding if name != "JointLimits")
-    if "JointLimits" not in bounding and bounding:
-        return own, own, *KINDS[2:]
-    return ("position" if len(bounding) <= 1 else f"position limit or {own}"), *KINDS[1:]
-
-
-def bound_name(
-    joint: int, code: int, words: Sequence[str], joints: Sequence[str] = ()
-) -> dict[str, Any]:
-    """Return the name of a joint's bound, as `describe` takes it.
-
-    Args:
-        joint: Number of the joint, from 0.
-        code: Kind of the bound, positive for an upper one, negative for a lower one.
-        words: `bound_words`.
-        joints: Names of the joints; none: they go by their numbers.
-    """
-    side = "upper" if code > 0 else "lower"
-    name = {"joint": joint + 1, "side": side, "limit": words[abs(code) - 1]}
-    return name | {"name": joints[joint]} if joints else name
+def limit_kinds(settings: Mapping[str, Any]) -> list[str]:
+    """Return the words for the limits of bounds in a run, in the order of their codes, from 1."""
+    return [*KINDS, *(f"bound of {name}" for name in settings.get("bounding", ()))]
 
 
 def active_limits(
@@ -56,24 +44,19 @@ def active_limits(
     """Return the names of bounds and rows, as `describe` takes them.
 
     Args:
-        settings: Settings of the run, with its inequality rows, and the numbers of joints whose
-            velocity limit depends on the position.
-        codes: Codes of the joints' bounds, 0 for none, (n,).
+        settings: Settings of the run, with its inequality rows and the limits with bounds.
+        codes: Code of the limit that each joint's active bound comes from, negative for a lower
+            bound, 0 for none, (n,).
         rows: Other than 0 for an inequality row that is meant, (m,).
     """
-    words = bound_words(settings)
-    joints = settings.get("joints", ())
-    position_dependent_velocity = settings.get("position_dependent_velocity", ())
-    bounds = [
-        bound_name(
-            j,
-            int(code),
-            (POSITION_DEPENDENT, *words[1:]) if j in position_dependent_velocity else words,
-            joints,
-        )
-        for j, code in enumerate(codes)
-        if code
-    ]
+    words = limit_kinds(settings)
+    names = settings.get("joints", ())
+    bounds = []
+    for j, code in enumerate(codes):
+        if code:
+            side = "upper" if code > 0 else "lower"
+            bound = {"joint": j + 1, "side": side, "limit": words[abs(int(code)) - 1]}
+            bounds.append(bound | {"name": names[j]} if names else bound)
     named = settings.get("rows") or ()
     return bounds + [row for row, acts in zip(named, rows, strict=True) if acts]
 
@@ -83,7 +66,7 @@ def describe(limit: Mapping[str, Any]) -> str:
     if "row" in limit:
         about = f" ({limit['about']})" if "about" in limit else ""
         return f"row {limit['row']} of {limit['part']}{about}"
-    end = " limit" if limit["limit"] in (*KINDS, POSITION_DEPENDENT) else ""
+    end = " limit" if limit["limit"] in KINDS else ""
     joint = limit.get("name", f"joint {limit['joint']}")
     return f"{joint} {limit['side']} {limit['limit']}{end}"
 

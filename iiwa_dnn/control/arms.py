@@ -16,9 +16,8 @@ import numpy as np
 from iiwa_dnn.compiling.library import compiled, released
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import LARGEST
-from iiwa_dnn.control.command import ACTIVE, StepLog, log_of
+from iiwa_dnn.control.command import StepLog, log_of
 from iiwa_dnn.control.cycle import INVALID, ControlPlan, take_step
-from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.requests import (
     CUT,
     FASTEST,
@@ -31,8 +30,8 @@ from iiwa_dnn.control.requests import (
 from iiwa_dnn.control.state import MotionState, change_spacing, count_as_sent
 from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import all_finite, largest_entry, row_dot
-from iiwa_dnn.qp.layout import IntVector, QPViews, copied
+from iiwa_dnn.qp.dense import all_finite, largest_entry
+from iiwa_dnn.qp.layout import IntVector, copied
 from iiwa_dnn.robot.kinematics import Twist
 from iiwa_dnn.robot.kinematics_kernel import ModelTables, write_kinematics
 from iiwa_dnn.schemes.limits import (
@@ -45,7 +44,7 @@ from iiwa_dnn.schemes.limits import (
     joint_rates,
     periods_of,
 )
-from iiwa_dnn.schemes.program import ProgramArrays, block_constants, bound_kind, program_views
+from iiwa_dnn.schemes.program import ProgramArrays, block_constants, program_views
 from iiwa_dnn.schemes.scene import Body, scene_views, write_distances
 
 
@@ -119,8 +118,7 @@ class ArmState(Record):
         fallback: States of the networks of fallback programs, for requests of joints.
         twist_fallback: The same for twists.
         obstacles: Places of the obstacles at time 0 [m], (k, 3).
-        limiting: For each joint the kind of the bound that limits it, below 0 for a lower one, or
-            0; then 1 for each row that limits the command, (n + m,).
+        limiting: Bounds and rows that limit the command, as in `StepLog`, (n + m,).
         sent: `SentCommand` of the commands that cover the delay, the last first, (k (1 + n),).
     """
 
@@ -542,7 +540,7 @@ def _answer(
     motion.yields = False  # a request that can be had again is had at once
     qp = program_views(log.program, base.sizes)
     own.is_singular = is_twist and falls_short(qp, request.asked)
-    _note_limits(plan, own, log, timing, action)
+    _note_limits(own, log)
     return action
 
 
@@ -594,7 +592,7 @@ def come_nearer(
         elif abs(wanted) > most:
             wanted = math.copysign(most, wanted)
             own.is_cut = True
-        lower, upper = joint_bounds(last, before, above, below, rates, periods)
+        lower, upper, _, _ = joint_bounds(last, before, above, below, rates, periods)
         if reaches:
             wanted = min(max(wanted, lower), upper)
             wanted = arriving(last, before, left, wanted, rates, periods)
@@ -604,84 +602,19 @@ def come_nearer(
 
 
 @compiled
-def _note_limits(plan: ArmPlan, own: ArmState, log: StepLog, periods: Periods, action: int) -> None:
+def _note_limits(own: ArmState, log: StepLog) -> None:
     """Note which bounds and rows keep the command from the request, and whether they do."""
-    qp = program_views(log.program, plan.step.arrays.sizes)
-    limits = write_limiting(log, qp, plan.motion, periods, action, own.limiting)
+    copied(own.limiting, log.limiting)
     differs = 0
+    limits = 0
+    for i in range(own.limiting.size):
+        limits += own.limiting[i] != 0.0
     for i in range(own.positions.size):
         differs += log.dq[i] != own.request[i]
     reason = first_reason(own)
     own.is_clipped = limits > 0 or reason != Reason.NONE
     if own.answered == Request.VELOCITY and reason == Reason.NONE:
         own.is_clipped = differs > 0
-
-
-@compiled
-def write_limiting(
-    log: StepLog,
-    qp: QPViews,
-    limits: MotionConstants,
-    periods: Periods,
-    action: int,
-    limiting: Vector,
-) -> int:
-    """Write the kinds of the bounds and the rows that limit a command; return their number.
-
-    Args:
-        log: The log of its step.
-        qp: The program that was answered.
-        limits: Limits of the joints.
-        periods: Periods of the step.
-        action: Action that was taken.
-        limiting: As in `ArmState`, (dof + m,), overwritten.
-    """
-    n = log.dq.size
-    limiting[:] = 0.0
-    count = 0
-    for i in range(n):
-        side = _side_of_bound(log, qp, i, action)
-        if side != 0.0:
-            rates = joint_rates(limits, i)
-            bounds = (log.lower[i], log.upper[i])
-            code = bound_kind(bounds, log.last[i], log.before[i], side, rates, periods)
-            limiting[i] = code if side > 0.0 else -code
-            count += 1
-    for j in range(qp.h.size):
-        if _side_of_row(log, qp, j, action) != 0.0:
-            limiting[n + j] = 1.0
-            count += 1
-    return count
-
-
-@compiled
-def _side_of_bound(log: StepLog, qp: QPViews, i: int, action: int) -> float:
-    """Return the side of the bound that limits joint i: above 0 for the upper one, or 0."""
-    side: float = log.limiting[i]
-    if action != Action.NONE:
-        return side
-    side = log.point[qp.q.size + qp.b.size + qp.h.size + i]
-    nearest = qp.ub[i] if side > 0.0 else qp.lb[i]
-    return _active(side, abs(nearest - log.point[i]))
-
-
-@compiled
-def _side_of_row(log: StepLog, qp: QPViews, j: int, action: int) -> float:
-    """Return another number than 0 if inequality row j limits the command."""
-    side: float = log.limiting[qp.q.size + j]
-    if action != Action.NONE:
-        return side
-    side = log.point[qp.q.size + qp.b.size + j]
-    return _active(side, qp.h[j] - row_dot(qp.G, j, log.point))
-
-
-@compiled
-def _active(multiplier: float, slack: float) -> float:
-    """Return the multiplier of a bound or row, 0 where it is not active."""
-    size = abs(multiplier)
-    if size > ACTIVE and slack <= ACTIVE / min(max(size, ACTIVE), 1.0):
-        return multiplier
-    return 0.0
 
 
 @compiled

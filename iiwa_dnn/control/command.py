@@ -4,26 +4,23 @@ from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.control.fallback import DAMPING
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.state import MotionState
-from iiwa_dnn.naming import DONE, active_limits, describe
+from iiwa_dnn.naming import DONE, LimitKind, active_limits, describe
 from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
+from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import QPViews, Sizes, data_size, offsets
 from iiwa_dnn.schemes.limits import Periods
-from iiwa_dnn.schemes.program import ACCELERATION, LimitNames, ProgramSizes, program_views
+from iiwa_dnn.schemes.program import LimitNames, ProgramSizes, program_views
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 PLACEMENT = 12
 """Numbers of a frame's placement, as `Kinematics.placements` has them."""
-
-ACTIVE = 1e-9
-"""Multiplier above which a bound or row counts as active."""
 
 EXCEEDED = "period exceeded"
 
@@ -69,10 +66,12 @@ class StepLog(Record):
         lower: Lower bounds of the step that the command keeps [rad/s], (dof,). Those of the program
             are others where limits of acceleration or jerk limit the command.
         upper: Upper bounds, (dof,).
+        lower_kind: `LimitKind` of each lower bound of the program, (dof,).
+        upper_kind: The same of the upper bounds, (dof,).
         program: The program, `QP.data`, (size,).
         point: The answer, `Solution.point`, (2 n + m + p,).
-        limiting: Where there is an action: for each variable 1 if its upper bound was limiting,
-            -1 if its lower one was, else 0, and for each inequality row 1 or 0, (n + m,).
+        limiting: For each joint the `LimitKind` of the bound that limits the solution, negative for
+            a lower bound, or 0; after all variables for each inequality row 1 or 0, (n + m,).
         least: Distance that each watched pair has to keep [m], (pairs,), as in `MotionState`.
         targets: Targets of the tracked frames, (k, 18).
     """
@@ -89,6 +88,8 @@ class StepLog(Record):
     next_q: Vector = part("joints")
     lower: Vector = part("joints")
     upper: Vector = part("joints")
+    lower_kind: Vector = part("joints")
+    upper_kind: Vector = part("joints")
     program: Vector = part("program")
     point: Vector = part("point")
     limiting: Vector = part("sides")
@@ -158,6 +159,33 @@ def rank_loss(qp: QPViews) -> int:
     if rank >= rows:
         return RankLoss.NONE
     return RankLoss.SINGULAR if rank < min(qp.q.size, rows) else RankLoss.FEW
+
+
+@compiled
+def note_active(log: StepLog, qp: QPViews, tolerance: float) -> None:
+    """Note the active bounds and rows of the program that was answered.
+
+    One is active if its multiplier is above the tolerance, and its part of the duality gap,
+    multiplier times slack, is not; of a multiplier above one, the slack itself.
+    """
+    n = qp.q.size
+    of_rows = log.point[n + qp.b.size :]
+    log.limiting[:] = 0.0
+    for j in range(qp.h.size):
+        slack = np.inf if of_rows[j] == 0.0 else qp.h[j] - row_dot(qp.G, j, log.point)
+        log.limiting[n + j] = 1.0 if is_active(of_rows[j], slack, tolerance) else 0.0
+    for i in range(log.dq.size):
+        multiplier = of_rows[qp.h.size + i]
+        nearest = qp.ub[i] if multiplier > 0.0 else qp.lb[i]
+        if is_active(multiplier, abs(nearest - log.point[i]), tolerance):
+            log.limiting[i] = log.upper_kind[i] if multiplier > 0.0 else -log.lower_kind[i]
+
+
+@compiled
+def is_active(multiplier: float, slack: float, tolerance: float) -> bool:
+    """Test whether a bound or row of some slack is active."""
+    size = abs(multiplier)
+    return size > tolerance and slack <= tolerance / min(size, 1.0)
 
 
 class LogLayout(NamedTuple):
@@ -295,23 +323,14 @@ class Command:
 
         The `conditions` are among them.
         """
-        layout = self._layout
-        sides, rows = np.split(self.limiting, [layout.sizes.n])
-        if self.action is Action.NONE:
-            sides, rows = layout.multipliers(self.data, ACTIVE)
-        words = [*map(describe, active_limits(layout.names.settings, self.codes(sides), rows))]
+        sizes = self._layout.sizes
+        settings = self._layout.names.settings
+        codes = self.limiting[: sizes.joints]
+        words = [*map(describe, active_limits(settings, codes, self.limiting[sizes.n :]))]
         if not words and self.kind is ProgramKind.RELAXED:
-            lost = rank_loss(program_views(self.log.program, layout.sizes))
-            words = [rank_words(layout.sizes.n, layout.sizes.p)[lost]] * bool(lost)
+            lost = rank_loss(program_views(self.log.program, sizes))
+            words = [rank_words(sizes.n, sizes.p)[lost]] * bool(lost)
         return (*self.reasons, *words, *self.conditions)
-
-    def codes(self, sides: Vector) -> NDArray[np.int8]:
-        """Return the codes of the bounds on some sides, as `LimitNames.codes` does, (n,)."""
-        layout = self._layout
-        found: NDArray[np.int8] = layout.names.codes(
-            self.bounds, sides, self.motion_state, self.periods
-        )
-        return found
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -381,11 +400,13 @@ class Command:
         Then the arm is on its way there, or noise asks for more than it may follow; a command that
         is neither `ok` nor limited cannot do it.
         """
-        rows = self.limiting[self._layout.sizes.n :]
+        sizes = self._layout.sizes
+        rows = self.limiting[sizes.n :]
         if self.action in (Action.NONE, Action.STOP) or rows.any():
             return False
-        codes = np.abs(self.codes(self.limiting))
-        return bool(codes.any()) and bool((codes[codes > 0] >= ACCELERATION).all())
+        kinds = np.abs(self.limiting[: sizes.joints])
+        found = kinds[kinds > 0]
+        return bool(np.isin(found, [LimitKind.ACCELERATION, LimitKind.JERK]).all() and found.size)
 
     def __repr__(self) -> str:
         dq = np.array2string(self.dq, precision=4, separator=", ")

@@ -22,6 +22,7 @@ from iiwa_dnn.control.command import (
     StepLog,
     lay_out_log,
     log_of,
+    note_active,
     note_command,
 )
 from iiwa_dnn.control.fallback import Yielding, fallback_size
@@ -319,6 +320,8 @@ def take_step(
         arrays.inertia,
         log.targets,
         next_motion_state.least,
+        log.lower_kind,
+        log.upper_kind,
     )
     assemble(log.program, arrays, step)
     _note_instant(log, arrays, motion_state, next_motion_state)
@@ -326,6 +329,7 @@ def take_step(
     if not motion_state.yields and not halted and _answer(log, arrays, plan.network, state):
         note_command(log, next_motion_state, log.point, timing.expected)
         if guard_step(arrays, motion_state, next_motion_state, plan.yielding, timing):
+            note_active(log, program_views(log.program, sizes), plan.yielding.tolerance)
             return NONE
     policy = BRAKE if halted else plan.policy
     return yield_step(

@@ -254,5 +254,6 @@ def _active_limits(
     """Name the limits that keep a posture from the goal, by their multipliers."""
     step = _solve(program, solver, point, _DAMPING)
     least = _ACTS * math.hypot(*point.qp.b[:3], *weight * point.qp.b[3:6])
-    codes = np.sign(step.z_box) * (np.abs(step.z_box) > least)
+    lower, upper = program.kinds
+    codes = np.where(step.z_box > 0.0, upper, -lower) * (np.abs(step.z_box) > least)
     return tuple(map(describe, active_limits(program.settings(), codes, step.z > least)))

@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.command import NOT_CONVERGED, SOLVED, StepLog, note_command
+from iiwa_dnn.control.command import NOT_CONVERGED, SOLVED, StepLog, note_active, note_command
 from iiwa_dnn.control.fallback import (
     MAX_LINEAR_SOLVES,
     REACHED,
@@ -39,6 +39,7 @@ from iiwa_dnn.control.stopping import (
     stopping_time,
     stretched,
 )
+from iiwa_dnn.naming import LimitKind
 from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import largest_entry, row_dot, times
@@ -134,11 +135,13 @@ def yield_step(
     qp = program_views(log.program, arrays.sizes)
     data = log.program.copy()
     nominal = program_views(data, arrays.sizes)
+    lower_kind = log.lower_kind.copy()
+    upper_kind = log.upper_kind.copy()
     kind = STOPPED
     factor = 0.0
     rest = 0.0
     if action != BRAKE:
-        _widen_bounds(qp, yielding.limits, motion_state.q)
+        _widen_bounds(log, qp, yielding.limits)
         found, factor = _answer_fallback(log, qp, yielding, fallback, action)
         kind = int(found)
     x = log.point[: qp.q.size].copy()
@@ -156,19 +159,33 @@ def yield_step(
             kind = NOMINAL
             copied(qp.lb, nominal.lb)
             copied(qp.ub, nominal.ub)
+            copied(log.lower_kind, lower_kind)
+            copied(log.upper_kind, upper_kind)
+    _note_kinds(log, lower_kind, upper_kind)
     if kind == STOPPED:
         copied(log.program, data)
+        copied(log.lower_kind, lower_kind)
+        copied(log.upper_kind, upper_kind)
         rest = _brake(nominal, arrays, motion_state, yielding, timing, log, x)
         _keep_verified_distances(motion_state, next_motion_state)
         log.point[:] = 0.0
         copied(log.point, x)
     log.stats.primal, log.stats.dual, log.stats.gap = point_residuals(qp, log.point)
     taken = _note_decision(log, nominal, yielding, x, kind, factor, action)
+    if taken == NONE:
+        note_active(log, qp, yielding.tolerance)
     next_motion_state.stopping_periods = rest
     next_motion_state.path_lag += timing.expected * (1.0 - log.fraction)
     next_motion_state.yields = kind != NOMINAL and action != BRAKE
     note_command(log, next_motion_state, x, timing.expected)
     return taken
+
+
+@compiled
+def _note_kinds(log: StepLog, lower_kind: Vector, upper_kind: Vector) -> None:
+    """Put the kinds (dof,) of the step's bounds in place of the sides that limit the solution."""
+    for i in range(lower_kind.size):
+        log.limiting[i] *= upper_kind[i] if log.limiting[i] > 0.0 else lower_kind[i]
 
 
 @compiled
@@ -217,12 +234,14 @@ def _note_decision(
 
 
 @compiled
-def _widen_bounds(qp: QPViews, limits: MotionConstants, q: Vector) -> None:
+def _widen_bounds(log: StepLog, qp: QPViews, limits: MotionConstants) -> None:
     """Replace bounds that acceleration limits have narrowed by those of position and velocity."""
     for i in range(limits.velocity.size):
         fastest = limits.velocity[i]
-        qp.lb[i] = min(max(POSITION_GAIN * (limits.lower[i] - q[i]), -fastest), fastest)
-        qp.ub[i] = min(max(POSITION_GAIN * (limits.upper[i] - q[i]), -fastest), fastest)
+        qp.lb[i] = min(max(POSITION_GAIN * (limits.lower[i] - log.q[i]), -fastest), fastest)
+        qp.ub[i] = min(max(POSITION_GAIN * (limits.upper[i] - log.q[i]), -fastest), fastest)
+        log.lower_kind[i] = LimitKind.POSITION if qp.lb[i] > -fastest else LimitKind.VELOCITY
+        log.upper_kind[i] = LimitKind.POSITION if qp.ub[i] < fastest else LimitKind.VELOCITY
 
 
 @compiled

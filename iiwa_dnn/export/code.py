@@ -31,7 +31,6 @@ from iiwa_dnn.control.arms import (
     send_arm,
     step_arm,
     stopping_time_of,
-    write_limiting,
 )
 from iiwa_dnn.control.command import RankLoss, log_of, rank_loss, rank_words
 from iiwa_dnn.control.controller import Controller
@@ -41,10 +40,9 @@ from iiwa_dnn.control.requests import REASONS, Reason, Request
 from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.control.state import count_as_sent
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.naming import ACTIONS, KINDS, active_limits, describe
+from iiwa_dnn.naming import ACTIONS, active_limits, describe, limit_kinds
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.limits import MotionLimits
 from iiwa_dnn.schemes.program import Column, ProgramLayout, program_views
 
 _PACKAGE = Path(__file__).parents[1]
@@ -123,7 +121,6 @@ def controller_code(controller: Controller) -> dict[str, Any]:
             "controller", f"{name} answers in Python, as obstacles that move do", refused[0]
         )
     model = model_tables(robot, program.kinematics.frame_ids, program.needs_inertia)
-    limits = (program.rate_limits or MotionLimits()).constants(robot)
     inertia = "c->inertia" if program.needs_inertia else "NULL"
     code = _Code("c->jacobian", "c->placements", inertia, "c->fallback")
     lengths = _lengths(controller)
@@ -131,8 +128,7 @@ def controller_code(controller: Controller) -> dict[str, Any]:
     texts: dict[str, Any] = {
         "plan": code.initializer("plan", code.numbered(step.given)),
         "model": code.initializer("model", model),
-        "limits": code.initializer("limits", limits),
-        **code.kernels(take_step, log_of, write_kinematics, write_limiting, program_views),
+        **code.kernels(take_step, log_of, write_kinematics, program_views),
         **code.kernels(rank_loss, count_as_sent),
         "target_function": "",
         "target_declaration": "\n",
@@ -193,6 +189,7 @@ def _about(
         "code": code.text(),
         "map": "\n".join(f" * - {title}" for title in _SECTIONS.values()),
         "reason_count": len(reasons),
+        "sides": 2 * len(limit_kinds(program.settings())),
         "limit_count": len(names),
         "names": ",\n".join(f"        {name}" for name in names),
     }
@@ -204,11 +201,12 @@ def _about(
 def limit_words(program: ProgramLayout) -> list[str]:
     """Name what may limit a command, by codes.
 
-    They are for each joint the lower and the upper bound of each of `naming.KINDS`, then the rows.
+    They are for each joint the lower and the upper bound of each of `limit_kinds`, then the rows.
     """
     settings: dict[str, Any] = program.settings()
     rows = settings["rows"]
-    codes = [sign * kind for kind in range(1, 1 + len(KINDS)) for sign in (-1, 1)]
+    kinds = range(1, 1 + len(limit_kinds(settings)))
+    codes = [sign * kind for kind in kinds for sign in (-1, 1)]
     n = program.robot.dof
     bounds = [
         limit

@@ -155,7 +155,7 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
 
 def _advice(metrics: Mapping[str, Any], kind: str | None) -> str:
     """Advise on a path whose commands are limited most often by a limit of this kind."""
-    if kind not in KINDS[1:]:
+    if kind not in KINDS[1:4]:
         return ""
     incidents = metrics["incidents"]
     advice = "; more time for the path (--period, --stretch) may help"

@@ -173,9 +173,9 @@ class Record:
     limiting: Annotated[
         CodeArray,
         Column(
-            "Bounds that limit the solution: positive upper ones, negative lower ones; 1 for a "
-            "position limit, 2 for a velocity, 3 for an acceleration, 4 for a jerk limit, 0 where "
-            "none is limiting",
+            "Limits whose bounds limit the solution, positive for upper and negative for lower "
+            "ones: 1 position, 2 velocity, 3 acceleration, 4 jerk, 5 position-dependent velocity, "
+            '6 and above those of ``settings["bounding"]``; 0 if none is limiting',
             ("N", "n"),
             np.int8,
         ),
@@ -183,8 +183,8 @@ class Record:
     bound_kind: Annotated[
         CodeArray,
         Column(
-            "Kind of each active bound, as in `limiting`. Of length zero without acceleration and "
-            "jerk limits: a bound below the velocity limit is then of a position",
+            "Limit of each active bound, as in `limiting`. Of length zero if none was noted: one "
+            "below the velocity limit then counts as of a position",
             ("N", "n"),
             np.int8,
         ),

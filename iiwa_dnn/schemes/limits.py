@@ -54,6 +54,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.naming import LimitKind
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references.rotations import combined, dot, scaled, triple
 from iiwa_dnn.robot import Robot
@@ -266,8 +267,20 @@ def joint_limits(
         fastest = limits.velocity[i]
         up = min(fastest, position_dependent_speed(above, limits.offset[i], limits.slope[i]))
         down = min(fastest, position_dependent_speed(below, limits.offset[i], limits.slope[i]))
-        lb[i] = max(lb[i], min(max(-gain * below, -down), up))
-        ub[i] = min(ub[i], min(max(gain * above, -down), up))
+        lower = min(max(-gain * below, -down), up)
+        upper = min(max(gain * above, -down), up)
+        step.lower_kind[i] = _speed_kind(-lower, down, fastest)
+        step.upper_kind[i] = _speed_kind(upper, up, fastest)
+        lb[i] = max(lb[i], lower)
+        ub[i] = min(ub[i], upper)
+
+
+@compiled
+def _speed_kind(bound: float, speed: float, fastest: float) -> int:
+    """Return the kind of a bound, beside the velocity limits at the position and elsewhere."""
+    if bound < speed:
+        return LimitKind.POSITION
+    return LimitKind.POSITION_DEPENDENT_VELOCITY if speed < fastest else LimitKind.VELOCITY
 
 
 @compiled
@@ -438,7 +451,11 @@ def motion_limits(
         above = limits.upper[i] - step.q[i]
         below = step.q[i] - limits.lower[i]
         rates = joint_rates(limits, i)
-        lower, upper = joint_bounds(step.last[i], step.before[i], above, below, rates, periods)
+        lower, upper, lower_kind, upper_kind = joint_bounds(
+            step.last[i], step.before[i], above, below, rates, periods
+        )
+        step.lower_kind[i] = upper_kind if lb[i] > upper else lower_kind
+        step.upper_kind[i] = lower_kind if ub[i] < lower else upper_kind
         lb[i] = min(max(lb[i], lower), upper)
         ub[i] = min(max(ub[i], lower), upper)
 
@@ -548,8 +565,8 @@ def merged(limits: Sequence[Limit], tasks: Sequence[Task]) -> list[Limit]:
 @compiled
 def joint_bounds(
     last: float, before: float, above: float, below: float, rates: Rates, periods: Periods
-) -> tuple[float, float]:
-    """Compute bounds of one joint's next command [rad/s], with lower <= upper.
+) -> tuple[float, float, float, float]:
+    """Compute bounds of one joint's next command [rad/s], with lower <= upper, and their kinds.
 
     Jerk and acceleration are within their limits at both, whatever the state is.
 
@@ -560,17 +577,20 @@ def joint_bounds(
         below: Distance to the lower position limit [rad].
         rates: Its limits.
         periods: Periods of the step.
+
+    Returns:
+        Lower and upper bound, and the `LimitKind` of each.
     """
     above *= periods.fraction
     below *= periods.fraction
     if rates.jerk < np.inf:
-        lower, upper = _jerk_bounds(last, before, above, below, rates, periods)
+        lower, upper, low_kind, high_kind = _jerk_bounds(last, before, above, below, rates, periods)
     elif rates.acceleration < np.inf:
-        lower, upper = _acceleration_bounds(last, above, below, rates, periods)
+        lower, upper, low_kind, high_kind = _acceleration_bounds(last, above, below, rates, periods)
     else:
-        return -np.inf, np.inf
+        return -np.inf, np.inf, LimitKind.VELOCITY, LimitKind.VELOCITY
     if lower <= upper:
-        return lower, upper
+        return lower, upper, low_kind, high_kind
     # By rounding, or at a position that no command led to: the way back into the range may take
     # longer, but not end beyond its other side.
     command = 0.5 * (lower + upper)
@@ -578,13 +598,27 @@ def joint_bounds(
         command = lower
     elif below < 0.0:
         command = upper
-    return command, command
+    return command, command, low_kind, high_kind
+
+
+@compiled
+def _position_kind(rates: Rates) -> float:
+    """Return the kind of the limit that keeps a joint inside its range."""
+    return LimitKind.POSITION_DEPENDENT_VELOCITY if rates.lag > 0.0 else LimitKind.POSITION
+
+
+@compiled
+def _rate_kind(bound: float, speed: float, quickest: float, other: float) -> float:
+    """Return the kind of a bound, which may be that of the velocity or of the acceleration."""
+    if bound == speed:
+        return LimitKind.VELOCITY
+    return LimitKind.ACCELERATION if bound == quickest else other
 
 
 @compiled
 def _acceleration_bounds(
     last: float, above: float, below: float, rates: Rates, periods: Periods
-) -> tuple[float, float]:
+) -> tuple[float, float, float, float]:
     """Compute `joint_bounds` where no jerk is limited."""
     fastest = rates.velocity
     first = last - rates.acceleration * periods.dt
@@ -599,9 +633,11 @@ def _acceleration_bounds(
         unit = rates.deceleration * periods.hold
         upper = unit * approach(above / (unit * periods.hold), periods.vary)
         lower = -unit * approach(below / (unit * periods.hold), periods.vary)
-    upper = min(max(upper, -fastest), fastest)
-    lower = min(max(lower, -fastest), fastest)
-    return min(max(lower, first), final), min(max(upper, first), final)
+    lower = min(max(min(max(lower, -fastest), fastest), first), final)
+    upper = min(max(min(max(upper, -fastest), fastest), first), final)
+    position = _position_kind(rates)
+    lower_kind = _rate_kind(lower, -fastest, first, position)
+    return lower, upper, lower_kind, _rate_kind(upper, fastest, final, position)
 
 
 @compiled
@@ -626,7 +662,7 @@ def _speed_within(distance: float, rates: Rates, hold: float) -> float:
 @compiled
 def _jerk_bounds(
     last: float, before: float, above: float, below: float, rates: Rates, periods: Periods
-) -> tuple[float, float]:
+) -> tuple[float, float, float, float]:
     """Compute `joint_bounds` where the jerk is limited."""
     fastest = rates.velocity
     accel = rates.acceleration
@@ -645,8 +681,10 @@ def _jerk_bounds(
     jerk = usable_jerk(rates, longest)
     unit = jerk * dt * dt
     vary = periods.vary or rates.lag > 0.0
-    lb = min(max(last - unit * approach((last + fastest) / unit, vary), first), final)
-    ub = min(max(last + unit * approach((fastest - last) / unit, vary), first), final)
+    down = last - unit * approach((last + fastest) / unit, vary)
+    up = last + unit * approach((fastest - last) / unit, vary)
+    lb = min(max(down, first), final)
+    ub = min(max(up, first), final)
     if lb > ub:
         lb = 0.5 * (lb + ub)
         ub = lb
@@ -665,7 +703,13 @@ def _jerk_bounds(
         eased = max(min(upper, max(_easing(above - rest, periods.hold), lb)), lower)
         lower = min(max(lower, min(-_easing(below - rest, periods.hold), ub)), eased)
         upper = eased
-    return lower, upper
+    lower_kind = _rate_kind(lb, down, slowest, LimitKind.JERK)
+    upper_kind = _rate_kind(ub, up, quickest, LimitKind.JERK)
+    if lower != lb:
+        lower_kind = _position_kind(rates)
+    if upper != ub:
+        upper_kind = _position_kind(rates)
+    return lower, upper, lower_kind, upper_kind
 
 
 @compiled

@@ -15,11 +15,12 @@ from enum import IntEnum
 from typing import Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.naming import LimitKind
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.qp.layout import IntMatrix, QPViews, data_size, qp_views
 from iiwa_dnn.references import Target
@@ -28,16 +29,7 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import MEET, CollisionAvoidance
 from iiwa_dnn.schemes.costs import KineticEnergy
-from iiwa_dnn.schemes.limits import (
-    MotionLimits,
-    Periods,
-    RateLimits,
-    Rates,
-    approach,
-    joint_rates,
-    merged,
-    usable_jerk,
-)
+from iiwa_dnn.schemes.limits import MotionLimits, RateLimits, merged
 from iiwa_dnn.schemes.parts import (
     Cost,
     Limit,
@@ -262,11 +254,6 @@ class ProgramArrays(NamedTuple):
     tip: int
 
 
-POSITION, VELOCITY, ACCELERATION, JERK = range(1, 5)
-
-_CLOSE = 1e-9
-"""Difference of two bounds that is rounding, in units of the velocity limit."""
-
 OFF = 1e-6
 """Error of a relation of joints from which on it is reported [rad]."""
 
@@ -311,6 +298,7 @@ class ProgramLayout:
         table: What compiled code reads of the blocks, a row each, (parts, 7), by `Column`.
         constants: Numbers that compiled code reads, (k,).
         pairs: Names in words and least distance [m] of each watched pair.
+        kinds: `LimitKind` of the lower and upper bounds in the last program of `qp_at`, (2, dof).
     """
 
     def __init__(self, robot: Robot, scheme: Scheme) -> None:
@@ -336,6 +324,7 @@ class ProgramLayout:
         self._add(BlockKind.SOFT_TASK, soft, n)
         m = self._add(BlockKind.LIMIT, limits, n)
         self.sizes = (n, m, p)
+        self.kinds = np.zeros((2, robot.dof))
         self.pairs: list[tuple[str, float]] = []
         for block in self.blocks:
             if isinstance(block.part, CollisionAvoidance):
@@ -478,7 +467,8 @@ class ProgramLayout:
         kept = self.least if least is None else least
         arrays = self.arrays
         rate = 1.0 / dt if dt < np.inf else np.inf
-        step = StepViews(float(t), rate, q, last, before, *arrays[3:7], targets, kept)
+        own = arrays[3:7]
+        step = StepViews(float(t), rate, q, last, before, *own, targets, kept, *self.kinds)
         assemble(data, arrays, step)
         return QP.from_data(data, self.sizes)
 
@@ -486,8 +476,7 @@ class ProgramLayout:
         """Return what names in words need (`iiwa_dnn.naming.active_limits`).
 
         ``rows`` has for each inequality row its part, its number in it from 1, and its name if any,
-        ``bounding`` the limits that bound without a kind of their own (`naming.KINDS`), and
-        ``position_dependent_velocity`` the joints whose velocity limit depends on their position.
+        ``bounding`` the limits in the order of their codes (`LimitKind.OTHER`).
         """
         counts = [(limit, limit.row_count(self.robot)) for limit in self.scheme.limits]
         rows: list[dict[str, object]] = []
@@ -495,19 +484,8 @@ class ProgramLayout:
             about = [{"about": name} for name in limit.row_names(self.robot)] or [{}] * count
             part: dict[str, object] = {"part": type(limit).__name__}
             rows += [part | {"row": number} | name for number, name in enumerate(about, 1)]
-        names = [
-            type(limit).__name__
-            for limit, count in counts
-            if not (count or isinstance(limit, RateLimits))
-        ]
-        position_dependent_velocity = np.flatnonzero(
-            np.isfinite(self.robot.position_dependent_velocity[1])
-        ).tolist()
-        return {
-            "rows": rows,
-            "bounding": names,
-            "position_dependent_velocity": position_dependent_velocity,
-        }
+        names = [type(limit).__name__ for limit, _ in counts if not isinstance(limit, RateLimits)]
+        return {"rows": rows, "bounding": names}
 
 
 def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
@@ -536,8 +514,10 @@ def assemble(data: Vector, arrays: ProgramArrays, step: StepViews) -> None:
     Args:
         data: The program, `QP.data`, (size,), overwritten.
         arrays: `ProgramLayout.arrays`.
-        step: The instant; the distances that watched pairs keep are brought up to date.
+        step: The instant; the distances that pairs keep and the kinds of the bounds are brought up
+            to date.
     """
+    code = int(LimitKind.OTHER)
     qp = program_views(data, arrays.sizes)
     data[:] = 0.0
     qp.lb[:] = -np.inf
@@ -560,7 +540,24 @@ def assemble(data: Vector, arrays: ProgramArrays, step: StepViews) -> None:
             enter_task(address, step, own, target, A, b)
             add_soft(qp.P, qp.q, A, b, arrays.constants[entry[Column.STOP]])
         else:
+            lower = qp.lb.copy()
+            upper = qp.ub.copy()
+            lower_kind = step.lower_kind.copy()
+            upper_kind = step.upper_kind.copy()
+            step.lower_kind[:] = code
+            step.upper_kind[:] = code
+            code += 1
             enter_limit(address, step, own, qp.G[first:end], qp.h[first:end], qp.lb, qp.ub)
+            _keep_kinds(qp.lb, lower, step.lower_kind, lower_kind)
+            _keep_kinds(qp.ub, upper, step.upper_kind, upper_kind)
+
+
+@compiled
+def _keep_kinds(bounds: Vector, before: Vector, kinds: Vector, others: Vector) -> None:
+    """Keep the kinds (joints,) of those bounds (n,) that a limit has not changed."""
+    for i in range(kinds.size):
+        if bounds[i] == before[i]:
+            kinds[i] = others[i]
 
 
 @compiled
@@ -585,7 +582,6 @@ class LimitNames:
         """Take the limits of a step program."""
         self.settings = program.settings()
         self._program = program
-        self._limits = (program.rate_limits or MotionLimits()).constants(program.robot)
 
     def conditions(self, q: Vector, least: Vector) -> tuple[str, ...]:
         """State which promises wait for the arm to come nearer to them.
@@ -611,66 +607,3 @@ class LimitNames:
             if abs(missing) > OFF
         ]
         return (*near, *off)
-
-    def codes(
-        self, bounds: Matrix, sides: NDArray[Any], motion_state: Matrix, periods: Periods
-    ) -> NDArray[np.int8]:
-        """Give the bounds on some sides of a program's joints their codes.
-
-        Args:
-            bounds: Lower and upper bounds of the joints [rad/s], (2, n).
-            sides: Above 0 for an upper bound, below for a lower one, 0 for neither, (n,).
-            motion_state: Joint positions [rad], last command and the one before [rad/s], (3, n).
-            periods: Periods of the step.
-
-        Returns:
-            Places in `naming.KINDS`, from 1, negative for lower bounds; 0 where `sides` is, (n,).
-        """
-        codes = np.zeros(motion_state.shape[1], np.int8)
-        for i in np.flatnonzero(sides[: codes.size]).tolist():
-            rates = joint_rates(self._limits, i)
-            own = (bounds[0, i], bounds[1, i])
-            kind = bound_kind(own, motion_state[1, i], motion_state[2, i], sides[i], rates, periods)
-            codes[i] = kind if sides[i] > 0.0 else -kind
-        return codes
-
-
-@compiled
-def bound_kind(
-    bounds: tuple[float, float],
-    last: float,
-    before: float,
-    side: float,
-    rates: Rates,
-    periods: Periods,
-) -> int:
-    """Find the kind of the limit that bounds a joint: velocity before acceleration and jerk.
-
-    Args:
-        bounds: Its lower and upper bound [rad/s].
-        last: Its last command [rad/s].
-        before: Its command before that [rad/s].
-        side: Above 0 for the upper bound, below for the lower one.
-        rates: Its limits.
-        periods: Periods of the step.
-    """
-    lower, upper = bounds
-    sign = 1.0 if side > 0.0 else -1.0
-    value = upper if side > 0.0 else -lower
-    # Crossed bounds are others' than the robot's.
-    close = -1.0 if lower > upper else _CLOSE * rates.velocity
-    dt = periods.dt
-    speed = rates.velocity
-    if rates.jerk < np.inf:
-        # The velocity after which the acceleration can still be taken back in time.
-        unit = dt * dt * usable_jerk(rates, periods.longest)
-        periods_left = (rates.velocity - sign * last) / unit
-        speed = sign * last + unit * approach(periods_left, periods.vary or rates.lag > 0.0)
-    kind = POSITION
-    if abs(sign * (2.0 * last - before) + dt * dt * rates.jerk - value) <= close:
-        kind = JERK
-    if abs(sign * last + dt * rates.acceleration - value) <= close:
-        kind = ACCELERATION
-    if abs(speed - value) <= close:
-        kind = VELOCITY
-    return kind

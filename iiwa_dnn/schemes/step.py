@@ -40,6 +40,9 @@ class StepViews(NamedTuple):
         targets: Targets of the tracked frames, `Target.data` each, (k, 18).
         least: Distance that each watched pair has to keep [m], (pairs,), a state that the limit
             brings up to date (`collisions.kept_distance`).
+        lower_kind: `LimitKind` of each joint's lower bound, (n,). A limit that notes none is named
+            itself.
+        upper_kind: The same of the upper bounds, (n,).
     """
 
     t: float
@@ -53,6 +56,8 @@ class StepViews(NamedTuple):
     inertia: Matrix
     targets: Matrix
     least: Vector
+    lower_kind: Vector
+    upper_kind: Vector
 
 
 class Step:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.control.command import Command, log_of
+from iiwa_dnn.control.command import log_of
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.networks.solver import DNNSolver
@@ -13,7 +13,6 @@ from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes.program import LimitNames
 from iiwa_dnn.simulation.loop import Outcome
 
 SEARCHED = 100
@@ -51,7 +50,6 @@ class Recorder:
         self.last_step: int | None = None
         self.layout = controller.control_layout.log_layout
         self.infeasible: int | None = None
-        self._names = LimitNames(program)
         self._done = 0
         self.arrays: dict[str, NDArray[Any]] = {}
         for name in COLUMNS.keys() - OPTIONAL - _LATER:
@@ -92,19 +90,18 @@ class Recorder:
         self._add_samples(self._done, placements, logs.targets.reshape(count, -1))
         tol = self._controller.solver.tol
         of_bounds, of_rows = self.layout.multipliers(first, tol)
+        kinds = np.where(of_bounds > 0.0, logs.upper_kind, -np.asarray(logs.lower_kind))
         for name, values in (
             ("bound_multiplier", of_bounds),
+            ("bound_kind", kinds * (of_bounds != 0.0)),
             ("row_multiplier", of_rows),
             ("kind", np.asarray(logs.kind)),
             ("excess", self.layout.excess(first)),
         ):
             if values.any():
                 self._array(name, m=self.layout.sizes.m)[steps] = values
-        tells_kinds = self._controller.program.rate_limits is not None
         for k, outcome in enumerate(outcomes, steps.start):
             self._add_incident(k, outcome)
-            if tells_kinds:
-                self._add_kinds(k, outcome.commands[0])
         self._add_kinetic_index(steps, outcomes[-1].ends)
         self._done += count
         return data
@@ -163,21 +160,10 @@ class Recorder:
         if command.action is Action.NONE:
             return
         self._array("fraction")[k] = command.fraction
-        self._array("limiting")[k] = command.codes(command.limiting)
+        self._array("limiting")[k] = command.limiting[: command.dq.size]
         sides = command.limiting[self.layout.sizes.n :]
         if sides.any():
             self._array("limiting_rows", m=sides.size)[k] = sides
-
-    def _add_kinds(self, k: int, command: Command) -> None:
-        """Record the kinds of the active bounds in step k."""
-        tol = self._controller.solver.tol
-        multipliers, _ = self.layout.multipliers(command.data, tol)
-        if multipliers.any():
-            qp = command.qp
-            bounds = np.array([qp.lb, qp.ub])
-            state = command.motion_state
-            kinds = self._names.codes(bounds, multipliers, state, command.periods)
-            self._array("bound_kind")[k] = kinds
 
     def _add_kinetic_index(self, steps: slice, ended: bool) -> None:
         """Compute the kinetic index, of the identity for all steps at once."""

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import iiwa_dnn as d
-from helpers_kinematics import PAPER_Q0
+from helpers_kinematics import PAPER_Q0, Array
 from helpers_simulation import driven, paper_robot, paper_start, run
-from iiwa_dnn.naming import KINDS
+from iiwa_dnn.naming import KINDS, LimitKind
+from iiwa_dnn.schemes.limits import Rates, constant_periods, joint_bounds
 
 A = 4.0
 J = 200.0
@@ -52,7 +53,52 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(limits) -> N
             reached = rates[KINDS.index(word) - 1, joint]
             # The way towards the velocity limit ends before it where the jerk is limited.
             assert reached > 1.0 - 1e-6 or (word == "velocity" and limits[1]), (k, joint, names)
-    assert seen >= {kind for kind, limit in zip(KINDS[2:], limits, strict=True) if limit}
+    assert seen >= {kind for kind, limit in zip(KINDS[2:4], limits, strict=True) if limit}
+
+
+def rates(velocity: float, acceleration: float, jerk: float) -> Rates:
+    return Rates(velocity, acceleration, jerk, acceleration, np.inf, 0.0)
+
+
+@pytest.mark.parametrize("jerk", [J, np.inf])
+def test_a_bound_moves_outwards_if_the_limit_that_it_names_is_wider(jerk: float) -> None:
+    """Of random states, whose named limit alone becomes wider by a thousandth."""
+    random = np.random.default_rng(3)
+    periods = constant_periods(DT)
+    seen = set()
+    for _ in range(2000):
+        last = random.uniform(-1.0, 1.0)
+        before = last - random.uniform(-1.0, 1.0) * DT * A
+        margins = np.where(random.random(2) < 0.4, random.uniform(0.1, 0.6, 2), 2.0)
+        own = joint_bounds(last, before, *margins, rates(1.0, A, jerk), periods)
+        if own[0] == own[1]:
+            continue
+        for side, kind in enumerate(own[2:]):
+            position, *wider = [1.001 if other == kind else 1.0 for other in list(LimitKind)[:4]]
+            limits = rates(*np.array([1.0, A, jerk]) * wider)
+            other = joint_bounds(last, before, *(margins * position), limits, periods)
+            moved = other[side] - own[side]
+            assert moved > 0.0 if side else moved < 0.0, (last, before, margins, kind, moved)
+            seen.add(kind)
+    assert seen == {1, 2, 3, 4} if jerk < np.inf else {1, 2, 3}
+
+
+class Near(d.Limit):
+    """A bound of joint 1 that is the robot's own velocity limit but for rounding."""
+
+    def bounds(self, step: d.Step) -> tuple[Array, Array]:
+        lower = np.full(7, -np.inf)
+        lower[0] = -(1.0 - 1e-12) * step.robot.dq_max[0]
+        return lower, -lower
+
+
+def test_a_limit_of_ones_own_is_named_by_its_class() -> None:
+    far = d.Target(paper_start().position + 4.0 * SIDEWAYS, paper_start().rotation)
+    controller = d.Controller(paper_robot(), scheme(Near()), dt=0.1, policy="relax")
+    command = controller.step(PAPER_Q0, 0.0, far)
+    assert command.active_limits[0] == "joint 1 upper bound of Near"
+    assert command.log.upper_kind[0] == LimitKind.OTHER + 1
+    assert np.isin(command.log.upper_kind[1:], [LimitKind.POSITION, LimitKind.VELOCITY]).all()
 
 
 def test_at_a_position_limit_it_is_that_ones() -> None:

@@ -47,7 +47,9 @@ def adversary(q: float, upper: float, limits: Any, dt: float, draws: Any, out: A
     last = before = room = request = 0.0
     mode, left = 0, 0
     for k in range(len(out)):
-        lb, ub = joint_bounds(last, before, upper - q, q + upper, (V, A, J, A, INF, 0.0), periods)
+        lb, ub, *_ = joint_bounds(
+            last, before, upper - q, q + upper, (V, A, J, A, INF, 0.0), periods
+        )
         room = min(room, ub - lb)
         if left == 0:
             mode, left = int(4.0 * draws[k, 0]), 1 + int(400.0 * draws[k, 1])
@@ -112,7 +114,7 @@ def test_outside_a_short_range_a_joint_does_not_come_back_beyond_its_other_side(
     dt, limits = 1e-2, (2.0, 5.0, INF)
     q, last = 0.3, 0.0  # above a range of 1 mrad
     for _ in range(300):
-        lb, ub = joint_bounds(
+        lb, ub, *_ = joint_bounds(
             last, 0.0, -q, q + 1e-3, (*limits, limits[1], INF, 0.0), constant_periods(dt)
         )
         assert lb <= ub
@@ -270,7 +272,7 @@ def stopping_room(v: float, step: float) -> float:
 @given(above=st.floats(0.0, 1.0), last=st.floats(-1.0, 1.0))
 def test_acceleration_bounds_are_the_exact_kernel(above: float, last: float) -> None:
     dt, A, V = 1e-2, 5.0, 2.0
-    lb, ub = joint_bounds(last, 0.0, above, INF, (V, A, INF, A, INF, 0.0), constant_periods(dt))
+    lb, ub, *_ = joint_bounds(last, 0.0, above, INF, (V, A, INF, A, INF, 0.0), constant_periods(dt))
     at_most = min(V, last + A * dt)
     assert lb == pytest.approx(max(-V, last - A * dt))
     if stopping_room(last - A * dt, A * dt) * dt > above:
@@ -288,7 +290,7 @@ def test_a_joint_pressed_against_its_limit_comes_to_rest(speed, jerk, dt) -> Non
     q = -5.0 * speed
     commands = []
     for _ in range(int(9.0 / dt)):
-        lb, ub = joint_bounds(
+        lb, ub, *_ = joint_bounds(
             last, before, -q, INF, (speed, 10.0, jerk, 10.0, INF, 0.0), constant_periods(dt)
         )
         before = last
@@ -309,7 +311,7 @@ def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
         request = min(max(-gain * (q + noise[k]), -V), V)
         change = min(max(request - requested, -A * dt), A * dt)
         requested = request
-        lb, ub = joint_bounds(last, before, 1e3, 1e3, (V, A, J, A, INF, 0.0), periods)
+        lb, ub, *_ = joint_bounds(last, before, 1e3, 1e3, (V, A, J, A, INF, 0.0), periods)
         v = request + braking(last - request + change, lb - request, ub - request, J, periods)
         before, last = last, min(max(v, lb), ub)
         q += dt * last

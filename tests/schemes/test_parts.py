@@ -46,7 +46,7 @@ def test_a_soft_task_is_a_term_of_the_cost() -> None:
             "row 1 of Own, iiwa7_joint_2 lower velocity limit",
         ),
         (own(d.Limit, 1, inequalities=(0.0 * ROW, [-1.0])), "row 1 of Own"),
-        (CROSSED, "iiwa7_joint_1 lower position limit or bound"),
+        (CROSSED, "iiwa7_joint_1 lower bound of Own"),
         (
             own(d.Task, 1, equations=(0.0 * ROW, [1.0])),
             "no bound, but a singular posture, a path out of reach or conflicting tasks",
@@ -71,7 +71,7 @@ def test_an_active_bound_of_ones_own_is_no_position_limit() -> None:
     record = run(d.Scheme([d.KineticEnergy()], [], [d.JointLimits(), quick]), duration=0.01)
     assert_allclose(record.dq, 0.1, rtol=1e-9)
     active = d.compute_metrics(record)["incidents"]["active"]
-    assert {bound["limit"] for bound in active} == {"position limit or bound of Own"}
+    assert {bound["limit"] for bound in active} == {"bound of Own"}
 
 
 @pytest.mark.parametrize("weight", [None, 1.0])

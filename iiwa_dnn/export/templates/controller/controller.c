@@ -118,13 +118,9 @@ int controller_active_limits(const struct controller *c, int *codes)
 {
     CONTROLLER_ARENA;
     const control_cycle_ControlPlan plan = controller_plan((struct controller *)c);
-    const schemes_limits_MotionConstants joints = @limits@;
     const control_command_StepLog log = controller_log(c);
     const qp_layout_QPViews qp = @program_views@log.program, &plan.arrays.sizes);
-    double numbers[CONTROLLER_DOF + @m@];
-    const Vector limiting = {numbers, CONTROLLER_DOF + @m@};
-    @write_limiting@&log, &qp, &joints, &plan.timing, (ptrdiff_t)c->action[0], limiting);
-    const int count = controller_codes(limiting, codes);
+    const int count = controller_codes(log.limiting, codes);
     if (count == 0 && controller_program(c) == CONTROLLER_RELAXED) {
         codes[0] = (int)@rank_loss@&qp);
         return codes[0] != CONTROLLER_RANK_NONE;

@@ -14,10 +14,10 @@ static inline int @kind@_codes(Vector limiting, int *codes)
     int count = 0;
     for (int k = 0; k < (int)limiting.size0; k++) {
         const int kind = (int)limiting.data[k];
-        if (k >= @dof@ && kind != 0) {
-            codes[count++] = @reason_count@ + 7 * @dof@ + k;
-        } else if (kind != 0) {
-            codes[count++] = @reason_count@ + 8 * k + 2 * (kind > 0 ? kind : -kind) - 2 + (kind > 0);
+        if (k >= @n@ && kind != 0) {
+            codes[count++] = @reason_count@ + @sides@ * @dof@ + k - @n@;
+        } else if (k < @dof@ && kind != 0) {
+            codes[count++] = @reason_count@ + @sides@ * k + 2 * (kind > 0 ? kind : -kind) - 2 + (kind > 0);
         }
     }
     return count;
