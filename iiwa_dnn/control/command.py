@@ -313,11 +313,6 @@ class Command:
         return self.log.fraction
 
     @property
-    def limiting(self) -> Vector:
-        """Bounds and rows that limited the solution, as in `StepLog`, (n + m,), a view."""
-        return self.log.limiting
-
-    @property
     def active_limits(self) -> tuple[str, ...]:
         """Reasons, bounds and rows that keep the command from what tasks and cost ask, in words.
 
@@ -325,8 +320,8 @@ class Command:
         """
         sizes = self._layout.sizes
         settings = self._layout.names.settings
-        codes = self.limiting[: sizes.joints]
-        words = [*map(describe, active_limits(settings, codes, self.limiting[sizes.n :]))]
+        codes = self.log.limiting[: sizes.joints]
+        words = [*map(describe, active_limits(settings, codes, self.log.limiting[sizes.n :]))]
         if not words and self.kind is ProgramKind.RELAXED:
             lost = rank_loss(program_views(self.log.program, sizes))
             words = [rank_words(sizes.n, sizes.p)[lost]] * bool(lost)
@@ -363,20 +358,9 @@ class Command:
         return qp
 
     @property
-    def motion_state(self) -> Matrix:
-        """Joint positions [rad], last command and the one before it [rad/s], (3, n)."""
-        log = self.log
-        return np.array([log.q, log.last, log.before])
-
-    @property
     def targets(self) -> Matrix:
         """Targets of the tracked frames, (k, 18)."""
         return self.log.targets
-
-    @property
-    def placement(self) -> Vector:
-        """Placement of the first tracked frame, as `Kinematics.placements`, (12,), a view."""
-        return self.log.placement
 
     @property
     def solution(self) -> Solution:
@@ -401,10 +385,10 @@ class Command:
         is neither `ok` nor limited cannot do it.
         """
         sizes = self._layout.sizes
-        rows = self.limiting[sizes.n :]
+        rows = self.log.limiting[sizes.n :]
         if self.action in (Action.NONE, Action.STOP) or rows.any():
             return False
-        kinds = np.abs(self.limiting[: sizes.joints])
+        kinds = np.abs(self.log.limiting[: sizes.joints])
         found = kinds[kinds > 0]
         return bool(np.isin(found, [LimitKind.ACCELERATION, LimitKind.JERK]).all() and found.size)
 

@@ -109,7 +109,7 @@ class Loop:
             velocity = commands[0].dq
             action = commands[0].action
             dq = velocity
-        placement = controller.placement(self.q) if self._misled else commands[0].placement
+        placement = controller.placement(self.q) if self._misled else commands[0].log.placement
         sent = None if self.plant.exact else dq
         return self._move(
             dq, Outcome(commands, velocity, dq, self.q, placement, action, clipped, sent)

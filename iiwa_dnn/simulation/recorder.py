@@ -160,8 +160,8 @@ class Recorder:
         if command.action is Action.NONE:
             return
         self._array("fraction")[k] = command.fraction
-        self._array("limiting")[k] = command.limiting[: command.dq.size]
-        sides = command.limiting[self.layout.sizes.n :]
+        self._array("limiting")[k] = command.log.limiting[: command.dq.size]
+        sides = command.log.limiting[self.layout.sizes.n :]
         if sides.any():
             self._array("limiting_rows", m=sides.size)[k] = sides
 

@@ -83,8 +83,8 @@ def test_the_scaling_factor_and_the_bounds_limiting_are_those_of_the_linear_prog
             wider.lb[i] -= 1e-3
             wider.ub[i] += 1e-3
             gain = linear_factor(wider) - factor
-            assert (gain > 1e-8) == (command.limiting[i] != 0)
-            blamed += int(command.limiting[i] != 0)
+            assert (gain > 1e-8) == (command.log.limiting[i] != 0)
+            blamed += int(command.log.limiting[i] != 0)
     assert checked > 20
     assert blamed > 10
 
@@ -139,7 +139,7 @@ def test_a_wall_is_kept_and_a_row_that_asks_for_motion_gets_what_the_joints_can(
     assert command.qp.h[0] == pytest.approx(given, abs=1e-8)
     assert command.dq.sum() <= given + 1e-8
     assert (np.abs(command.dq) <= 1.0).all()
-    assert command.limiting[-1] == 1
+    assert command.log.limiting[-1] == 1
 
 
 @pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
@@ -150,7 +150,7 @@ def test_limits_that_contradict_each_other_stop_the_arm(policy: Policy) -> None:
     assert (command.action, command.kind) == (Action.STOP, ProgramKind.STOPPED)
     assert not command.dq.any()
     np.testing.assert_array_equal(command.qp.data, qp.data)  # its nominal program is handed out
-    assert command.limiting[-1] == 1
+    assert command.log.limiting[-1] == 1
 
 
 @pytest.mark.parametrize(("row", "kind"), [(0.2, ProgramKind.SCALED), (0.04, ProgramKind.RELAXED)])

@@ -232,9 +232,9 @@ def test_measured_positions_count_only_where_they_are_far() -> None:
     shield = d.Shield(ROBOT, DT, tracking_error=0.01)
     shield.step(START, np.zeros(7))
     near = shield.step(START + 0.009, np.zeros(7))
-    np.testing.assert_array_equal(near.command.motion_state[0], START)
+    np.testing.assert_array_equal(near.command.log.q, START)
     far = shield.step(START + 0.011, np.zeros(7))
-    np.testing.assert_array_equal(far.command.motion_state[0], START + 0.011)
+    np.testing.assert_array_equal(far.command.log.q, START + 0.011)
     assert far.active_limits == ("resynchronised to measured positions",)
 
 
@@ -357,7 +357,7 @@ def test_threads_may_share_a_shield() -> None:
     found.sort(key=lambda command: command.state.time)
     assert len({command.state.time for command in found}) == 900
     for before, after in itertools.pairwise(found):
-        np.testing.assert_array_equal(after.command.motion_state[1], before.dq)
+        np.testing.assert_array_equal(after.command.log.last, before.dq)
         assert np.abs(after.dq - before.dq).max() <= 10.0 * DT + 1e-12
 
 

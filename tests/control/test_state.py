@@ -106,7 +106,7 @@ def test_threads_keep_the_acceleration_limit_between_them() -> None:
     with ThreadPoolExecutor(2) as pool:
         commands = [*pool.map(lambda _: controller.step(q, k * DT), range(600))]
     for command in commands:
-        change = np.abs(command.dq - command.motion_state[1]).max()
+        change = np.abs(command.dq - command.log.last).max()
         assert change <= ACCELERATION * DT * (1.0 + 1e-9)
 
 

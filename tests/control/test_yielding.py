@@ -32,7 +32,7 @@ def test_hostile_targets_break_no_limit(kind: str) -> None:
     frozen = 0.0
     for command in commands:
         assert (command.qp.ub >= command.qp.lb).all()
-        left = np.linalg.norm(command.placement[9:] - command.targets[0, :3])
+        left = np.linalg.norm(command.log.placement[9:] - command.targets[0, :3])
         stands = np.abs(command.dq).max() < 1e-4
         within = np.linalg.norm(command.targets[0, :3]) < 1.5
         frozen = frozen + dt if stands and within and left > 1e-3 else 0.0
@@ -46,7 +46,7 @@ def test_a_jump_is_made_good_without_swinging(limits: tuple[d.Limit, ...]) -> No
     controller = d.Controller(paper_robot(), d.DoubleIndicator(extra_limits=limits))
     target = d.Target(start.position + [0.0, -0.05, 0.0], start.rotation)
     path, commands = driven(controller, start.q, 1501, target)
-    places = np.array([command.placement[9:] for command in commands])
+    places = np.array([command.log.placement[9:] for command in commands])
     distance = np.linalg.norm(places - target.position, axis=1)
     assert judged(path, jerk=JERK if len(limits) == 2 else np.inf) == []
     assert distance[-1] < 1e-6

@@ -34,7 +34,7 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(limits) -> N
     seen = set()
     _, commands = driven(controlled, PAPER_Q0, 400, FAR)
     for k, command in enumerate(commands):
-        _, last, before = command.motion_state
+        last, before = command.log.last, command.log.before
         rates = np.abs(
             [
                 command.dq / robot.dq_max,
@@ -43,8 +43,8 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(limits) -> N
             ]
         )
         names = repr(command)
-        for joint in np.flatnonzero(command.limiting[: command.dq.size]):
-            bound = command.bounds[int(command.limiting[joint] > 0), joint]
+        for joint in np.flatnonzero(command.log.limiting[: command.dq.size]):
+            bound = command.bounds[int(command.log.limiting[joint] > 0), joint]
             if abs(command.dq[joint] - bound) > 1e-9:
                 continue
             word = names.split(f"joint {joint + 1} ")[1].split()[1]

@@ -65,7 +65,7 @@ def test_a_command_that_was_handed_out_stays_as_it_was(monkeypatch: pytest.Monke
     assert len(handed) == 20
     for k, (command, row) in enumerate(handed):
         np.testing.assert_array_equal(command.data, row)
-        seen = Configuration(paper_robot(), command.motion_state[0]).position
-        np.testing.assert_allclose(command.placement[9:], seen, rtol=0, atol=1e-12)
+        seen = Configuration(paper_robot(), command.log.q).position
+        np.testing.assert_allclose(command.log.placement[9:], seen, rtol=0, atol=1e-12)
         true = Configuration(paper_robot(), record.q[k]).position
         np.testing.assert_allclose(record.position[k], true, rtol=0, atol=1e-12)
