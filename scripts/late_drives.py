@@ -46,7 +46,7 @@ def main(steps: tyro.conf.Positional[int] = 15000):
     """Print the table of drives that are late by 10, 20 and 40 ms."""
     rows = []
     for late in (10, 20, 40):
-        found = [run(late, share * late * DT, steps) for share in STATED.values()]
+        found = [run(late, ratio * late * DT, steps) for ratio in STATED.values()]
         rows.append([f"{late} ms", *(f"{excess:.2g}, {count}" for excess, count in found)])
     print(tabulate(rows, ["drives are late by", *STATED], "pipe", disable_numparse=True))
 

@@ -15,7 +15,7 @@ import numpy as np
 from lerobot.robots import Robot, RobotConfig, make_robot_from_config
 
 EARLY = 0.8
-"""Share of the shield's period before which a next action is not yet taken."""
+"""Fraction of the shield's period before which a next action is not yet taken."""
 
 REST = 1e-9
 """Velocity of a joint at rest [rad/s]: at a position limit it may back off by rounding."""
