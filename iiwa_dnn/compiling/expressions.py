@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
-from typing import TYPE_CHECKING, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
-from .kinds import ARRAYS, BOOL, FLOAT, INT, Kind
-from .sources import Module, c_word, decoration, fail
-
-if TYPE_CHECKING:
-    from .translator import Translator
+from .kinds import ARRAYS, BOOL, FLOAT, INT, Kind, Kinds
+from .sources import Module, Package, TranslationError, c_word, decoration, fail
 
 Rank = IntEnum("Rank", "CHOICE OR AND EQUALITY COMPARISON SUM PRODUCT UNARY PRIMARY")
 """Binding strength of C's operators, the weakest first."""
@@ -158,10 +156,64 @@ def _inserted(places: Iterable[str], given: dict[str, frozenset[str]]) -> set[st
     return {f"{own}{dot}{rest}" for name, dot, rest in parts for own in given[name]}
 
 
+def _arrays(kind: Kind, place: str = "") -> Iterator[str]:
+    """List the arrays of a type: itself, or members, after a dot each."""
+    if kind.axes:
+        yield place
+    for name, own in kind.members.items():
+        yield from _arrays(own, f"{place}.{name}")
+
+
+class Translation:
+    """Types, constants and settings that all functions of a translation share.
+
+    Attributes:
+        package: The package that they are in.
+        kinds: Types of their variables.
+        constants: Constants of modules and of the exported plan, by their names in C.
+        plan: Members of the exported plan that are constants, by its types and the members' names.
+        parts: Functions that entries call by their numbers, from 1; None: by any address.
+        is_checked: Whether indices are checked.
+    """
+
+    def __init__(self, folder: Path, is_checked: bool) -> None:
+        """Take the folder of a package."""
+        self.package = Package(folder)
+        self.is_checked = is_checked
+        self.kinds = Kinds(self.package)
+        self.parts: list[Any] | None = None
+        self.constants: dict[str, str] = {}
+        self.plan: dict[str, dict[str, Value]] = {}
+
+    def function(self, module: Module, node: ast.FunctionDef) -> Expressions:
+        """Return the translation of a function."""
+        raise NotImplementedError
+
+    def constant(self, name: str, own: Any, shape: Sequence[int] = ()) -> Value:
+        """Write a constant, a number or a sequence of numbers; return its value in C.
+
+        Raises:
+            TranslationError: Another constant has the name.
+        """
+        is_table = isinstance(own, Sequence)
+        numbers = [number(each) for each in (own if is_table else [own])]
+        kind = numbers[0].kind
+        items = ", ".join(each.text for each in numbers)
+        text = f"{name}[] = {{{items}}}" if is_table else f"{name} = {items}"
+        if self.constants.setdefault(name, text := f"static const {kind.tag} {text};") != text:
+            raise TranslationError(f"{name} is the name of two constants")
+        if not is_table:
+            return Value(kind, name)
+        data = Value(kind, f"({kind.tag} *){name}", Rank.UNARY)
+        return array(kind, data, [number(size) for size in shape or [len(own)]])
+
+
 class Expressions:
     """Translation of the expressions of one function.
 
     Attributes:
+        node: Syntax tree of the function.
+        result: Type of its result.
         translator: The translation that the function belongs to.
         module: The function's module.
         parameters: Types of its parameters.
@@ -175,7 +227,12 @@ class Expressions:
         uses_arena: Whether it takes memory, or calls a kernel that does.
     """
 
-    def __init__(self, translator: Translator, module: Module, parameters: dict[str, Kind]) -> None:
+    node: ast.FunctionDef
+    result: Kind
+
+    def __init__(
+        self, translator: Translation, module: Module, parameters: dict[str, Kind]
+    ) -> None:
         """Begin the translation of a function."""
         self.translator = translator
         self.module = module
@@ -189,6 +246,16 @@ class Expressions:
         self.is_certain = True
         self.uses_arena = translator.parts is None
         self._kept = 0
+
+    @property
+    def name(self) -> str:
+        """Name in C."""
+        return self.module.c_name(self.node.name)
+
+    @property
+    def views(self) -> dict[str, set[str]]:
+        """Parameters, or members of them, that the result or its members may be views of."""
+        return {place: self.sources(f"return{place}") for place in _arrays(self.result)}
 
     def require(self, holds: bool, node: ast.AST, problem: str) -> None:
         """Refuse a node unless a condition holds."""

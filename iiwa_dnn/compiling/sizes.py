@@ -11,9 +11,9 @@ import ast
 from collections import Counter
 from typing import NamedTuple
 
+from .expressions import Expressions
 from .kinds import INT, Kind
 from .sources import decoration, stored_names
-from .translator import Function
 
 DEPTH = 3
 """Calls of other kernels that are followed into each other."""
@@ -55,7 +55,11 @@ class Reading:
     """
 
     def __init__(
-        self, own: Function, known: dict[str, Known], guards: tuple[str, ...] = (), depth: int = 0
+        self,
+        own: Expressions,
+        known: dict[str, Known],
+        guards: tuple[str, ...] = (),
+        depth: int = 0,
     ) -> None:
         """Read a kernel that runs where none of the guards, conditions in C, holds."""
         self.needs: dict[str, None] = {}

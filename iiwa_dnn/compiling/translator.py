@@ -10,20 +10,17 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 from itertools import groupby
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
-from .expressions import NUMBERS, SIGNS, Expressions, Rank, Value, array, number
-from .kinds import FLOAT, INT, VOID, Kind, Kinds
+from .expressions import NUMBERS, SIGNS, Expressions, Rank, Translation, Value
+from .kinds import FLOAT, INT, VOID
 from .sources import (
     ENTRY,
     Module,
-    Package,
-    TranslationError,
     c_word,
     decoration,
     fail,
@@ -31,28 +28,17 @@ from .sources import (
 )
 
 
-class Translator:
+class Translator(Translation):
     """A translation of kernels that call each other into one text of C.
 
     Attributes:
-        package: The package that they are in.
-        kinds: Types of their variables.
         functions: The functions, by module and name.
-        constants: Constants of modules and of the exported plan, by their names in C.
-        plan: Members of the exported plan that are constants, by its types and the members' names.
-        parts: Functions that entries call by their numbers, from 1; None: by any address.
-        is_checked: Whether indices are checked.
     """
 
     def __init__(self, folder: Path, is_checked: bool = False) -> None:
         """Take the folder of a package."""
-        self.package = Package(folder)
-        self.is_checked = is_checked
-        self.kinds = Kinds(self.package)
+        super().__init__(folder, is_checked)
         self.functions: dict[tuple[str, str], Function] = {}
-        self.parts: list[Function] | None = None
-        self.constants: dict[str, str] = {}
-        self.plan: dict[str, dict[str, Value]] = {}
 
     def all(self) -> None:
         """Translate all kernels of the package."""
@@ -83,24 +69,6 @@ class Translator:
         parts = [*self.kinds.structs.values(), *self.constants.values(), *heads, *bodies]
         return "\n".join(parts)
 
-    def constant(self, name: str, own: Any, shape: Sequence[int] = ()) -> Value:
-        """Write a constant, a number or a sequence of numbers; return its value in C.
-
-        Raises:
-            TranslationError: Another constant has the name.
-        """
-        is_table = isinstance(own, Sequence)
-        numbers = [number(each) for each in (own if is_table else [own])]
-        kind = numbers[0].kind
-        items = ", ".join(each.text for each in numbers)
-        text = f"{name}[] = {{{items}}}" if is_table else f"{name} = {items}"
-        if self.constants.setdefault(name, text := f"static const {kind.tag} {text};") != text:
-            raise TranslationError(f"{name} is the name of two constants")
-        if not is_table:
-            return Value(kind, name)
-        data = Value(kind, f"({kind.tag} *){name}", Rank.UNARY)
-        return array(kind, data, [number(size) for size in shape or [len(own)]])
-
     def function(
         self, module: Module, node: ast.FunctionDef, like: Function | None = None
     ) -> Function:
@@ -125,8 +93,6 @@ class Function(Expressions):
     """Translation of one function; a variable has the type of what is first assigned to it.
 
     Attributes:
-        node: Its syntax tree.
-        result: Type of its result.
         text: The function in C.
     """
 
@@ -148,17 +114,12 @@ class Function(Expressions):
             kinds = {own.arg: of(module, own.annotation or own) for own in node.args.args}
         super().__init__(translator, module, kinds)
         self.node = node
-        self.result: Kind = result
+        self.result = result
         self.text = ""
         self.uses_arena |= self.decoration == ENTRY
         self._stored = Counter(stored_names(node))
         self._declared = dict.fromkeys(kinds, 0)
         self._is_const = [False]
-
-    @property
-    def name(self) -> str:
-        """Name in C."""
-        return self.module.c_name(self.node.name)
 
     @property
     def about(self) -> str:
@@ -175,11 +136,6 @@ class Function(Expressions):
         """Types of its parameters in C."""
         kinds = self.parameters.values()
         return [f"const {own.tag} *" if own.is_named else f"{own.tag} " for own in kinds]
-
-    @property
-    def views(self) -> dict[str, set[str]]:
-        """Parameters, or members of them, that the result or its members may be views of."""
-        return {place: self.sources(f"return{place}") for place in _arrays(self.result)}
 
     @property
     def head(self) -> str:
@@ -390,14 +346,6 @@ class Function(Expressions):
         text = value.converted(kind).initializer
         self.lines.append(f"\0{len(self._is_const)} {kind.tag} {own} = {text};")
         self._is_const.append(True)
-
-
-def _arrays(kind: Kind, place: str = "") -> Iterator[str]:
-    """List the arrays of a type: itself, or members, after a dot each."""
-    if kind.axes:
-        yield place
-    for name, own in kind.members.items():
-        yield from _arrays(own, f"{place}.{name}")
 
 
 def _numbered(own: Function, parts: list[Function]) -> str:

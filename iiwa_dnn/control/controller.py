@@ -35,8 +35,8 @@ from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.schemes.layout import ProgramLayout, targets_of
 from iiwa_dnn.schemes.limits import Periods, stated_periods
-from iiwa_dnn.schemes.program import ProgramLayout, targets_of
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 Mode = Literal["converged", "continuous"]

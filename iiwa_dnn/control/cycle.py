@@ -52,6 +52,7 @@ from iiwa_dnn.references.base import FeedForward, enter_path
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import MEET
+from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.limits import (
     JointLimits,
     MotionConstants,
@@ -62,14 +63,8 @@ from iiwa_dnn.schemes.limits import (
     constant_periods,
     state_periods,
 )
-from iiwa_dnn.schemes.program import (
-    LimitNames,
-    ProgramArrays,
-    ProgramLayout,
-    assemble,
-    block_constants,
-    program_views,
-)
+from iiwa_dnn.schemes.names import LimitNames
+from iiwa_dnn.schemes.program import ProgramArrays, assemble, block_constants, program_views
 from iiwa_dnn.schemes.step import StepViews
 
 FEASIBLE_BUDGET = 60.0

@@ -17,8 +17,9 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.collision import unwatched_links
 from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.limits import TipSpeedLimit, largest_gain
-from iiwa_dnn.schemes.program import LimitNames, ProgramLayout
+from iiwa_dnn.schemes.names import LimitNames
 from iiwa_dnn.schemes.tasks import GainTask
 
 References = Reference | Mapping[str, Reference]
@@ -85,7 +86,7 @@ def setup_warnings(
     yield from _gain_warnings(program, dt)
     if dt > SLOWEST:
         yield f"a control period of {dt:g} s is long: the arm follows each command blindly"
-    limits = program.scheme.limits
+    limits = program.limits
     if program.rate_limits is None and any(isinstance(limit, TipSpeedLimit) for limit in limits):
         yield "TipSpeedLimit holds beside AccelerationLimits alone: a command may be above it"
     lagging = [type(limit).__name__ for limit in limits if limit.row_count(robot)]
@@ -148,7 +149,7 @@ def rank_warnings(
 
 def pair_warnings(program: ProgramLayout, start: Configuration, t: float) -> Iterator[str]:
     """Report pairs that are nearer than their distance where a loop begins, at time t [s]."""
-    parts = [part for part in program.scheme.limits if isinstance(part, CollisionAvoidance)]
+    parts = [part for part in program.limits if isinstance(part, CollisionAvoidance)]
     for part in parts:
         scene = part.scene(program.robot)
         distances = scene.distances(start.q[np.newaxis], np.array([t]))[0]

@@ -48,7 +48,8 @@ from iiwa_dnn.schemes import (
     Scheme,
 )
 from iiwa_dnn.schemes.collisions import ENDS
-from iiwa_dnn.schemes.program import ProgramLayout
+from iiwa_dnn.schemes.layout import ProgramLayout
+from iiwa_dnn.schemes.names import LimitNames
 
 _STEP = 0.5
 """Largest change of a joint in an iteration, in its unit (`_units`)."""
@@ -186,7 +187,7 @@ def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -
     if isinstance(obstacles, CollisionAvoidance):
         rows = ENDS * len(obstacles.scene(slowed).pairs)
         limits.append(replace(obstacles, gain=1.0, nearest=rows))
-    return ProgramLayout(slowed, Scheme([], [PoseTask(gain=1.0)], limits))
+    return Scheme([], [PoseTask(gain=1.0)], limits).program(slowed)
 
 
 def _units(robot: Robot) -> Vector:
@@ -256,4 +257,4 @@ def _active_limits(
     least = _ACTS * math.hypot(*point.qp.b[:3], *weight * point.qp.b[3:6])
     lower, upper = program.kinds
     codes = np.where(step.z_box > 0.0, upper, -lower) * (np.abs(step.z_box) > least)
-    return tuple(map(describe, active_limits(program.settings(), codes, step.z > least)))
+    return tuple(map(describe, active_limits(LimitNames(program).settings, codes, step.z > least)))

@@ -47,13 +47,9 @@ from iiwa_dnn.qp.layout import QPViews, copied
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.limits import MotionConstants, MotionLimits, Periods, braking
-from iiwa_dnn.schemes.program import (
-    ProgramArrays,
-    ProgramLayout,
-    block_constants,
-    program_views,
-)
+from iiwa_dnn.schemes.program import ProgramArrays, block_constants, program_views
 from iiwa_dnn.schemes.scene import scene_views
 
 NONE, SLOW, RELAX, STOP, _ = map(int, Action)

@@ -43,7 +43,9 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.naming import ACTIONS, active_limits, describe, limit_kinds
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.program import Column, ProgramLayout, program_views
+from iiwa_dnn.schemes.layout import ProgramLayout
+from iiwa_dnn.schemes.names import LimitNames
+from iiwa_dnn.schemes.program import Column, program_views
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -189,7 +191,7 @@ def _about(
         "code": code.text(),
         "map": "\n".join(f" * - {title}" for title in _SECTIONS.values()),
         "reason_count": len(reasons),
-        "sides": 2 * len(limit_kinds(program.settings())),
+        "sides": 2 * len(limit_kinds(LimitNames(program).settings)),
         "limit_count": len(names),
         "names": ",\n".join(f"        {name}" for name in names),
     }
@@ -203,7 +205,7 @@ def limit_words(program: ProgramLayout) -> list[str]:
 
     They are for each joint the lower and the upper bound of each of `limit_kinds`, then the rows.
     """
-    settings: dict[str, Any] = program.settings()
+    settings: dict[str, Any] = LimitNames(program).settings
     rows = settings["rows"]
     kinds = range(1, 1 + len(limit_kinds(settings)))
     codes = [sign * kind for kind in kinds for sign in (-1, 1)]

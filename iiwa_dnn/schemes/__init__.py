@@ -25,7 +25,7 @@ from iiwa_dnn.schemes.literature import (
     PseudoInverse as PseudoInverse,
 )
 from iiwa_dnn.schemes.parts import Cost as Cost, Limit as Limit, Part as Part, Task as Task
-from iiwa_dnn.schemes.program import Scheme as Scheme
+from iiwa_dnn.schemes.scheme import Scheme as Scheme
 from iiwa_dnn.schemes.step import Step as Step
 from iiwa_dnn.schemes.tasks import (
     AxisTask as AxisTask,

@@ -33,7 +33,7 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.costs import CyclicMotion, Kinetic, KineticEnergy, WeightedCost
 from iiwa_dnn.schemes.limits import JointLimits
 from iiwa_dnn.schemes.parts import Limit
-from iiwa_dnn.schemes.program import Scheme
+from iiwa_dnn.schemes.scheme import Scheme
 from iiwa_dnn.schemes.step import Step
 from iiwa_dnn.schemes.tasks import Orientation, OrientationTask, PositionTask
 

@@ -22,6 +22,7 @@ from iiwa_dnn.robot.robot import model_limits
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.limits import MotionLimits, RateLimits
+from iiwa_dnn.schemes.names import LimitNames
 from iiwa_dnn.simulation.loop import Loop
 from iiwa_dnn.simulation.motion import MOTIONS, check_motion
 from iiwa_dnn.simulation.noise import SignalChain
@@ -201,7 +202,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         "integrator": integrator.settings(),
         "scheme": controller.scheme.settings(),
         "reference": _reference_settings(controller.reference),
-        **program.settings(),
+        **LimitNames(program).settings,
     }
 
 
