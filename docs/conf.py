@@ -51,6 +51,7 @@ napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 # The classes say it in their docstrings; the field's own comment would say it twice.
 napoleon_use_ivar = True
+napoleon_attr_annotations = False
 
 html_extra_path = ["heart.html"]
 html_static_path = ["static"]

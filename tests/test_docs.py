@@ -9,8 +9,10 @@ import importlib
 import io
 import json
 import operator
+import os
 import re
 import shlex
+import subprocess
 import sys
 import types
 from pathlib import Path
@@ -91,6 +93,13 @@ def test_every_public_name_stands_on_one_page_of_the_api(monkeypatch: pytest.Mon
     assert {f"iiwa_dnn.{name}" for name in iiwa_dnn.__all__} - modules <= set(shown)
     linked = re.findall(r"^api/(\w+)$", (ROOT / "docs/api.md").read_text(), re.MULTILINE)
     assert linked == list(pages.ROOMS)
+
+
+def test_a_package_whose_annotations_stay_text_says_the_same() -> None:
+    code = "import api_pages; print(api_pages.load_package().Record.__doc__, end='')"
+    options = {"cwd": ROOT / "docs", "env": {**os.environ, "PYTHONPATH": str(ROOT)}}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, **options)
+    assert done.stdout == iiwa_dnn.Record.__doc__, done.stderr
 
 
 def test_the_table_of_equations_names_what_exists() -> None:
