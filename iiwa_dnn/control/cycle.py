@@ -221,6 +221,11 @@ def _compiled_paths(
         return None
     if any(isinstance(path, FeedForward) and path.dt != dt for path in seen):
         return None
+    return _laid_out(paths, seen)
+
+
+def _laid_out(paths: Sequence[Reference], seen: Sequence[Reference]) -> Paths:
+    """Lay out compiled paths, with or without feed-forward."""
     constants = [np.concatenate([path.base, path.constants]) for path in paths]
     stops = np.cumsum([own.size for own in constants])
     rows = [
