@@ -231,8 +231,8 @@ def test_a_compiled_step_is_its_parts_one_after_the_other(scheme, mode, substeps
         residuals = one.solution.residuals
         np.testing.assert_allclose(residuals, other.solution.residuals, rtol=1e-9, atol=1e-11)
         assert one.solution.network_time == pytest.approx(other.solution.network_time)
-        np.testing.assert_array_equal(one.placement[:9].reshape(3, 3).T, conf.rotation)
-        np.testing.assert_array_equal(one.placement[9:], conf.position)
+        np.testing.assert_array_equal(one.log.placement[:9].reshape(3, 3).T, conf.rotation)
+        np.testing.assert_array_equal(one.log.placement[9:], conf.position)
         np.testing.assert_array_equal(one.targets[0], target.data)
     np.testing.assert_allclose(compiled.solver.state, asked.solver.state, rtol=0, atol=1e-9)
 
