@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     from iiwa_dnn.robot.robot import Robot
 
 _TESTED = 20
-"""Postures that are tested for collisions, the best ones."""
+"""Postures that are tested for their surroundings and for collisions, the best ones."""
+
+_AWAY = 0.1
+"""Distance of the surroundings, in reaches."""
 
 _ZERO = 1e-6
 """Ratio to the largest singular value below which one is zero."""
@@ -27,22 +30,34 @@ def best_start(robot: Robot, postures: Array) -> Array:
 
     Its measure is the least singular value of the tip's Jacobian that is not zero everywhere, with
     the rows of rotation times the robot's reach, or without them if there are fewer than six
-    joints. Of the best ones it is the first in which the fewest collision shapes of the robot's
-    file meet. Pairs that meet in all of them are not counted.
+    joints. The best ones are compared by the least measure in their surroundings, a tenth of the
+    reach along each axis; those come first in which fewer collision shapes of the robot's file
+    meet. Pairs that meet in all of them are not counted.
 
     Source: C. A. Klein, B. E. Blaho, "Dexterity measures for the design and control of
     kinematically redundant manipulators", Int. J. Robotics Research 6(2), 1987.
     """
     reach = robot.reach if 0.0 < robot.reach < np.inf else 1.0
+    jacobians = _jacobians(robot, postures, reach)
+    values = np.linalg.svd(jacobians, compute_uv=False)
+    least = (values > _ZERO * values.max()).sum(axis=1).max() - 1
+    order = np.argsort(-values[:, least], kind="stable")[:_TESTED]
+    best = postures[order]
+    steps = _AWAY * reach * np.linalg.pinv(jacobians[order], _ZERO)[:, :, :3].transpose(0, 2, 1)
+    around = best[:, np.newaxis] + np.concatenate([steps, -steps], axis=1)
+    jacobians = _jacobians(robot, around.reshape(-1, robot.dof), reach)
+    values = np.linalg.svd(jacobians, compute_uv=False)[:, least].reshape(len(best), -1)
+    order = np.lexsort([-values.min(axis=1), _count_collisions(robot, best)])
+    return np.array(best[order[0]])
+
+
+def _jacobians(robot: Robot, postures: Array, reach: float) -> Array:
+    """Compute the tip's Jacobians (k, 6, n) with the rows of rotation times the reach [m], or 0."""
     data = robot.model.createData()
     at_tip = (robot.tip_id, pin.LOCAL_WORLD_ALIGNED)
     found = [pin.computeFrameJacobian(robot.model, data, q, *at_tip) for q in postures]
-    jacobians = np.reshape(found, (-1, 6, robot.dof))
-    jacobians[:, 3:] *= reach if robot.dof >= 6 else 0.0
-    values = np.linalg.svd(jacobians, compute_uv=False)
-    least = (values > _ZERO * values.max()).sum(axis=1).max() - 1
-    best = postures[np.argsort(-values[:, least], kind="stable")[:_TESTED]]
-    return np.array(best[_count_collisions(robot, best).argmin()])
+    units = np.repeat([1.0, reach if robot.dof >= 6 else 0.0], 3)[:, np.newaxis]
+    return np.asarray(units * np.reshape(found, (-1, 6, robot.dof)))
 
 
 def _count_collisions(robot: Robot, postures: Array) -> Array:

@@ -72,6 +72,22 @@ def test_with_fewer_than_six_joints_the_position_counts(tmp_path) -> None:
     assert least(leg, leg.start_posture(), rows=3) > 0.9 * max(others)
 
 
+def test_no_posture_around_the_start_is_singular() -> None:
+    quarter = np.pi / 2
+    table = [
+        (0.0, quarter, 0.2, 0.0),
+        (0.14, 0.0, 0.0, 0.0),
+        (0.13, 0.0, 0.0, 0.0),
+        (0.0, quarter, 0.28, 0.0),
+        (0.0, -quarter, 0.07, 0.0),
+        (0.0, 0.0, 0.14, 0.0),
+    ]
+    robot = d.robot_from_dh(table, lower=-2.5, upper=2.5)
+    q = robot.start_posture()
+    path = d.Circle(radius=0.05 * robot.reach, period=10.0).anchored(d.Configuration(robot, q))
+    assert d.failures(d.simulate(robot, d.DoubleIndicator(), path, q, dt=5e-2)) == []
+
+
 def test_an_unknown_arm_does_not_start_in_a_collision(tmp_path) -> None:
     rows = [*[(xyz, axis, -2.8, 2.8) for xyz, axis, *_ in INDUSTRIAL[:3]], INDUSTRIAL[4]]
     bare = d.load_robot(write_arm(tmp_path / "bare.urdf", rows, {}))
