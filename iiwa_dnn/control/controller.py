@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.command import EXCEEDED, Command
-from iiwa_dnn.control.cycle import INVALID, ControlLayout, take_step
+from iiwa_dnn.control.cycle import INVALID, ControlLayout, ControlPlan, take_step
 from iiwa_dnn.control.paths import (
     References,
     beyond_reach,
@@ -80,7 +80,6 @@ class Controller:
         longest_period: float | None = None,
         mode: Mode = "converged",
         policy: Policy = "slow",
-        tol: float = 1e-9,
         solver: DNNSolver | None = None,
     ) -> None:
         """Check the settings and take them.
@@ -93,8 +92,7 @@ class Controller:
             longest_period: Longest control period where periods vary [s]; None: they do not.
             mode: ``"converged"`` or ``"continuous"``.
             policy: ``"slow"``, ``"relax"`` or ``"stop"``.
-            tol: Absolute tolerance on the KKT residuals in ``converged`` mode.
-            solver: The network and its integrators; None takes the paper's network with `tol`.
+            solver: The network and its integrators; None takes the paper's network, to 1e-9.
 
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
@@ -110,7 +108,7 @@ class Controller:
         self.robot = robot
         self.scheme = scheme
         self.reference = reference
-        self.solver = DNNSolver(tol=tol) if solver is None else solver
+        self.solver = DNNSolver() if solver is None else solver
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name.startswith("_"):
@@ -258,10 +256,7 @@ class Controller:
             control_layout = self._prepare(q, t, target is None)
         plan = control_layout.plan if target is None else control_layout.given
         if control_layout.varies or not dt is elapsed is None:
-            plan = plan._replace(timing=periods_of_step(self, state.warned, dt, elapsed))
-            plan.network.settings.duration = plan.timing.expected * control_layout.lag
-            if elapsed is not None:
-                state.book(elapsed)
+            plan = self._vary(control_layout, plan, dt, elapsed)
         periods = plan.timing
         log_layout = control_layout.log_layout
         program = control_layout.program
@@ -271,8 +266,7 @@ class Controller:
         data = np.empty(log_layout.width)
         numbers = state.numbers
         if not plan.samples:
-            clock = t - state.motion.path_lag if target is None else t
-            found = self.targets(clock, target, periods.expected)
+            found = self.targets(t - state.motion.path_lag, target, periods.expected)
             data[-found.size :] = found.ravel()  # the last numbers of a log
         if program.refreshed:
             last = state.motion.last
@@ -290,6 +284,16 @@ class Controller:
             checks.finite_array("target", log_layout.targets(data), (-1, TARGET_SIZE))
         state.next_numbers = next_numbers
         return Command(data, log_layout, _ACTIONS[action], periods)
+
+    def _vary(
+        self, layout: ControlLayout, plan: ControlPlan, dt: float | None, elapsed: float | None
+    ) -> ControlPlan:
+        """Return the plan of a step with its own periods, and book the time that has passed."""
+        timing = periods_of_step(self, self._state.warned, dt, elapsed)
+        plan.network.settings.duration = timing.expected * layout.lag
+        if elapsed is not None:
+            self._state.book(elapsed)
+        return plan._replace(timing=timing)
 
     def is_clear(self, q: Vector, dq: Vector) -> bool:
         """Test whether a velocity is safe to send; always True with limits on acceleration or jerk.

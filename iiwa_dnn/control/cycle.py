@@ -295,10 +295,7 @@ def take_step(
     next_motion_state = MotionState.of(next_numbers, sizes.joints, sizes.pairs)
     if plan.samples:
         sample_targets(plan.paths, t - motion_state.path_lag, timing.expected, log.targets)
-    finite = math.isfinite(t)
-    for i in range(q.size):
-        finite = finite and abs(q[i]) <= LARGEST
-    if not finite or not all_finite(data, data.size - log.targets.size, data.size):
+    if not _is_valid(t, q, data, data.size - log.targets.size):
         return INVALID
     copied(motion_state.q, q)
     change_spacing(motion_state, timing.dt)
@@ -335,6 +332,15 @@ def take_step(
     return yield_step(
         log, arrays, motion_state, next_motion_state, plan.yielding, timing, plan.fallback, policy
     )
+
+
+@compiled
+def _is_valid(t: float, q: Vector, data: Vector, targets: int) -> bool:
+    """Check the time [s], joint positions [rad], (n,), and the targets, which end a log."""
+    for i in range(q.size):
+        if not abs(q[i]) <= LARGEST:
+            return False
+    return math.isfinite(t) and all_finite(data, targets, data.size)
 
 
 @compiled
