@@ -99,9 +99,10 @@ class ArmState(Record):
         time: Time of the arm's clock [s].
         period: Period that counts for the last command [s].
         age: Time since the request came [s].
-        reason: `Reason` why it is one to rest.
+        reason: `Reason` why the request is replaced by one to rest.
         kind: `Request` of the last request.
-        answered: `Request` that the last step answered; `NONE`: its positions are not known.
+        answered: `Request` that the last step answered; `NONE`: the positions are
+            not known, and no step was taken.
         action: `Action` of the last step.
         has_begun: Whether there was a first step.
         is_repeated: Whether the request is that of the step before.
@@ -446,7 +447,8 @@ def answer_request(
         row: Room for the log of the control step.
 
     Returns:
-        The action that was taken, or `INVALID`.
+        The action that was taken, or `INVALID`; that of the step before if `take_input` found that
+        no step can be taken.
     """
     own = arm_state(plan, memory)
     if own.answered != Request.NONE:

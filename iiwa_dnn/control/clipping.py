@@ -22,8 +22,8 @@ ROW_TOLERANCE = 1e-9
 def clip_command(qp: QP, dq: Vector, yielding: Yielding) -> tuple[Vector, NDArray[np.int8]]:
     """Clip joint velocities to the bounds and inequality rows of a program.
 
-    A velocity that is no number becomes the bound nearest to rest. Beyond an inequality row the
-    nearest velocity within all limits is taken; if there is none, the bounds nearest to rest.
+    A velocity that is NaN becomes zero, clipped to the bounds. If an inequality row is broken, the
+    nearest velocity within all limits is taken; if there is none, zero, clipped to the bounds.
 
     Args:
         qp: The program at the joints' true positions; its first variables are the joints.

@@ -219,11 +219,10 @@ class LogLayout(NamedTuple):
     def multipliers(self, logs: Matrix, tol: float) -> tuple[Matrix, Matrix]:
         """Return the multipliers of active bounds, (..., dof), and inequality rows, (..., m).
 
-        They are those of `Solution.z_box` and `Solution.z`, 0 where none is active: where the
-        multiplier is not above the tolerance `tol`, or its part of the duality gap is, multiplier
-        times slack; above one, the slack itself. Without a smaller multiplier the residuals were
-        still within the tolerance, and in continuous mode one that is left from earlier takes a
-        while to decay.
+        They are those of `Solution.z_box` and `Solution.z`, where a bound or row is active: its
+        multiplier z is above `tol`, and min(z, 1) times its slack is not. All others are 0. Without
+        a multiplier up to `tol` the residuals are within the tolerance too. In continuous mode a
+        multiplier of an earlier step takes a while to decay.
         """
         n, m, p = self.qp_sizes
         log = log_of(logs, self.sizes)

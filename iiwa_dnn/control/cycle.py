@@ -129,8 +129,9 @@ class ControlLayout:
         width: Length of the states from step to step, `MotionState`.
         varies: Whether periods vary, or the network advances by them.
         lag: Part of a period by which the network advances in continuous mode; 0 where it solves.
-        plan: Arrays and settings that stay the same from step to step. Its paths are sampled if
-            all references are compiled, and no part is refreshed by the targets of a step.
+        plan: Arrays and settings of a step; the states of the fallback programs within are
+            advanced. Its paths are sampled if all references are compiled, and no part is refreshed
+            by the targets of a step.
         given: The same for steps that are given targets.
         has_network: Whether the network is compiled.
     """

@@ -127,7 +127,8 @@ def least_periods(
 ) -> float:
     """Compute the number of periods in which velocities go to zero together.
 
-    It is the least one, or with a jerk limit one that is found from below in steps of a tenth.
+    It is the least number. With a jerk limit, a lower bound is raised by a tenth and rounded up
+    until the motion keeps the limits.
 
     Args:
         x: Velocities of now [rad/s], (n,).

@@ -111,14 +111,16 @@ def yield_step(
     fallback: Vector,
     action: int,
 ) -> int:
-    """Answer a step for which the network has no answer, or whose task yielded at the last step.
+    """Answer a step whose nominal program was not answered, by the policy or the stopping motion.
+
+    The network had no answer, or one that is not safe; or it was not asked, since the task yielded
+    at the last step or the arm is halted.
 
     Args:
         log: The log, with the nominal program and what it was built at.
         arrays: Arrays of the loop; the kinematics are at the joint positions of the state.
         motion_state: State of the motion.
-        next_motion_state: The same for the next step, overwritten but for the last commands and
-            the distances that pairs keep.
+        next_motion_state: The same for the next step, overwritten.
         yielding: Weights, limits and settings of the fallback programs.
         timing: Periods of the step.
         fallback: States of the networks of fallback programs, (`fallback_size`,), advanced.
@@ -454,7 +456,8 @@ def _brake(
     lead away from rest; no row asks it for motion.
 
     Returns:
-        Periods that are left afterwards; 0 if no stopping motion is stored.
+        Periods that are left afterwards. If no stopping motion is stored, those of one from the new
+        command, 0 if there is none.
     """
     dq[:] = 0.0
     if yielding.limits.velocity.size == 0:

@@ -201,9 +201,9 @@ def _about(
 
 
 def limit_words(program: ProgramLayout) -> list[str]:
-    """Name what may limit a command, by codes.
+    """List the names of all limits of a program; the index of a name is its code.
 
-    They are for each joint the lower and the upper bound of each of `limit_kinds`, then the rows.
+    For each joint come the lower and the upper bound of each of `limit_kinds`, then the rows.
     """
     settings: dict[str, Any] = LimitNames(program).settings
     rows = settings["rows"]

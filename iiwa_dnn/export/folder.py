@@ -213,7 +213,7 @@ def _members(kind: type[IntEnum]) -> str:
 
 
 def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
-    """Run a shield on requests of all kinds that jump, are held, too old, or not finite.
+    """Run a shield on requests of all kinds that jump, are held, fall silent, or are not finite.
 
     The arm follows its commands, late by the shield's `delay`.
 

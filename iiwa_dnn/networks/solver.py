@@ -113,7 +113,8 @@ class DNNSolver:
 
         Args:
             sizes: ``(n, m, p)`` of the programs.
-            duration: Time to advance [s]; 0 stands for `solve`, by its first try.
+            duration: Time to advance [s]; 0: to the equilibrium, as `solve` without its second try
+                in scaled units.
 
         Returns:
             The function's address and its arguments; None if network or integrator has none.

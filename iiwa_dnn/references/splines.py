@@ -52,7 +52,8 @@ class Spline(NamedTuple):
 def spline_through(times: Array, rows: Array, closed: bool, jointly: bool = False) -> Spline:
     """Fit a spline to rows (m, k) at times (m,) [s], at rest at its ends unless it is closed.
 
-    Its columns are judged one by one, or jointly by the lengths of steps and excursions.
+    Whether a piece leaves the span of its rows is judged for each column, or jointly by the lengths
+    of the steps and excursions.
     """
     from scipy.interpolate import CubicHermiteSpline, PchipInterpolator  # 0.3 s for those who do
 

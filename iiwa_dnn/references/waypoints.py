@@ -344,8 +344,8 @@ def _read(path: str | os.PathLike[str]) -> tuple[Array, list[str]]:
     """Read a file of points or poses, each with its time.
 
     Returns:
-        The numbers of its lines, times, points and quaternions, (m, 5) or (m, 9), and the names of
-        the columns that are not read.
+        Rows of line number, time, point and, of poses, quaternion, (m, 5) or (m, 9); and the names
+        of the columns that are not read.
     """
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()

@@ -128,8 +128,9 @@ def _excesses(record: Record) -> dict[str, Array]:
 def beyond_robot(record: Record) -> dict[str, dict[str, Any]]:
     """Compute the excess of the joints over the robot's own limits, by `OWN_LIMITS`.
 
-    What the run kept within them, and what the robot does not limit, is left out. ``limited`` is
-    the run's limit, None for none; ``named`` tells whether somebody gave one, or none.
+    Quantities whose run limit was no wider than the robot's are left out, and those that the robot
+    does not limit. ``limited`` is the run's limit, None without one; ``named`` tells whether the
+    user gave the limit, or "none".
     """
     found = {}
     for quantity, setting in OWN_LIMITS.items():
@@ -256,9 +257,9 @@ def _active(record: Record) -> Array:
 def _crosscheck(record: Record) -> dict[str, Any]:
     """Count and size the differences to the reference solvers.
 
-    An answer is believed only if the reference's own residual is within its tolerance; the gaps
-    of the others are counted as `reference_failures` and enter no maximum. An answer disagrees if
-    one of `GAPS` is above the tolerance. A command outside of the bounds and rows of its own step
+    A reference's answer is believed only if its own residual is within its tolerance; the others
+    are counted as `reference_failures` and enter no maximum. The network's answer disagrees if one
+    of `GAPS` is above the tolerance. A command outside of the bounds and rows of its own step
     disagrees whatever the references say; of a stopped step there is nothing to check.
     """
     check = record.settings["check"]

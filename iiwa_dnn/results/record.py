@@ -58,7 +58,7 @@ class Column(NamedTuple):
     def check(self, name: str, value: ArrayLike, sizes: dict[str | int, int]) -> NDArray[Any]:
         """Return a read-only copy of an array of this column.
 
-        Sizes that this array is the first to have are entered.
+        Sizes that no array before has had are entered into `sizes`.
 
         Raises:
             InvalidInputError: If the array has another type or shape.

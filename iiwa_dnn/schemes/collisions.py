@@ -1,8 +1,8 @@
 r"""Collision avoidance: two inequality rows for each pair of bodies that could meet.
 
 For a pair at distance :math:`d`, with the unit normal :math:`n` from the first body to the second,
-an end :math:`x` of the second, a segment, is by some height :math:`\eta \ge 0` farther away along
-the normal. Its row is a velocity damper,
+each end :math:`x` of the second body's segment gives one row. The end is :math:`\eta \ge 0` farther
+away along the normal than the nearest point. The row is a velocity damper,
 
 .. math::  n \cdot \dot x \;\ge\; v_o - \kappa\,(d + \eta - d_s - \mu - \varepsilon)
 

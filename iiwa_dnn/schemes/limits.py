@@ -108,7 +108,7 @@ class Rates(NamedTuple):
         jerk: Largest jerk [rad/s^3].
         deceleration: Deceleration with which it stops before its position limits [rad/s^2].
         slope: Deceleration D of its position-dependent velocity limit [rad/s^2].
-        lag: o / D of that limit [s].
+        lag: Offset o of that limit over D [s].
     """
 
     velocity: float
@@ -784,10 +784,14 @@ def stopping_distance(v: float, a: float, J: float, A: float) -> float:
 
 @compiled
 def highest(v: float, last: float, periods: Periods, profile: tuple[float, float, float]) -> float:
-    """Compute the highest position of the stopping path after command v, from that before it.
+    """Compute the highest position of the stopping path after command v, relative to that of now.
 
-    The profile has a jerk [rad/s^3] and a deceleration [rad/s^2]. A joint that brakes by more than
-    the third number [rad/s^2] counts as one that brakes by that.
+    Args:
+        v: Command [rad/s].
+        last: The command before it [rad/s].
+        periods: Periods of the step.
+        profile: Jerk [rad/s^3], deceleration and largest present deceleration [rad/s^2]: a joint
+            that brakes by more counts as one that brakes by that.
     """
     J, A, most = profile
     last = min(last, v + most * periods.dt)

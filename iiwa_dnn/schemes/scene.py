@@ -552,10 +552,10 @@ def nearest_parameter(a: Vector3, u: Vector3, half: Vector3) -> float:
 
 @compiled
 def depth(x: Vector3, half: Vector3) -> tuple[float, float, float, float]:
-    """Compute how far a point is from leaving a box by its nearest face, negative inside.
+    """Compute the signed distance of a point to the nearest face of a box, negative inside.
 
     Returns:
-        The distance from the face, and the three components of the normal out of it.
+        The distance along the face's outer normal, and the three components of the normal.
     """
     found = -1e300
     axis = 2

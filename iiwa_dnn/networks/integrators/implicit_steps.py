@@ -129,8 +129,8 @@ def backward_euler(
 ) -> int:
     """Solve new = s + step F(new) for `new` (3n + m + p,), the iteration starting at s.
 
-    The iteration stops after its first round if the gradient is at most `tol` or lost in rounding,
-    and after `max_newton` rounds.
+    After at least one round, it stops as soon as the gradient of the step's own minimisation is at
+    most `tol` or lost in rounding; at the latest after `max_newton` rounds.
 
     Returns:
         Newton iterations; minus their number if the last matrix was not positive definite to
