@@ -4,6 +4,7 @@ import warnings
 from typing import Any
 
 import numpy as np
+import pytest
 
 import iiwa_dnn
 from iiwa_dnn import Configuration, Record, Robot
@@ -85,6 +86,7 @@ def beyond(record: Record, robot: Robot) -> float:
     return float(max(np.diff(out, axis=0).max(initial=0.0), fast.max(initial=0.0)))
 
 
+@pytest.mark.filterwarnings("ignore:the acceleration jumps")  # of random rows
 def test_limits_hold_and_every_run_has_an_end() -> None:
     actions = set()
     clipped = 0

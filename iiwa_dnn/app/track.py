@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from tqdm import tqdm
 
 from iiwa_dnn import (
@@ -27,8 +28,9 @@ from iiwa_dnn.results.pictures import save_pictures
 from iiwa_dnn.results.plots import CAPTIONS
 from iiwa_dnn.results.report import save_run, summary
 from iiwa_dnn.robot.mujoco_model import prepare_renderer
-from iiwa_dnn.robot.robot import model_limits
+from iiwa_dnn.robot.robot import Robot, model_limits
 from iiwa_dnn.schemes.collisions import avoidance_of
+from iiwa_dnn.schemes.limits import RateLimits
 from iiwa_dnn.studies.paper import published
 
 OUTPUTS = (
@@ -110,7 +112,7 @@ def _export_package(options: ExportWords, tables: Tables, arguments: Arguments) 
     """Write a shield with the robot, obstacles and period of the settings as a package."""
     avoidance = avoidance_of(arguments.scheme)
     shield = Shield(
-        arguments.robot,
+        _limited(arguments),
         dt=arguments.settings.dt,
         obstacles=avoidance.obstacles if avoidance else None,
         distance=avoidance.distance if avoidance else 0.02,
@@ -121,9 +123,22 @@ def _export_package(options: ExportWords, tables: Tables, arguments: Arguments) 
     q0 = arguments.q0
     platforms = options.platforms
     exports.python(shield, folder, options.python, q0=q0, platforms=platforms, cuda=options.cuda)
+    if not np.isfinite(shield.robot.ddq_max).all():
+        line = "accelerations are not limited; for a real arm take --acceleration-limit"
+        print(line, file=sys.stderr)
     if not options.quiet:
         print(f"written to {folder}; to install it: pip install ./{folder}")
     return 0
+
+
+def _limited(arguments: Arguments) -> Robot:
+    """Return the robot with the rate limits of the settings, which a shield keeps."""
+    robot = arguments.robot
+    rates: dict[str, Any] = {"acceleration": np.inf, "jerk": np.inf}
+    for limit in arguments.scheme.limits:
+        if isinstance(limit, RateLimits):
+            rates[limit.quantity] = limit.of(robot)
+    return robot.with_limits(**rates)
 
 
 def export(options: ExportWords) -> int:

@@ -12,8 +12,9 @@ within the bounds and rows of its limits; W weighs what is beside v `SIDEWAYS` t
 Everything else is the controller's: the verified stopping motion that is always available, and what
 is done where the limits leave no answer. A request that the limits admit, and from which the arm
 can stop, is the command to the last bit. If acceleration or jerk limits, or the stopping motion,
-keep the command from the program's answer, it is the closest one on the way there, and other
-commands within the limits may be closer to the request. A request for positions is one for the
+keep the command from the program's answer, it lies on the line from the braking command to it, at
+the largest of the fractions 1, 1/2, 1/4, ... from which the arm can stop; other commands within the
+limits may be closer to the request. A request for positions is one for the
 quickest velocity from which each joint can still rest there. An arm without a request has one to
 rest.
 """
@@ -329,18 +330,24 @@ class Shield:
         limits: list[Limit] = [JointLimits(), *own_rate_limits(robot)]
         if obstacles is not None:
             limits.append(CollisionAvoidance(obstacles, distance=distance, left_out=left_out))
+        self._halted = False
         self.limits = tuple(limits)
 
     @property
     def limits(self) -> tuple[Limit, ...]:
-        """Limits that every command keeps; a shield that is given others begins anew."""
+        """Limits that every command keeps; a shield that is given others begins anew, at rest.
+
+        Only a halt is kept.
+        """
         return self._limits
 
     @limits.setter
     def limits(self, limits: tuple[Limit, ...]) -> None:
         self._limits = limits
+        halted = self._halted
         self._begin()
         self.reset()
+        self._halted = halted
 
     def _begin(self) -> None:
         self._lock = threading.RLock()

@@ -111,6 +111,8 @@ def assemble(data: Vector, arrays: ProgramArrays, step: StepViews) -> None:
     data[:] = 0.0
     qp.lb[:] = -np.inf
     qp.ub[:] = np.inf
+    step.lower_kind[:] = 0.0
+    step.upper_kind[:] = 0.0
     for k in range(len(arrays.table)):
         entry = arrays.table[k]
         kind = entry[Column.KIND]

@@ -42,6 +42,12 @@ def test_a_shield_of_the_settings_becomes_a_package(tmp_path, capsys, monkeypatc
     text = (tmp_path / "my_shield" / "my_shield" / "__init__.py").read_text(encoding="utf-8")
     assert 'ROBOT = "panda"' in text
     assert "DT = 0.002" in text
+    assert call(*words, "--overwrite", "--acceleration-limit", "2", "--jerk-limit", "300") == 0
+    package = (tmp_path / "my_shield" / "my_shield" / "__init__.py").read_text(encoding="utf-8")
+    assert f"'acceleration': {[2.0] * 7}, 'jerk': {[300.0] * 7}" in package
+    assert capsys.readouterr().err == ""
+    assert call(*words, "--overwrite", "--acceleration-limit", "none") == 0
+    assert "accelerations are not limited" in capsys.readouterr().err
     assert call(*words[:2], "my-shield", "--overwrite") == 2
     assert "name: must be" in capsys.readouterr().err
     assert call(*words, "--overwrite", "--platforms", "amiga") == 2

@@ -210,6 +210,8 @@ def test_a_halt_lasts_until_the_reset() -> None:
     assert limits_broken(np.vstack([path, rest[1:]]), ROBOT) == []
     assert not commands[-1].dq.any()
     assert commands[-1].active_limits == ("halted",)
+    shield.limits = shield.limits
+    assert shield.step(rest[-1], np.full(7, 0.2)).active_limits == ("halted",)
     shield.reset()
     assert shield.step(rest[-1]).active_limits == ("no request",)
     assert shield.step(rest[-1], np.full(7, 1e-3)).active_limits == ()

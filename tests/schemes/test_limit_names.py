@@ -101,6 +101,14 @@ def test_a_limit_of_ones_own_is_named_by_its_class() -> None:
     assert np.isin(command.log.upper_kind[1:], [LimitKind.POSITION, LimitKind.VELOCITY]).all()
 
 
+def test_a_bound_that_no_limit_writes_has_no_kind(monkeypatch) -> None:
+    """Whatever stood in the memory of the log."""
+    monkeypatch.setattr(np, "empty", lambda *shape, **type: np.full(*shape, np.nan, **type))
+    free = d.Scheme([d.KineticEnergy()], [d.PositionTask()], limits=[])
+    command = d.Controller(paper_robot(), free, dt=DT).step(PAPER_Q0, 0.0, FAR)
+    np.testing.assert_array_equal([command.log.lower_kind, command.log.upper_kind], 0.0)
+
+
 def test_at_a_position_limit_it_is_that_ones() -> None:
     robot = paper_robot().with_limits(upper=np.array(PAPER_Q0) + 3e-5)
     command = d.Controller(robot, scheme(d.AccelerationLimits(A)), dt=DT).step(PAPER_Q0, 0.0, FAR)
