@@ -40,7 +40,7 @@ from iiwa_dnn.app.words import WORDS
 from iiwa_dnn.checks import Array
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.files import one_line, parse_toml, read_toml
-from iiwa_dnn.schemes.limits import RateLimits, own_rate_limits
+from iiwa_dnn.schemes.rate_limits import RateLimits, own_rate_limits
 from iiwa_dnn.simulation import Disturbances, IdealPlant, Push
 
 Tables = dict[str, Any]

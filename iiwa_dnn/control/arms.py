@@ -34,18 +34,12 @@ from iiwa_dnn.qp.dense import all_finite, largest_entry
 from iiwa_dnn.qp.layout import IntVector, copied
 from iiwa_dnn.robot.kinematics import Twist
 from iiwa_dnn.robot.kinematics_kernel import ModelTables, write_kinematics
-from iiwa_dnn.schemes.limits import (
-    MotionConstants,
-    Periods,
-    Rates,
-    arriving,
-    braking,
-    joint_bounds,
-    joint_rates,
-    periods_of,
-)
+from iiwa_dnn.schemes.periods import Periods, periods_of
+from iiwa_dnn.schemes.profiles import Rates, arriving, braking
 from iiwa_dnn.schemes.program import ProgramArrays, block_constants, program_views
+from iiwa_dnn.schemes.rate_limits import MotionConstants, joint_rates
 from iiwa_dnn.schemes.scene import Body, scene_views, write_distances
+from iiwa_dnn.schemes.viability import joint_bounds
 
 
 class ArmSettings(Record):

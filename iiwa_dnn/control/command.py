@@ -15,8 +15,8 @@ from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import QPViews, Sizes, data_size, offsets
-from iiwa_dnn.schemes.limits import Periods
 from iiwa_dnn.schemes.names import LimitNames
+from iiwa_dnn.schemes.periods import Periods
 from iiwa_dnn.schemes.program import ProgramSizes, program_views
 from iiwa_dnn.schemes.step import TARGET_SIZE
 

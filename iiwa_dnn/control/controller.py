@@ -36,7 +36,7 @@ from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.layout import ProgramLayout, targets_of
-from iiwa_dnn.schemes.limits import Periods, stated_periods
+from iiwa_dnn.schemes.periods import Periods, stated_periods
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 Mode = Literal["converged", "continuous"]

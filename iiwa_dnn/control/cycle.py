@@ -52,19 +52,12 @@ from iiwa_dnn.references.base import FeedForward, enter_path
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import MEET
+from iiwa_dnn.schemes.joint_limits import JointLimits, PositionConstants
 from iiwa_dnn.schemes.layout import ProgramLayout
-from iiwa_dnn.schemes.limits import (
-    JointLimits,
-    MotionConstants,
-    Periods,
-    PositionConstants,
-    check_ranges,
-    checked_longest,
-    constant_periods,
-    state_periods,
-)
 from iiwa_dnn.schemes.names import LimitNames
+from iiwa_dnn.schemes.periods import Periods, checked_longest, constant_periods
 from iiwa_dnn.schemes.program import ProgramArrays, assemble, block_constants, program_views
+from iiwa_dnn.schemes.rate_limits import MotionConstants, check_ranges, state_periods
 from iiwa_dnn.schemes.step import StepViews
 
 FEASIBLE_BUDGET = 60.0

@@ -48,8 +48,8 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry, row_dot
 from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, copied, data_size, qp_views
 from iiwa_dnn.qp.residuals import cost_size, within
-from iiwa_dnn.schemes.limits import MotionConstants
 from iiwa_dnn.schemes.program import add_soft
+from iiwa_dnn.schemes.rate_limits import MotionConstants
 
 MAX_LINEAR_SOLVES = 60
 """Linear solves after which a program counts as one without a solution."""

@@ -18,9 +18,10 @@ from iiwa_dnn.robot.collision import unwatched_links
 from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.layout import ProgramLayout
-from iiwa_dnn.schemes.limits import TipSpeedLimit, largest_gain
 from iiwa_dnn.schemes.names import LimitNames
+from iiwa_dnn.schemes.rate_limits import largest_gain
 from iiwa_dnn.schemes.tasks import GainTask
+from iiwa_dnn.schemes.tip_speed import TipSpeedLimit
 
 References = Reference | Mapping[str, Reference]
 

@@ -76,7 +76,8 @@ from iiwa_dnn.schemes import (
     own_rate_limits,
 )
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.limits import MotionLimits, Periods, checked_longest
+from iiwa_dnn.schemes.periods import Periods, checked_longest
+from iiwa_dnn.schemes.rate_limits import MotionLimits
 from iiwa_dnn.schemes.scene import Body, scene_views
 
 

@@ -29,7 +29,7 @@ from iiwa_dnn.control.shield import Margin, Shield, ShieldCommand, one_request
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.schemes.limits import stated_periods
+from iiwa_dnn.schemes.periods import stated_periods
 
 BLOCK = 64
 """Arms that a thread takes at a time."""

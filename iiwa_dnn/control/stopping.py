@@ -40,8 +40,9 @@ from iiwa_dnn.control.fallback import Yielding
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot.kinematics import Placement
-from iiwa_dnn.schemes.limits import MotionConstants, Periods
+from iiwa_dnn.schemes.periods import Periods
 from iiwa_dnn.schemes.program import ProgramArrays, block_constants
+from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.scene import (
     Pair,
     contact_of,

@@ -48,8 +48,10 @@ from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.layout import ProgramLayout
-from iiwa_dnn.schemes.limits import MotionConstants, MotionLimits, Periods, braking
+from iiwa_dnn.schemes.periods import Periods
+from iiwa_dnn.schemes.profiles import braking
 from iiwa_dnn.schemes.program import ProgramArrays, block_constants, program_views
+from iiwa_dnn.schemes.rate_limits import MotionConstants, MotionLimits
 from iiwa_dnn.schemes.scene import scene_views
 
 NONE, SLOW, RELAX, STOP, _ = map(int, Action)

@@ -18,9 +18,9 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.limits import MotionLimits, merged
 from iiwa_dnn.schemes.parts import Cost, Limit, Part, Task, answer_of, answer_size
 from iiwa_dnn.schemes.program import BlockKind, Column, ProgramArrays, ProgramSizes, assemble
+from iiwa_dnn.schemes.rate_limits import MotionLimits, merged
 from iiwa_dnn.schemes.scene import SceneHead
 from iiwa_dnn.schemes.step import Step, StepViews
 

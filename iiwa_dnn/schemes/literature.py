@@ -31,7 +31,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.costs import CyclicMotion, Kinetic, KineticEnergy, WeightedCost
-from iiwa_dnn.schemes.limits import JointLimits
+from iiwa_dnn.schemes.joint_limits import JointLimits
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.scheme import Scheme
 from iiwa_dnn.schemes.step import Step

@@ -3,7 +3,7 @@
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.schemes.collisions import MEET
 from iiwa_dnn.schemes.layout import ProgramLayout
-from iiwa_dnn.schemes.limits import RateLimits
+from iiwa_dnn.schemes.rate_limits import RateLimits
 from iiwa_dnn.schemes.tasks import JointCouplingTask
 
 OFF = 1e-6

@@ -21,8 +21,8 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.robot import model_limits
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.limits import MotionLimits, RateLimits
 from iiwa_dnn.schemes.names import LimitNames
+from iiwa_dnn.schemes.rate_limits import MotionLimits, RateLimits
 from iiwa_dnn.simulation.loop import Loop
 from iiwa_dnn.simulation.motion import MOTIONS, check_motion
 from iiwa_dnn.simulation.noise import SignalChain

@@ -9,7 +9,7 @@ import pytest
 import iiwa_dnn as d
 from helpers_simulation import driven
 from iiwa_dnn.control import stopping
-from iiwa_dnn.schemes.limits import MotionConstants
+from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.scene import second_order
 from judge_limits import breaches
 

@@ -168,7 +168,7 @@ def test_the_code_is_plain_c_and_its_memory_is_stated(
     for words in (
         "static inline ptrdiff_t control_cycle_take_step(struct arena *arena, Vector data,",
         "/* Tighten the bounds to those of `JointLimits`, whose constants these are.",
-        " * iiwa_dnn/schemes/limits.py: joint_limits */",
+        " * iiwa_dnn/schemes/joint_limits.py: joint_limits */",
     ):
         assert words in text
     assert exported.size <= 16_000

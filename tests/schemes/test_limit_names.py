@@ -9,7 +9,9 @@ import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array
 from helpers_simulation import driven, paper_robot, paper_start, run
 from iiwa_dnn.naming import KINDS, LimitKind
-from iiwa_dnn.schemes.limits import Rates, constant_periods, joint_bounds
+from iiwa_dnn.schemes.periods import constant_periods
+from iiwa_dnn.schemes.profiles import Rates
+from iiwa_dnn.schemes.viability import joint_bounds
 
 A = 4.0
 J = 200.0

@@ -11,20 +11,15 @@ import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array
 from helpers_simulation import heart, paper_robot, paper_start
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.schemes.limits import (
-    LEVELS,
-    LOWER,
+from iiwa_dnn.schemes.periods import constant_periods, stated_periods
+from iiwa_dnn.schemes.profiles import Rates, braking, usable_jerk
+from iiwa_dnn.schemes.rate_limits import (
     MotionConstants,
-    Rates,
-    braking,
     check_ranges,
-    constant_periods,
-    joint_bounds,
     largest_gain,
     own_rate_limits,
-    stated_periods,
-    usable_jerk,
 )
+from iiwa_dnn.schemes.viability import LEVELS, LOWER, joint_bounds
 from judge_limits import Breach, breaches
 
 INF = math.inf

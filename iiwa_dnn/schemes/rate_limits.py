@@ -1,0 +1,282 @@
+"""Acceleration and jerk limits of the joints, and the one block of a program that keeps them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from iiwa_dnn import checks
+from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record, part
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.parts import Limit, Task
+from iiwa_dnn.schemes.periods import Periods, constant_periods
+from iiwa_dnn.schemes.profiles import Rates, usable_jerk
+from iiwa_dnn.schemes.step import StepViews
+from iiwa_dnn.schemes.tasks import JointCouplingTask
+from iiwa_dnn.schemes.viability import joint_bounds
+
+
+def positive_rates(argument: str, value: ArrayLike) -> float | tuple[float, ...]:
+    """Return one number above 0, or several as a tuple; refuse any other value but inf."""
+    given = np.ravel(value).tolist()
+    rates = [rate if rate == np.inf else checks.positive(argument, rate) for rate in given]
+    return tuple(rates) if np.ndim(value) else rates[0]
+
+
+@dataclass(frozen=True)
+class RateLimits(Limit):
+    """A limit of each joint on a derivative of its velocity.
+
+    Attributes:
+        limit: The limit, one number or one a joint, above 0; None takes the robot's, inf states
+            that there is none.
+    """
+
+    _checks: ClassVar[checks.Checks] = {"limit": positive_rates}
+    limit: ArrayLike | None = None
+    quantity: ClassVar[str]
+    row: ClassVar[int]
+
+    def of(self, robot: Robot) -> Vector:
+        """Return the limit of each joint, (n,).
+
+        Raises:
+            InvalidInputError: It is not one number or n, not above 0, or None and the robot has
+                none.
+        """
+        given: dict[str, Any] = {self.quantity: self.limit}
+        values: Vector = robot.with_limits(**given).limits[self.row]
+        if self.limit is None and np.isinf(values).all():
+            problem = f"is needed: robot {robot.name} has no limit of its own"
+            raise InvalidInputError(self.quantity, problem)
+        return values
+
+
+@dataclass(frozen=True)
+class AccelerationLimits(RateLimits):
+    """Bounds on the change of the joint velocities from one command to the next.
+
+    A joint can always stop before its position limit. Where a row of a task or another limit
+    conflicts with the bounds, the task yields (`iiwa_dnn.control.policies`), the bounds never do.
+
+    Attributes:
+        limit: Largest acceleration [rad/s^2], one number or (n,); None takes `Robot.ddq_max`, inf
+            states that it is not limited.
+    """
+
+    quantity = "acceleration"
+    row = 3
+
+
+@dataclass(frozen=True)
+class JerkLimits(RateLimits):
+    """Bounds on the change of the joint accelerations from one command to the next.
+
+    Attributes:
+        limit: Largest jerk [rad/s^3], one number or (n,); None takes `Robot.dddq_max`, inf states
+            that it is not limited.
+    """
+
+    quantity = "jerk"
+    row = 4
+
+
+def own_rate_limits(robot: Robot) -> tuple[RateLimits, ...]:
+    """Return the robot's acceleration and jerk limits, the default where none are given.
+
+    They are those of `Shield` and of ``iiwa-dnn track``.
+    """
+    return tuple(
+        limit
+        for limit in (AccelerationLimits(), JerkLimits())
+        if np.isfinite(robot.limits[limit.row]).any()
+    )
+
+
+class MotionConstants(Record):
+    """Limits of n joints on their motion, as `MotionLimits` gives them.
+
+    The first numbers are those of `Periods` that a step states; they are 0 where periods are
+    constant.
+
+    Attributes:
+        dt: Period over which changes of the command are measured [s].
+        hold: Longest time for which the command may be held [s].
+        longest: Longest period that may come [s].
+        fraction: Part of a distance that is gone in the stated periods at least.
+        lower: Lower position limits [rad], (n,): at one below which a position-dependent velocity
+            limit is zero, that position.
+        upper: Upper position limits [rad], (n,).
+        velocity: As in `Rates`, and so the others, (n,).
+    """
+
+    dt: float
+    hold: float
+    longest: float
+    fraction: float
+    lower: Vector = part()
+    upper: Vector = part()
+    velocity: Vector = part()
+    acceleration: Vector = part()
+    jerk: Vector = part()
+    deceleration: Vector = part()
+    slope: Vector = part()
+    lag: Vector = part()
+
+
+@compiled
+def joint_rates(limits: MotionConstants, i: int) -> Rates:
+    """Return the rates of joint i."""
+    return Rates(
+        limits.velocity[i],
+        limits.acceleration[i],
+        limits.jerk[i],
+        limits.deceleration[i],
+        limits.slope[i],
+        limits.lag[i],
+    )
+
+
+@compiled
+def state_periods(limits: MotionConstants, periods: Periods) -> None:
+    """Write the periods of a step among the constants of `MotionLimits`."""
+    limits.dt = periods.dt
+    limits.hold = periods.hold
+    limits.longest = periods.longest
+    limits.fraction = periods.fraction
+
+
+@compiled
+def motion_limits(
+    step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
+) -> None:
+    """Clip the bounds of the joints to those of `MotionLimits`, whose constants these are.
+
+    Bounds of other limits give way where they contradict: the position and velocity limits are
+    kept by these bounds too. Without a control period there are none.
+    """
+    if not step.rate < np.inf:
+        return
+    limits = MotionConstants.of(constants)
+    dt = 1.0 / step.rate
+    periods = constant_periods(dt)
+    if limits.dt > 0.0:
+        periods = Periods(limits.dt, dt, limits.hold, limits.longest, limits.fraction, True, False)
+    for i in range(step.q.size):
+        above = limits.upper[i] - step.q[i]
+        below = step.q[i] - limits.lower[i]
+        rates = joint_rates(limits, i)
+        lower, upper, lower_kind, upper_kind = joint_bounds(
+            step.last[i], step.before[i], above, below, rates, periods
+        )
+        step.lower_kind[i] = upper_kind if lb[i] > upper else lower_kind
+        step.upper_kind[i] = lower_kind if ub[i] < lower else upper_kind
+        lb[i] = min(max(lb[i], lower), upper)
+        ub[i] = min(max(ub[i], lower), upper)
+
+
+@dataclass(frozen=True)
+class MotionLimits(Limit):
+    """All acceleration and jerk limits of a scheme, as the one block that is compiled.
+
+    Attributes:
+        limits: The scheme's `AccelerationLimits` and `JerkLimits`; the tightest of each counts.
+        couplings: Its tasks that hold joints together. A joint is no quicker than the others of
+            its relation let it be: else one could brake where another cannot follow.
+    """
+
+    kernel = staticmethod(motion_limits)
+    limits: tuple[RateLimits, ...] = ()
+    couplings: tuple[JointCouplingTask, ...] = ()
+
+    def constants(self, robot: Robot) -> MotionConstants:
+        """Return `MotionConstants`, whose stated periods are 0.
+
+        Raises:
+            InvalidInputError: A limit does not fit the robot, or a joint's range is too short to
+                turn round in.
+        """
+        rates = np.full((3, robot.dof), np.inf)
+        lower, upper, rates[0] = robot.limits[:3]
+        for limit in self.limits:
+            row = rates[limit.row - 2]
+            np.minimum(row, limit.of(robot), out=row)
+        for coupling in self.couplings * len(self.couplings):  # of chains too
+            (relation,) = coupling.relations(robot)
+            fractions = np.abs(relation.coefficients)
+            joints = np.flatnonzero(fractions)
+            for i in joints:
+                others = joints[joints != i]
+                rates[:, i] = np.minimum(
+                    rates[:, i], rates[:, others] @ fractions[others] / fractions[i]
+                )
+        offset, steepness = robot.position_dependent_velocity
+        with np.errstate(invalid="ignore"):  # a joint without a velocity limit
+            fraction = np.where(np.isinf(rates[0]), 1.0, rates[0] / (offset + rates[0]))
+        braking = np.minimum(rates[1], steepness * fraction)
+        lag = offset / steepness
+        distance = 0.5 * offset * lag
+        stated = [np.zeros(4), lower + distance, upper - distance]
+        numbers = np.concatenate([*stated, *rates, braking, steepness, lag])
+        limits = MotionConstants.of(numbers)
+        check_ranges(limits, np.inf)
+        return limits
+
+
+def check_ranges(limits: MotionConstants, rate: float) -> None:
+    """Raise InvalidInputError if a joint's range is too short to reverse in.
+
+    Args:
+        limits: The limits of the joints.
+        rate: Control periods a second [1/s]; inf for a jerk limit that braking may use in full.
+    """
+    lag = limits.lag
+    braking = limits.deceleration
+    with np.errstate(invalid="ignore"):  # a joint without a position-dependent velocity limit
+        lost = np.where(lag > 0.0, lag**2 * limits.slope * braking / (limits.slope - braking), 0.0)
+        rates = [joint_rates(limits, i) for i in range(lag.size)]
+        usable = np.array([usable_jerk(own, 1.0 / rate) for own in rates])
+    steepest = np.minimum(braking, np.sqrt(2.0 * usable * limits.velocity))
+    distance = limits.upper - limits.lower - lost
+    short = (limits.jerk < np.inf) & (steepest**3 > usable**2 * distance)
+    if short.any():
+        i = int(np.flatnonzero(short)[0])
+        step = f", and more cannot be used at {1.0 / rate:g} s a step" if rate < np.inf else ""
+        problem = f"joint {i + 1}: {usable[i]:g} rad/s^3 is too little to stop in its range{step}"
+        raise InvalidInputError("jerk", problem, limits.jerk)
+
+
+def largest_gain(limits: MotionConstants, rate: float) -> float:
+    """Compute the feedback gain up to which a loop with these limits is stable [1/s].
+
+    It is one over the loop's delay: a period, and the mean time that an acceleration takes to turn
+    from one limit to the other (docs/limits.md).
+
+    Args:
+        limits: The limits of the joints.
+        rate: Control periods a second [1/s].
+    """
+    with np.errstate(invalid="ignore"):  # a joint without limits
+        turn = np.sqrt(limits.velocity / limits.jerk)
+        delay = np.fmin(limits.acceleration / limits.jerk, turn)
+    return float(1.0 / (delay.max() + 1.0 / rate))
+
+
+def merged(limits: Sequence[Limit], tasks: Sequence[Task]) -> list[Limit]:
+    """Merge the limits on acceleration and jerk into one block, the last.
+
+    Of the tasks those count that hold joints together.
+    """
+    rates = tuple(
+        limit
+        for limit in limits
+        if isinstance(limit, RateLimits) and (limit.limit is None or np.isfinite(limit.limit).any())
+    )
+    others = [limit for limit in limits if not isinstance(limit, RateLimits)]
+    couplings = tuple(t for t in tasks if isinstance(t, JointCouplingTask) and t.weight is None)
+    return [*others, MotionLimits(rates, couplings)] if rates else others
