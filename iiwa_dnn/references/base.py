@@ -37,9 +37,6 @@ def enter_path(address: int, t: float, constants: Array, target: TargetData) -> 
     """Call a path's function by its address; it moves the target to time t [s]."""
 
 
-SHORTEST = 1.0
-"""Least length of a soft start that is not given [s]."""
-
 AT_REST = read_only(Target(np.zeros(3)).data)
 """Target at position 0 with orientation identity, at rest, `Target.data` (18,)."""
 
@@ -175,17 +172,11 @@ class SoftStart(Reference):
     to its start later by half of `begin`.
 
     Attributes:
-        begin: Length of the soft start [s]: by default 1 s or a tenth of a round, whichever is
-            longer; 0 begins at full speed.
+        begin: Length of the soft start [s]; 0 begins at full speed.
     """
 
     _checks: ClassVar[Checks] = {"begin": not_negative}
-    begin: float | None = field(default=None, kw_only=True)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.begin is None:
-            self._set(begin=max(SHORTEST, 0.1 * self._round))
+    begin: float = field(default=1.0, kw_only=True)
 
     @property
     def _round(self) -> float:
@@ -195,7 +186,7 @@ class SoftStart(Reference):
     @property
     def duration(self) -> float:
         """Time until the path is back at its start, at full speed [s]."""
-        lost = 0.5 * (self.begin or 0.0)
+        lost = 0.5 * self.begin
         return lost + self._round * max(1, math.ceil(lost / self._round))
 
 

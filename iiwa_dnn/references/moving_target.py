@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn.checks import Array, not_negative, offers
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.references.base import Pose, Reference
-from iiwa_dnn.references.rotations import dot, scaled, set_mean_twist, triple, turn_target
+from iiwa_dnn.references.rotations import dot, scaled, set_mean_twist, triple, turn_about
 from iiwa_dnn.references.targets import Target, TargetData
 
 ARRIVED = 1e-12
@@ -96,7 +96,9 @@ def approach(
     turned = _paced(target.angular_velocity, rate, elapsed)
     for i in range(3):
         target.position[i] += moved * path[i]
-    turn_target(target, scaled(turned, turn), (0.0, 0.0, 0.0))
+    angle = np.sqrt(dot(turn, turn))
+    if angle > 0.0:
+        turn_about(target, scaled(1.0 / angle, turn), turned * angle, 0.0)
 
 
 @compiled

@@ -1,17 +1,4 @@
-r"""Rotations in compiled code: the exponential of SO(3) and its left Jacobian.
-
-A rotation vector :math:`\theta(t)` gives :math:`R = \exp[\theta]_\times`, which turns with
-
-.. math::
-
-    \omega = J(\theta)\,\dot\theta, \qquad
-    J(\theta) = I + a\,[\theta]_\times + b\,[\theta]_\times^2,
-
-    a = (1 - \cos\|\theta\|) / \|\theta\|^2, \qquad
-    b = (\|\theta\| - \sin\|\theta\|) / \|\theta\|^3
-
-Source: T. D. Barfoot, "State Estimation for Robotics", Cambridge University Press 2017, section 7.
-"""
+"""Vectors in space, turns by a quaternion, and the logarithm of a rotation, in compiled code."""
 
 import math
 
@@ -19,25 +6,8 @@ import numpy as np
 
 from iiwa_dnn.checks import Array, Matrix, Vector3
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.compiling.trigonometry import sin
+from iiwa_dnn.compiling.trigonometry import sin_cos
 from iiwa_dnn.references.targets import TargetData
-
-
-@compiled
-def coefficients(square: float) -> tuple[float, float]:
-    """Compute a and b at a squared angle."""
-    if square > 1.0:
-        angle = np.sqrt(square)
-        sine = sin(0.5 * angle)
-        versine = 2.0 * sine * sine
-        return versine / square, (angle - sin(angle)) / (square * angle)
-    a = 1.0
-    b = 1.0
-    for i in range(10):  # the series from its last term, after which all are below rounding
-        k = 10 - i
-        a = 1.0 - a * square / ((2.0 * k + 1.0) * (2.0 * k + 2.0))
-        b = 1.0 - b * square / ((2.0 * k + 2.0) * (2.0 * k + 3.0))
-    return 0.5 * a, b / 6.0
 
 
 @compiled
@@ -65,23 +35,6 @@ def combined(a: float, u: Vector3, b: float, v: Vector3) -> Vector3:
 
 
 @compiled
-def rotated(vector: Vector3, v: Vector3) -> Vector3:
-    """Compute exp[vector] v."""
-    square = dot(vector, vector)
-    a, b = coefficients(square)
-    once = cross(vector, v)
-    return combined(1.0, v, 1.0, combined(1.0 - b * square, once, a, cross(vector, once)))
-
-
-@compiled
-def left_jacobian(vector: Vector3, v: Vector3) -> Vector3:
-    """Compute J(vector) v: the angular velocity of a rotation vector with the rate v."""
-    a, b = coefficients(dot(vector, vector))
-    once = cross(vector, v)
-    return combined(1.0, v, 1.0, combined(a, once, b, cross(vector, once)))
-
-
-@compiled
 def triple(v: Array) -> Vector3:
     """Return the components of a vector (3,)."""
     return v[0], v[1], v[2]
@@ -94,16 +47,41 @@ def column_of(R: Matrix, j: int) -> Vector3:
 
 
 @compiled
-def turn_target(target: TargetData, vector: Vector3, rate: Vector3) -> None:
-    """Turn a target by a rotation vector with a rate; its position stays."""
+def rotated(w: float, u: Vector3, v: Vector3) -> Vector3:
+    """Rotate v by the quaternion with scalar part w and vector part u, of any length but 0."""
+    once = cross(u, v)
+    scale = 2.0 / (w * w + dot(u, u))
+    return combined(1.0, v, scale, combined(w, once, 1.0, cross(u, once)))
+
+
+@compiled
+def turn_target(target: TargetData, w: float, u: Vector3, w_rate: float, u_rate: Vector3) -> None:
+    """Turn a target about the world's axes by a quaternion; its position stays.
+
+    Args:
+        target: The target.
+        w: Scalar part of the quaternion, whose length may be any but 0.
+        u: Vector part.
+        w_rate: Rate of the scalar part [1/s].
+        u_rate: Rate of the vector part [1/s].
+    """
     for j in range(3):
-        column = rotated(vector, column_of(target.rotation, j))
+        column = rotated(w, u, column_of(target.rotation, j))
         for i in range(3):
             target.rotation[i, j] = column[i]
-    before = rotated(vector, triple(target.angular_velocity))
-    after = combined(1.0, left_jacobian(vector, rate), 1.0, before)
+    before = rotated(w, u, triple(target.angular_velocity))
+    spin = combined(1.0, cross(u, u_rate), 1.0, combined(w, u_rate, -w_rate, u))
+    after = combined(1.0, before, 2.0 / (w * w + dot(u, u)), spin)
     for i in range(3):
         target.angular_velocity[i] = after[i]
+
+
+@compiled
+def turn_about(target: TargetData, axis: Vector3, angle: float, rate: float) -> None:
+    """Turn a target about an axis of length 1 by an angle [rad], at a rate [rad/s]."""
+    sine, cosine = sin_cos(0.5 * angle)
+    half = 0.5 * rate
+    turn_target(target, cosine, scaled(sine, axis), -half * sine, scaled(half * cosine, axis))
 
 
 @compiled

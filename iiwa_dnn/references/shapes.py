@@ -76,38 +76,35 @@ class Heart(Reference):
         return HeartConstants.make(scale=self.scale, rate=2.0 * np.pi / self.period).numbers
 
 
-class CircleConstants(Record):
-    """Soft start [s], radius [m], angular rate [rad/s] and both axes of a circle."""
+class LissajousConstants(Record):
+    """Soft start [s], and of each axis the angular rate [rad/s] and two amplitudes [m].
+
+    Attributes:
+        begin: Length of the soft start [s].
+        rates: Angular rates [rad/s].
+        sines: Amplitudes of the sines [m].
+        cosines: Amplitudes of the cosines [m].
+    """
 
     begin: float
-    radius: float
-    rate: float
-    u: Array = part(3)
-    v: Array = part(3)
+    rates: Array = part(3)
+    sines: Array = part(3)
+    cosines: Array = part(3)
 
 
 @compiled
-def circle_path(t: float, constants: Array, target: TargetData) -> None:
-    """Move a target along `Circle`."""
-    own = CircleConstants.of(constants)
+def lissajous_path(t: float, constants: Array, target: TargetData) -> None:
+    """Move a target along a `Lissajous`, a `Circle` or a `Line`."""
+    own = LissajousConstants.of(constants)
     inner, pace = soft_clock(t, own.begin)
-    p = own.rate * inner
-    rate = own.rate * pace
-    # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
-    sine = sin(0.5 * p)
-    along_u = -2.0 * sine * sine
-    along_v, cosine = sin_cos(p)
     for i in range(3):
-        moved = along_u * own.u[i] + along_v * own.v[i]
-        target.position[i] += own.radius * moved
-        velocity = cosine * own.v[i] - along_v * own.u[i]
-        target.linear_velocity[i] += rate * own.radius * velocity
-
-
-def axis(argument: str, value: Any) -> Vector3:
-    """Return a vector (3,) of any length as a tuple of floats; refuse zero and any other value."""
-    direction(argument, value)
-    return vector3(argument, value)
+        p = own.rates[i] * inner
+        # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
+        half = sin(0.5 * p)
+        sine, cosine = sin_cos(p)
+        target.position[i] += own.sines[i] * sine - 2.0 * own.cosines[i] * half * half
+        change = own.sines[i] * cosine - own.cosines[i] * sine
+        target.linear_velocity[i] += own.rates[i] * pace * change
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,44 +130,25 @@ class Circle(SoftStart):
             normal is zero.
     """
 
-    path: ClassVar[Any] = staticmethod(circle_path)
-    _checks: ClassVar[Checks] = {"radius": positive, "period": positive, "normal": axis}
+    path: ClassVar[Any] = staticmethod(lissajous_path)
+    _checks: ClassVar[Checks] = {"radius": positive, "period": positive, "normal": direction}
     radius: float = 0.05
     period: float = 10.0
     normal: Vector3 = (0.0, 0.0, 1.0)
 
     @cached_property
     def constants(self) -> Array:
-        """`CircleConstants`."""
-        normal = np.array(direction("normal", self.normal))
+        """`LissajousConstants`."""
+        normal = np.array(self.normal)
         first = np.eye(3)[0 if abs(normal[0]) < 0.9 else 1]
         u = first - (first @ normal) * normal
-        u /= np.linalg.norm(u)
-        rate = 2.0 * np.pi / self.period
-        return CircleConstants.make(
-            begin=self.begin, radius=self.radius, rate=rate, u=u, v=np.cross(normal, u)
+        u *= self.radius / np.linalg.norm(u)
+        return LissajousConstants.make(
+            begin=self.begin,
+            rates=np.full(3, 2.0 * np.pi / self.period),
+            sines=np.cross(normal, u),
+            cosines=u,
         ).numbers
-
-
-class LineConstants(Record):
-    """Angular rate [rad/s] of the motion along a line, and its far end [m]."""
-
-    rate: float
-    offset: Array = part(3)
-
-
-@compiled
-def line_path(t: float, constants: Array, target: TargetData) -> None:
-    """Move a target along `Line`."""
-    own = LineConstants.of(constants)
-    p = own.rate * t
-    # sin^2(p/2) is (1 - cos(p)) / 2 without the cancellation near the start.
-    sine = sin(0.5 * p)
-    fraction = sine * sine
-    speed = 0.5 * own.rate * sin(p)
-    for i in range(3):
-        target.position[i] += fraction * own.offset[i]
-        target.linear_velocity[i] += speed * own.offset[i]
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,35 +167,20 @@ class Line(Reference):
         InvalidInputError: If a parameter is not finite or the period is not above zero.
     """
 
-    path: ClassVar[Any] = staticmethod(line_path)
+    path: ClassVar[Any] = staticmethod(lissajous_path)
     _checks: ClassVar[Checks] = {"offset": vector3, "period": positive}
     offset: Vector3 = (0.1, 0.0, 0.0)
     period: float = 10.0
 
     @cached_property
     def constants(self) -> Array:
-        """`LineConstants`."""
-        return LineConstants.make(rate=2.0 * np.pi / self.period, offset=self.offset).numbers
-
-
-class LissajousConstants(Record):
-    """Soft start [s], amplitudes [m], angular rates [rad/s] and phases [rad] of a figure."""
-
-    begin: float
-    amplitudes: Array = part(3)
-    rates: Array = part(3)
-    phases: Array = part(3)
-
-
-@compiled
-def lissajous_path(t: float, constants: Array, target: TargetData) -> None:
-    """Move a target along `Lissajous`."""
-    own = LissajousConstants.of(constants)
-    inner, pace = soft_clock(t, own.begin)
-    for i in range(3):
-        sine, cosine = sin_cos(own.rates[i] * inner + own.phases[i])
-        target.position[i] += own.amplitudes[i] * (sine - sin(own.phases[i]))
-        target.linear_velocity[i] += own.amplitudes[i] * (own.rates[i] * pace) * cosine
+        """`LissajousConstants`."""
+        return LissajousConstants.make(
+            begin=0.0,
+            rates=np.full(3, 2.0 * np.pi / self.period),
+            sines=np.zeros(3),
+            cosines=-0.5 * np.array(self.offset),
+        ).numbers
 
 
 def _whole(argument: str, value: Any) -> Vector3:
@@ -265,9 +228,12 @@ class Lissajous(SoftStart):
     @cached_property
     def constants(self) -> Array:
         """`LissajousConstants`."""
-        rates = (2.0 * np.pi / self.period) * np.array(self.turns)
+        amplitudes = np.array(self.amplitudes)
         return LissajousConstants.make(
-            begin=self.begin, amplitudes=self.amplitudes, rates=rates, phases=self.phases
+            begin=self.begin,
+            rates=2.0 * np.pi / self.period * np.array(self.turns),
+            sines=amplitudes * np.cos(self.phases),
+            cosines=amplitudes * np.sin(self.phases),
         ).numbers
 
 

@@ -17,8 +17,6 @@ and are judged by the length of their steps.
 Rows that were recorded with noise are smoothed before by splines that stay within it.
 """
 
-from typing import Any, NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,27 +31,31 @@ ALLOWED = 0.25
 _ROUNDING = 1e-9
 """Part of the largest step below which a step or an excursion counts as none."""
 
+_CLOSED_WITHIN = 1e-9
+"""Distance between both ends of a closed path that is rounding [m, rad]."""
+
+_LINE = 0.02
+"""Twice the width over the length up to which rows are a line."""
+
 _MISSED = 1.2
 """Ratio of the squared distances that FITPACK has left to the noise from which on rows stay."""
 
 
-class Spline(NamedTuple):
-    """A spline's pieces, and the rows at which its acceleration jumps.
-
-    Attributes:
-        pieces: Coefficients of x^3, x^2, x and 1 of k columns, (p, 4, k).
-        jumps: Whether the acceleration jumps where a piece begins, (p,).
-    """
-
-    pieces: Array
-    jumps: Mask
-
-
-def spline_through(times: Array, rows: Array, closed: bool, jointly: bool = False) -> Spline:
+def spline_through(
+    times: Array, rows: Array, closed: bool, jointly: bool = False
+) -> tuple[Array, Mask]:
     """Fit a spline to rows (m, k) at times (m,) [s], at rest at its ends unless it is closed.
 
-    Whether a piece leaves the span of its rows is judged for each column, or jointly by the lengths
-    of the steps and excursions.
+    Args:
+        times: Times of the rows [s], increasing, (m,).
+        rows: The rows, (m, k); the last one of a closed path is the first one.
+        closed: Whether the path repeats.
+        jointly: Whether a piece leaves the span of its rows is judged by the lengths of steps and
+            excursions (m, k), and not in each column by itself.
+
+    Returns:
+        Coefficients of x^3, x^2, x and 1 of the pieces, (m - 1, 4, k), x being the time since the
+        piece began; and whether the acceleration jumps at its beginning, (m - 1,).
     """
     from scipy.interpolate import CubicHermiteSpline, PchipInterpolator  # 0.3 s for those who do
 
@@ -86,7 +88,7 @@ def spline_through(times: Array, rows: Array, closed: bool, jointly: bool = Fals
             break
         offending = found
     jumps = exchanged.any(axis=1) & ~(pauses & np.roll(pauses, 1)) & ~at_rest.any(axis=1)
-    return Spline(pieces[:, :count].swapaxes(0, 1), jumps[:count])
+    return pieces[:, :count].swapaxes(0, 1), jumps[:count]
 
 
 def _sizes(values: Array, jointly: bool) -> Array:
@@ -131,27 +133,50 @@ def _excursions(pieces: Array, lengths: Array) -> Array:
     return np.asarray(beyond.max(axis=0))
 
 
-def smoothed(times: Array, rows: Array, noise: float, closed: bool) -> Array:
+def check_noise(argument: str, rows: Array, noise: float) -> None:
+    """Refuse a noise of which smoothing would make a point or a line of rows (m, k) that are none.
+
+    The length and the width of the rows are their largest and their second standard deviation along
+    principal axes. Noise that is as large as the length leaves a point, noise that is twice the
+    width a line; noise of that size would have made them longer and wider. Rows that are all equal
+    pass, and so do those that are a line already, with a width below a hundredth of the length.
+
+    Raises:
+        InvalidInputError: The noise is that large. The message has length and width.
+    """
+    deviations = rows - rows.mean(axis=0)
+    length, width = np.linalg.svd(deviations, compute_uv=False)[:2] / np.sqrt(len(rows))
+    is_point = noise >= length and np.ptp(rows, axis=0).any()
+    if is_point or noise > 2.0 * width > _LINE * length:
+        problem = (
+            f"{noise:g} would smooth the path to a {'point' if is_point else 'line'}: its rows "
+            f"have standard deviations of {length:.2g} and {width:.2g} along and across it"
+        )
+        raise InvalidInputError(argument, problem, noise)
+
+
+def smoothed(name: str, times: Array, rows: Array, noise: float, closed: bool) -> Array:
     """Smooth rows (m, k) at times from 0 (m,) [s] whose noise has this standard deviation.
 
     Each column's spline is FITPACK's, with as few knots and as small jumps of the third derivative
     as squared distances of noise^2 a row allow; a row counts by the time that it stands for. The
     spline is periodic: it goes an open path to and fro, which is at rest at both ends.
-    (`scipy.interpolate.make_splrep` has no periodic splines.)
+    (`scipy.interpolate.make_splrep` has no periodic splines.) Fewer than three rows, or four of a
+    closed path, stay as they are.
 
     Raises:
         InvalidInputError: The first and the last row of a closed path are not equal up to noise.
     """
-    if noise == 0.0 or len(times) < 4 - (not closed):
+    if closed and np.abs(rows[-1] - rows[0]).max() > max(_CLOSED_WITHIN, 6.0 * noise):
+        problem = "the last row of a closed path must be the first one, up to the noise"
+        raise InvalidInputError(name, problem, rows)
+    if noise == 0.0 or len(times) < 3:
         return rows
     if not closed:
         there_and_back = np.vstack([rows, rows[-2::-1]])
         again = np.append(times, 2.0 * times[-1] - times[-2::-1])
-        both = smoothed(again, there_and_back, noise, True)
+        both = smoothed(name, again, there_and_back, noise, True)
         return 0.5 * (both[: len(times)] + both[: len(times) - 2 : -1])
-    if np.abs(rows[-1] - rows[0]).max() > 6.0 * noise:
-        problem = "the last row of a closed path must be the first one, up to the noise"
-        raise InvalidInputError("noise", problem, noise)
     from scipy.interpolate import splev, splrep
 
     period = rows.copy()
@@ -160,7 +185,7 @@ def smoothed(times: Array, rows: Array, noise: float, closed: bool) -> Array:
     spans = steps + np.roll(steps, 1)
     weights = np.sqrt(np.append(spans, spans[0]) / spans.mean())
     bound = steps.size * noise**2
-    for column in period.T:
+    for column in period.T if steps.size > 2 else ():
         spline, left, *_ = splrep(
             times, column, weights, s=bound, per=True, full_output=True, quiet=True
         )
@@ -168,12 +193,3 @@ def smoothed(times: Array, rows: Array, noise: float, closed: bool) -> Array:
             column[:] = splev(times, spline)
     period[-1] = period[0]
     return period
-
-
-def smoothed_turns(times: Array, turns: Any, noise: float, closed: bool) -> Any:
-    """Smooth orientations, a `Rotation` of m, of this standard deviation [rad]; see `smoothed`."""
-    from scipy.spatial.transform import Rotation
-
-    # A turn by a small angle moves an entry of the matrix by at most that angle.
-    rows = smoothed(times, turns.as_matrix().reshape(-1, 9), noise, closed)
-    return Rotation.from_matrix(rows.reshape(-1, 3, 3))

@@ -14,21 +14,10 @@ from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import sin_cos
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Reference, SoftStart, soft_clock
-from iiwa_dnn.references.rotations import column_of, combined, scaled, triple, turn_target
-from iiwa_dnn.references.shapes import (
-    Circle,
-    FixedPose,
-    Heart,
-    Line,
-    Lissajous,
-    axis,
-    circle_path,
-    heart_path,
-    line_path,
-    lissajous_path,
-)
+from iiwa_dnn.references.rotations import column_of, combined, triple, turn_about, turn_target
+from iiwa_dnn.references.shapes import Circle, fixed_path, heart_path, lissajous_path
 from iiwa_dnn.references.targets import TargetData
-from iiwa_dnn.references.waypoints import Waypoints, waypoints_path
+from iiwa_dnn.references.waypoints import waypoints_path
 
 TILT = math.radians(20.0)
 
@@ -41,13 +30,6 @@ class ConeConstants(Record):
     rate: float
 
 
-def _acute(argument: str, angle: float) -> float:
-    """Return an angle between 0 and pi / 2, or raise InvalidInputError."""
-    if not 0.0 < positive(argument, angle) < 0.5 * math.pi:
-        raise InvalidInputError(argument, f"must be below pi / 2, not {angle}", angle)
-    return float(angle)
-
-
 @compiled
 def cone_path(t: float, constants: Array, target: TargetData) -> None:
     """Turn a target along `Cone`."""
@@ -55,14 +37,14 @@ def cone_path(t: float, constants: Array, target: TargetData) -> None:
     inner, pace = soft_clock(t, own.begin)
     rate = own.rate * pace
     p = own.rate * inner
-    turn_target(target, scaled(-own.angle, column_of(target.rotation, 0)), (0.0, 0.0, 0.0))
+    turn_about(target, column_of(target.rotation, 0), -own.angle, 0.0)
     # The tool's x and y axes where its z axis is the cone's; the tilt to the start is about x.
     u = column_of(target.rotation, 0)
     v = column_of(target.rotation, 1)
     sine, cosine = sin_cos(p)
-    tilt = combined(own.angle * cosine, u, own.angle * sine, v)
-    speed = own.angle * rate
-    turn_target(target, tilt, combined(speed * cosine, v, -speed * sine, u))
+    half, w = sin_cos(0.5 * own.angle)
+    tilt = combined(half * cosine, u, half * sine, v)
+    turn_target(target, w, tilt, 0.0, combined(half * rate * cosine, v, -half * rate * sine, u))
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +59,7 @@ class Cone(SoftStart):
     The tool does not spin about its own axis.
 
     Attributes:
-        angle: Angle between the cone's axis and its side, below pi / 2 [rad].
+        angle: Angle between the cone's axis and its side [rad].
         period: Time to go round once [s].
         begin: Length of the soft start [s], see `SoftStart`.
 
@@ -86,7 +68,7 @@ class Cone(SoftStart):
     """
 
     path: ClassVar[Any] = staticmethod(cone_path)
-    _checks: ClassVar[Checks] = {"angle": _acute, "period": positive}
+    _checks: ClassVar[Checks] = {"angle": positive, "period": positive}
     angle: float = TILT
     period: float = 10.0
 
@@ -98,18 +80,24 @@ class Cone(SoftStart):
 
 
 class Along(IntEnum):
-    """Paths that a tool can tilt along."""
+    """Paths that a tool can tilt along, by their functions."""
 
-    STILL = 0
+    FIXED = 0
     HEART = 1
-    CIRCLE = 2
-    LINE = 3
-    LISSAJOUS = 4
-    WAYPOINTS = 5
+    LISSAJOUS = 2
+    WAYPOINTS = 3
 
 
-_ALONG = (FixedPose, Heart, Circle, Line, Lissajous, Waypoints)
-"""Classes of these paths, in the order of `Along`."""
+_ALONG = (fixed_path, heart_path, lissajous_path, waypoints_path)
+"""Functions of these paths, in the order of `Along`."""
+
+
+def _compiled_path(argument: str, value: Any) -> Reference:
+    """Return a path that a tool can tilt along; refuse any other value."""
+    if not isinstance(value, Reference) or value.compiled not in _ALONG:
+        problem = "must be one of FixedPose, Heart, Circle, Line, Lissajous, Waypoints"
+        raise InvalidInputError(argument, problem, value)
+    return value
 
 
 class TiltingConstants(Record):
@@ -131,10 +119,6 @@ def tilting_path(t: float, constants: Array, target: TargetData) -> None:
     inner, pace = soft_clock(t, own.begin)
     if kind == Along.HEART:
         heart_path(inner, along, target)
-    elif kind == Along.CIRCLE:
-        circle_path(inner, along, target)
-    elif kind == Along.LINE:
-        line_path(inner, along, target)
     elif kind == Along.LISSAJOUS:
         lissajous_path(inner, along, target)
     elif kind == Along.WAYPOINTS:
@@ -142,11 +126,9 @@ def tilting_path(t: float, constants: Array, target: TargetData) -> None:
     for i in range(3):
         target.linear_velocity[i] *= pace
         target.angular_velocity[i] *= pace
-    about = triple(own.axis)
     sine, cosine = sin_cos(own.rate * inner)
-    tilt = own.angle * sine
-    speed = own.angle * (own.rate * pace) * cosine
-    turn_target(target, scaled(tilt, about), scaled(speed, about))
+    rate = own.angle * own.rate * pace * cosine
+    turn_about(target, triple(own.axis), own.angle * sine, rate)
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,27 +146,23 @@ class Tilting(SoftStart):
         angle: Largest tilt to either side [rad].
         axis: Axis in the world's frame; its length does not matter.
         turns: Whole number of tilts to both sides, in a round on the path.
-        begin: Length of the soft start of the path and the tilt [s], in place of the path's own;
-            by default that one, if the path has one, and otherwise as for `SoftStart`.
+        begin: Length of the soft start of path and tilt [s], in place of the path's own.
 
     Raises:
         InvalidInputError: If a parameter is out of range.
     """
 
     path: ClassVar[Any] = staticmethod(tilting_path)
-    _checks: ClassVar[Checks] = {"angle": _acute, "axis": axis, "turns": partial(integer, least=1)}
+    _checks: ClassVar[Checks] = {
+        "along": _compiled_path,
+        "angle": positive,
+        "axis": direction,
+        "turns": partial(integer, least=1),
+    }
     along: Reference = field(default_factory=Circle)
     angle: float = TILT
     axis: Vector3 = (1.0, 0.0, 0.0)
     turns: int = 1
-
-    def __post_init__(self) -> None:
-        if type(self.along) not in _ALONG:
-            problem = f"must be one of {', '.join(kind.__name__ for kind in _ALONG)}"
-            raise InvalidInputError("along", problem, self.along)
-        if self.begin is None:
-            self._set(begin=getattr(self.along, "begin", None))
-        super().__post_init__()
 
     @cached_property
     def constants(self) -> Array:
@@ -192,11 +170,11 @@ class Tilting(SoftStart):
         # One clock for both.
         along = replace(self.along, begin=0.0) if isinstance(self.along, SoftStart) else self.along
         own = TiltingConstants.make(
-            along=_ALONG.index(type(self.along)),
+            along=_ALONG.index(self.along.compiled),
             begin=self.begin,
             angle=self.angle,
             rate=2.0 * np.pi * self.turns / self._round,
-            axis=direction("axis", self.axis),
+            axis=self.axis,
         )
         return np.append(own.numbers, along.constants)
 

@@ -30,8 +30,8 @@ from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.references.base import Reference
-from iiwa_dnn.references.rotations import column_of, combined, cross, dot, triple
-from iiwa_dnn.references.splines import Spline, smoothed, smoothed_turns, spline_through
+from iiwa_dnn.references.rotations import triple, turn_target
+from iiwa_dnn.references.splines import check_noise, smoothed, spline_through
 from iiwa_dnn.references.targets import Target, TargetData
 
 Ends = Literal["clamped", "closed"]
@@ -40,9 +40,6 @@ _COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
 
 SLOW = 1e-3
 """Speed [m/s, rad/s] of a path below which its times are likely not in seconds."""
-
-_CLOSED_WITHIN = 1e-9
-"""Distance between both ends of a closed path that is rounding [m, rad]."""
 
 _UNIT_WITHIN = 0.01
 """Difference of a quaternion's norm from 1 that is forgiven: rounding to few digits."""
@@ -89,24 +86,6 @@ def _piece(pieces: Matrix, t: float) -> int:
 
 
 @compiled
-def turn_by_quaternion(target: TargetData, pose: PoseNumbers, rate: PoseNumbers) -> None:
-    """Turn a target at rest by a quaternion with a rate of change, neither of length 1."""
-    w = pose.scalar
-    u = triple(pose.vector)
-    scale = 2.0 / (w * w + dot(u, u))
-    for j in range(3):
-        column = column_of(target.rotation, j)
-        once = cross(u, column)
-        turned = combined(1.0, column, scale, combined(w, once, 1.0, cross(u, once)))
-        for i in range(3):
-            target.rotation[i, j] = turned[i]
-    change = triple(rate.vector)
-    spin = combined(1.0, cross(u, change), 1.0, combined(w, change, -rate.scalar, u))
-    for i in range(3):
-        target.angular_velocity[i] += scale * spin[i]
-
-
-@compiled
 def waypoints_path(t: float, constants: Array, target: TargetData) -> None:
     """Move a target along `Waypoints`."""
     own = WaypointsConstants.of(constants)
@@ -128,7 +107,7 @@ def waypoints_path(t: float, constants: Array, target: TargetData) -> None:
     for i in range(3):
         target.position[i] += pose.move[i]
         target.linear_velocity[i] += rate.move[i]
-    turn_by_quaternion(target, pose, rate)
+    turn_target(target, pose.scalar, triple(pose.vector), rate.scalar, triple(rate.vector))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -153,17 +132,16 @@ class Waypoints(Reference):
             point must be the first one, and m >= 3.
         quaternions: Orientations w, x, y, z of the poses, of norm 1, shape (m, 4), or None. Either
             sign will do; neighbours are less than half a turn apart.
-        noise: Standard deviation of recorded points along each axis [m]. Above 0 the path goes
-            through smoothed rows, and a warning says what that has moved; the first and the last
-            row of a closed path are then equal up to noise.
-        turn_noise: The same of the orientations [rad]; by default as many as `noise` has metres,
-            as of an arm a metre long.
-        jumps: Numbers of the rows at which the acceleration jumps, from 0, shape (k,).
-        moved: Distances that smoothing has moved the points by [m], shape (m,).
-        turned: Angles that smoothing has turned the orientations by [rad], shape (m,).
+        noise: Standard deviation of the noise in recorded points along each axis [m]. Above 0 the
+            path goes through smoothed rows, and a warning says how far these are from the points;
+            the first and the last row of a closed path are then equal up to the noise.
+        turn_noise: Standard deviation of the noise in the orientations about each axis [rad]; None
+            takes the number of `noise`, as for an arm that is a metre long.
+        jumps: Indices of the rows at which the acceleration jumps, (k,).
 
     Raises:
-        InvalidInputError: If a parameter is not as said above.
+        InvalidInputError: If a parameter is not as said above; or a noise covers the path, of which
+            smoothing would leave a point or a line (`iiwa_dnn.references.splines.check_noise`).
     """
 
     path: ClassVar[Any] = staticmethod(waypoints_path)
@@ -179,94 +157,92 @@ class Waypoints(Reference):
     noise: float = 0.0
     turn_noise: float | None = None
     jumps: NDArray[np.intp] = field(init=False)
-    moved: Array = field(init=False)
-    turned: Array = field(init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._check_rows()
-        knots = self.times - self.times[0]
         closed = self.ends == "closed"
-        points = smoothed(knots, self.points, self.noise, closed)
-        if closed and np.abs(points[-1] - points[0]).max() > _CLOSED_WITHIN:
-            problem = "the last one of a closed path must be the first one"
-            raise InvalidInputError("points", problem, self.points)
-        moves = spline_through(knots, points - points[0], closed)
-        turns = np.zeros((*moves.pieces.shape[:2], 4))
+        times = finite_array("times", self.times, (-1,))
+        least = 3 if closed else 2
+        if len(times) < least:
+            raise InvalidInputError("times", f"at least {least} points are needed", times)
+        for row in np.flatnonzero(np.diff(times) <= 0.0) + 1:
+            problem = f"row {row} must be above {times[row - 1]:g} s, not at {times[row]:g} s"
+            raise InvalidInputError("times", problem, times)
+        points = finite_array("points", self.points, (len(times), 3))
+        self._set(times=times, points=points)
+        check_noise("noise", points, self.noise)
+        knots = times - times[0]
+        rows = smoothed("points", knots, points, self.noise, closed)
+        remarks = _displacement("moved", rows - points, "mm")
+        moves, jumps = spline_through(knots, rows - rows[0], closed)
+        count = len(moves)
+        turns: Array = np.zeros((count, 4, 4))
         turns[:, -1, 0] = 1.0
-        jumps = moves.jumps
         if self.quaternions is not None:
-            poses = self._poses(knots, self.quaternions)
-            self._set(base=read_only(Target(points[0], poses[0].as_matrix()).data))
-            turns, jumping = _turns(
-                knots, (poses * poses[0].inv()).as_quat()[:, [3, 0, 1, 2]], closed
-            )
-            jumps = jumps | jumping
-        coefficients = np.concatenate([turns[..., :1], moves.pieces, turns[..., 1:]], axis=2)
-        pieces = np.column_stack([knots[:-1], coefficients.reshape(len(turns), -1)])
+            turns, turn_jumps, remark = self._turn(knots, self.quaternions, rows[0])
+            jumps = jumps | turn_jumps[:count]
+            remarks += remark
+        coefficients = np.concatenate([turns[:count, :, :1], moves, turns[:count, :, 1:]], axis=2)
+        pieces = np.column_stack([knots[:-1], coefficients.reshape(count, -1)])
         own = WaypointsConstants.make(
             period=self.period, duration=self.duration, pieces=pieces.ravel()
         )
-        self._set(
-            constants=own.numbers,
-            jumps=np.flatnonzero(jumps),
-            moved=read_only(np.linalg.norm(points - self.points, axis=1)),
-        )
-        for remark in self._remarks():
-            warnings.warn(remark, stacklevel=3)  # of the line that makes the path
+        self._set(constants=own.numbers, jumps=np.flatnonzero(jumps))
+        if jumped := len(self.jumps):
+            first = ", ".join(f"{t:.4g}" for t in times[self.jumps][:5])
+            remarks.append(
+                f"the acceleration jumps at {jumped} of {len(times)} rows (at {first}"
+                f"{', ...' * (jumped > 5)} s): a cubic spline would leave the rows"
+                f"{'; noise= smooths a recording' * (jumped > 5)}"
+            )
+        for message in remarks:
+            warnings.warn(message, stacklevel=3)  # of the line that makes the path
 
-    def _check_rows(self) -> None:
-        """Check all parameters but the quaternions; raises InvalidInputError."""
-        times = finite_array("times", self.times, (-1,))
-        self._set(times=times, points=finite_array("points", self.points, (len(times), 3)))
-        least = 3 if self.ends == "closed" else 2
-        if len(times) < least:
-            raise InvalidInputError("times", f"at least {least} points are needed", times)
-        for row in np.flatnonzero(times[1:] <= times[:-1]) + 1:
-            problem = f"row {row} must be above {times[row - 1]:g} s, not at {times[row]:g} s"
-            raise InvalidInputError("times", problem, times)
-        turn_noise = self.noise if self.turn_noise is None else self.turn_noise
-        self._set(turn_noise=turn_noise, turned=read_only(np.zeros(len(times))))
+    def _turn(
+        self, knots: Array, quaternions: Array, start: Array
+    ) -> tuple[Array, NDArray[np.bool_], list[str]]:
+        """Check the quaternions, fit their spline, and set the pose at the start.
 
-    def _poses(self, knots: Array, quaternions: Array) -> Any:
-        """Check the quaternions, and return the orientations, smoothed if there is noise."""
+        Args:
+            knots: Times since the first row [s], (m,).
+            quaternions: Orientations w, x, y, z, (m, 4).
+            start: Position at the start [m], (3,).
+
+        Returns:
+            Pieces and jumps by `spline_through` of the quaternions relative to the orientation at
+            the start, m - 1 pieces or twice as many; and the report of the smoothing, if any.
+        """
         from scipy.spatial.transform import Rotation
 
-        quaternions = finite_array("quaternions", quaternions, (len(knots), 4))
-        norms = np.linalg.norm(quaternions, axis=1)
+        given = finite_array("quaternions", quaternions, (len(knots), 4))
+        self._set(quaternions=given)
+        norms = np.linalg.norm(given, axis=1)
         for row in np.flatnonzero(np.abs(norms - 1.0) > _UNIT_WITHIN):
             problem = f"row {row} must have norm 1, not {norms[row]:.3g}"
-            raise InvalidInputError("quaternions", problem, quaternions)
-        self._set(quaternions=quaternions)
-        turns = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
+            raise InvalidInputError("quaternions", problem, given)
+        turns = Rotation.from_quat(given[:, [1, 2, 3, 0]])
         half = (turns[1:] * turns[:-1].inv()).magnitude() > np.pi - 1e-6
         for row in np.flatnonzero(half) + 1:
             problem = f"row {row} is half a turn from the one before"
-            raise InvalidInputError("quaternions", problem, quaternions)
-        if self.turn_noise:
-            given = turns
-            turns = smoothed_turns(knots, given, self.turn_noise, self.ends == "closed")
-            self._set(turned=read_only((turns * given.inv()).magnitude()))
-        if self.ends == "closed" and (turns[-1] * turns[0].inv()).magnitude() > _CLOSED_WITHIN:
-            problem = "the last one of a closed path must be the first one"
-            raise InvalidInputError("quaternions", problem, quaternions)
-        return turns
-
-    def _remarks(self) -> Iterator[str]:
-        """Report the displacement by smoothing, and rows where the acceleration jumps."""
-        for done, moved, unit in (("moved", self.moved, "mm"), ("turned", self.turned, "mrad")):
-            if moved.any():
-                yield (
-                    f"smoothing has {done} the rows by {1e3 * np.sqrt(np.mean(moved**2)):.3g} "
-                    f"{unit} (root of the mean square) and at most {1e3 * moved.max():.3g} {unit}"
-                )
-        if count := len(self.jumps):
-            first = ", ".join(f"{t:.4g}" for t in self.times[self.jumps][:5])
-            yield (
-                f"the acceleration jumps at {count} of {len(self.times)} rows (at {first}"
-                f"{', ...' * (count > 5)} s): a cubic spline would leave the rows"
-                f"{'; noise= smooths a recording' * (count > 5)}"
-            )
+            raise InvalidInputError("quaternions", problem, given)
+        noise = self.noise
+        if self.turn_noise is not None:
+            noise = self.turn_noise
+            check_noise("turn_noise", (turns * turns.mean().inv()).as_rotvec(), noise)
+        # A turn by a small angle moves an entry of the matrix by at most that angle.
+        rows = turns.as_matrix().reshape(-1, 9)
+        rows = smoothed("quaternions", knots, rows, noise, self.ends == "closed")
+        smooth = Rotation.from_matrix(rows.reshape(-1, 3, 3)) if noise else turns
+        remarks = _displacement("turned", (smooth * turns.inv()).as_rotvec(), "mrad")
+        self._set(base=read_only(Target(start, smooth[0].as_matrix()).data))
+        relative = (smooth * smooth[0].inv()).as_quat()[:, [3, 0, 1, 2]]
+        cosines = (relative[1:] * relative[:-1]).sum(axis=1)  # of half the angles between them
+        relative *= np.cumprod(np.append(1.0, np.sign(cosines)))[:, np.newaxis]
+        if self.ends == "closed" and relative[-1] @ relative[0] < 0.0:
+            # A whole turn: it closes after another round.
+            knots = np.append(knots, knots[-1] + knots[1:])
+            relative = np.vstack([relative, -relative[1:]])
+        return *spline_through(knots, relative, self.ends == "closed", jointly=True), remarks
 
     @classmethod
     def from_csv(
@@ -328,16 +304,15 @@ class Waypoints(Reference):
         return float(self.times[-1] - self.times[0])
 
 
-def _turns(knots: Array, quaternions: Array, closed: bool) -> Spline:
-    """Fit a spline to quaternions w, x, y, z (m, 4) of any sign, neighbours with acute angles."""
-    products = (quaternions[1:] * quaternions[:-1]).sum(axis=1)
-    rows = quaternions * np.cumprod(np.append(1.0, np.sign(products)))[:, np.newaxis]
-    times = knots
-    if closed and rows[-1] @ rows[0] < 0.0:  # a whole turn: it closes after another round
-        times = np.append(knots, knots[-1] + knots[1:])
-        rows = np.vstack([rows, -rows[1:]])
-    spline = spline_through(times, rows, closed, jointly=True)
-    return Spline(spline.pieces[: len(knots) - 1], spline.jumps[: len(knots) - 1])
+def _displacement(done: str, changes: Array, unit: str) -> list[str]:
+    """Report changes of rows (m, k) [m, rad] by smoothing, in thousandths; nothing if all are 0."""
+    sizes = 1e3 * np.linalg.norm(changes, axis=1)
+    if not sizes.max() > 1e-6:  # rounding
+        return []
+    return [
+        f"smoothing has {done} the rows by {np.sqrt(np.mean(sizes**2)):.3g} {unit} (root of the "
+        f"mean square) and at most {sizes.max():.3g} {unit}"
+    ]
 
 
 def _read(path: str | os.PathLike[str]) -> tuple[Array, list[str]]:

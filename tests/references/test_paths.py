@@ -208,7 +208,8 @@ class Nodding(d.Heart):
 
     def move(self, t: float, target: NDArray[np.float64]) -> None:
         super().move(t, target)
-        rotations.turn_target(target, (0.2 * np.sin(t), 0.0, 0.0), (0.2 * np.cos(t), 0.0, 0.0))
+        target.rotation = pin.exp3(np.array([0.2 * np.sin(t), 0.0, 0.0])) @ target.rotation
+        target.angular_velocity += [0.2 * np.cos(t), 0.0, 0.0]
 
 
 def test_a_path_in_python_turns_the_anchors_orientation() -> None:
@@ -236,7 +237,7 @@ REFUSED = [
     (d.Circle, {"radius": -0.1}, "radius"),
     (d.Circle, {"normal": (0, 0, 0)}, "normal"),
     (d.Lissajous, {"turns": (0.5, 1, 1)}, "turns"),
-    (d.Cone, {"angle": 1.6}, "angle"),
+    (d.Cone, {"angle": 0.0}, "angle"),
     (d.Tilting, {"turns": 0}, "turns"),
     (d.Tilting, {"begin": -1.0}, "begin"),
     (d.Lissajous, {"begin": math.inf}, "begin"),
@@ -255,6 +256,8 @@ REFUSED = [
     (d.Waypoints, {"times": [0, 1], "points": np.zeros((2, 3)), "ends": "closed"}, "times"),
     (d.Waypoints, TURNED | {"noise": -1.0}, "noise"),
     (d.Waypoints, TURNED | {"turn_noise": math.nan}, "turn_noise"),
+    (d.Waypoints, TURNED | {"noise": 0.2}, "noise"),  # more than the points spread
+    (d.Waypoints, TURNED | {"turn_noise": 1.5}, "turn_noise"),
     (d.Waypoints, TURNED | {"quaternions": QUATERNIONS[:3]}, "quaternions"),
     (d.Waypoints, TURNED | {"quaternions": np.eye(4)}, "quaternions"),  # half a turn apart
     (d.Waypoints, TURNED | {"quaternions": QUATERNIONS[[0, 1, 2, 2]]}, "quaternions"),
