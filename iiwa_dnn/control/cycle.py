@@ -190,8 +190,8 @@ class ControlLayout:
         if program.rate_limits is not None:
             check_ranges(yielding.limits, 1.0 / (longest or dt))
         if longest is not None:
-            for constants in program.constants_of(JointLimits):
-                limits = PositionConstants.of(constants)
+            for k in program.places_of(JointLimits):
+                limits = PositionConstants.of(program.constants_of(k))
                 limits.gain = min(limits.gain, 1.0 / longest)
 
 

@@ -96,7 +96,7 @@ def setup_warnings(
             f"in continuous mode the rows of {', '.join(lagging)} hold where the network has "
             "converged, not on its way: only bounds of the joints are kept at every step"
         )
-    if program.constants_of(CollisionAvoidance) and (links := unwatched_links(robot)):
+    if program.places_of(CollisionAvoidance) and (links := unwatched_links(robot)):
         yield unwatched(links)
     yield from pair_warnings(program, start, t)
 

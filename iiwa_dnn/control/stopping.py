@@ -44,6 +44,7 @@ from iiwa_dnn.schemes.periods import Periods
 from iiwa_dnn.schemes.program import ProgramArrays, block_constants
 from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.scene import (
+    Body,
     Pair,
     contact_of,
     ends_of,
@@ -311,22 +312,22 @@ def keeps_distances(
     for k in range(len(scene.pairs)):
         contact = contact_of(scene, k, placed)
         pair = Pair.of(scene.pairs[k])
-        left = contact.distance - pair.speed * dt * M
+        left = contact.distance - Body.of(scene.bodies[pair.first]).speed * dt * M
         most = 0.0
         for i in range(n):
-            most += abs(scene.radii[k, i]) * travel[i]
+            most += abs(pair.radii[i]) * travel[i]
         own = least[scene.head.first + k]
         kept = own if own != 0.0 else scene.head.least
         if left - most >= kept:
             continue
         change = np.inf
-        remainder = 0.5 * second_order(scene.support, scene.radii, k, travel)
+        remainder = 0.5 * second_order(pair, travel)
         ends = ends_of(scene, placed, pair.second)
         for at in range(2):
             end = ends[at]
             if pair.still == at + 1:
                 continue
-            x, coefficient = _along(motion, arrays.jacobian, scene.support, k, end, contact.normal)
+            x, coefficient = _along(motion, arrays.jacobian, pair, end, contact.normal)
             displacement = end_displacement(motion, x, coefficient, dt)
             change = min(change, height_of(end, contact) + min(displacement - remainder, 0.0))
         if left + change < min(kept, left):
@@ -336,14 +337,14 @@ def keeps_distances(
 
 @compiled
 def _along(
-    motion: Motion, jacobian: Matrix, support: Matrix, k: int, point: Vector3, normal: Vector3
+    motion: Motion, jacobian: Matrix, pair: Pair, point: Vector3, normal: Vector3
 ) -> tuple[float, float]:
-    """Compute first velocity and b along a normal (3,) of a point (3,) of pair k's second body."""
+    """Compute first velocity and b along a normal (3,) of a point (3,) of a pair's second body."""
     x = 0.0
     b = 0.0
     for j in range(motion.first.size):
-        if support[k, j] != 0.0:
-            rate = support[k, j] * rate_along(jacobian, j, point, normal)
+        if pair.support[j] != 0.0:
+            rate = pair.support[j] * rate_along(jacobian, j, point, normal)
             x += rate * motion.first[j]
             b += rate * motion.coefficient[j]
     return x, b

@@ -114,7 +114,7 @@ def controller_code(controller: Controller) -> dict[str, Any]:
     step = controller.control_layout
     robot = controller.robot
     program = step.program
-    refused: list[object] = [block.part for block in program.refreshed]
+    refused: list[object] = [program.parts[k] for k in program.refreshed]
     if not step.has_network:
         refused.append(controller.solver.network)
     if refused:

@@ -117,34 +117,35 @@ def _write_ends(
     step.least[scene.head.first + k] = kept
     least = min(kept, scene.head.least)
     gain = min(scene.head.gain, step.rate)
+    speed = Body.of(scene.bodies[pair.first]).speed
     travel = np.empty(step.q.size)
-    most = pair.speed - gain * (contact.distance - least - CLEARANCE)
+    most = speed - gain * (contact.distance - least - CLEARANCE)
     for j in range(step.q.size):
         travel[j] = abs(step.last[j]) / step.rate
-        most += abs(scene.radii[k, j]) * scene.dq_max[j]
+        most += abs(pair.radii[j]) * scene.dq_max[j]
     if most <= 0.0:
         return
     ends = ends_of(scene, placed, pair.second)
     is_point = Body.of(scene.bodies[pair.second]).half[2] == 0.0
-    eps = second_order(scene.support, scene.radii, k, travel)
+    eps = second_order(pair, travel)
     for at in range(1 if is_point else ENDS):
         if pair.still == at + 1:
             continue
         row = ENDS * k + at
         left = contact.distance + height_of(ends[at], contact) - least - CLEARANCE
-        limits[row] = gain * left - pair.speed
+        limits[row] = gain * left - speed
         fastest = 0.0
         for j in range(step.q.size):
-            if scene.support[k, j] != 0.0:
+            if pair.support[j] != 0.0:
                 rate = rate_along(step.jacobian, j, ends[at], contact.normal)
-                gradients[row, j] = -scene.support[k, j] * rate
+                gradients[row, j] = -pair.support[j] * rate
                 fastest += abs(rate) * scene.dq_max[j]
         slacks[row] = limits[row] - fastest
         limits[row] -= gain * eps
         if left < eps and step.rate < np.inf:
             limits[row] -= (step.rate - gain) * min(eps - left, eps)
         if least < scene.head.least:
-            limits[row] = max(limits[row], -pair.speed)
+            limits[row] = max(limits[row], -speed)
 
 
 @compiled

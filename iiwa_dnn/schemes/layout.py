@@ -6,7 +6,6 @@ Constants that change along a run are brought up to date before a step (`Program
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -18,35 +17,11 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.parts import Cost, Limit, Part, Task, answer_of, answer_size
+from iiwa_dnn.schemes.parts import Cost, Limit, Part, Task, answer_of, idle_arrays
 from iiwa_dnn.schemes.program import BlockKind, Column, ProgramArrays, ProgramSizes, assemble
 from iiwa_dnn.schemes.rate_limits import MotionLimits, merged
 from iiwa_dnn.schemes.scene import SceneHead
 from iiwa_dnn.schemes.step import Step, StepViews
-
-
-class Block(NamedTuple):
-    """Rows of one part; from `kind` on, a row of the table.
-
-    Attributes:
-        part: The part.
-        kind: What kind of part it is.
-        address: Address of its kernel.
-        first: Its first row among the program's equality or inequality rows.
-        rows: Number of its rows; none for a cost.
-        start: Beginning of its constants; those of a soft task are followed by its weight.
-        stop: Their end.
-        target: Index of the target of its frame.
-    """
-
-    part: Part
-    kind: BlockKind
-    address: int
-    first: int
-    rows: int
-    start: int
-    stop: int
-    target: int
 
 
 class ProgramLayout:
@@ -56,13 +31,14 @@ class ProgramLayout:
         robot: The robot.
         limits: The scheme's limits.
         tasks: Hard tasks, in the order of the equality rows.
-        blocks: The parts in the order costs, hard tasks, soft tasks, limits.
+        parts: The parts in the order costs, hard tasks, soft tasks, limits; acceleration and jerk
+            limits are one, the last.
         sizes: ``(n, m, p)`` of the programs.
         target_frames: Names of the frames that tasks track, in the order of the targets; the
             tip's if no task tracks one.
-        refreshed: Blocks of the parts whose constants change along a run.
+        refreshed: Indices of the parts whose constants change along a run.
         kinematics: The robot's, overwritten by each step.
-        table: What compiled code reads of the blocks, a row each, (parts, 7), by `Column`.
+        table: A row for each part, (parts, 7), by `Column`.
         constants: Numbers that compiled code reads, (k,).
         pairs: Names in words and least distance [m] of each watched pair.
         kinds: `LimitKind` of the lower and upper bounds in the last program of `qp_at`, (2, dof).
@@ -88,7 +64,8 @@ class ProgramLayout:
         self.tasks = [task for task in tasks if task.weight is None]
         soft = [task for task in tasks if task.weight is not None]
         n = robot.dof + slack
-        self.blocks: list[Block] = []
+        self.parts: list[Part] = []
+        self.table: IntMatrix = np.zeros((0, len(Column)), dtype=np.int64)
         self.constants: Vector = np.zeros(0)
         self._add(BlockKind.COST, costs, n)
         p = self._add(BlockKind.TASK, self.tasks, n)
@@ -97,31 +74,30 @@ class ProgramLayout:
         self.sizes = (n, m, p)
         self.kinds = np.zeros((2, robot.dof))
         self.pairs: list[tuple[str, float]] = []
-        for block in self.blocks:
-            if isinstance(block.part, CollisionAvoidance):
-                scene = self.constants[block.start : block.start + SceneHead.width()]
-                SceneHead.of(scene).first = len(self.pairs)
-                self.pairs += block.part.pairs(robot)
-        table = [block[1:] for block in self.blocks]
-        self.table: IntMatrix = np.array(table, dtype=np.int64).reshape(-1, len(Column))
-        self.refreshed = [block for block in self.blocks if block.part.refreshes]
+        for k, part in enumerate(self.parts):
+            if isinstance(part, CollisionAvoidance):
+                SceneHead.of(self.constants_of(k)[: SceneHead.width()]).first = len(self.pairs)
+                self.pairs += part.pairs(robot)
+        self.refreshed = [k for k, part in enumerate(self.parts) if part.refreshes]
         self.kinematics = Kinematics(robot, self._frames(), self.needs_inertia)
 
     def _add(self, kind: BlockKind, parts: Sequence[Part], n: int) -> int:
-        """Add the blocks of the parts of a kind in programs of n variables; count their rows."""
+        """Add parts of a kind to programs of n variables, and return the number of their rows."""
         robot = self.robot
         first = 0
         for part in parts:
             rows = part.row_count(robot)
             own: Vector = np.asarray(part.constants(robot))
             if part.copies:
-                own = np.zeros(answer_size(part, n, rows))
+                own = np.concatenate([*map(np.ravel, idle_arrays(part, n, rows).values())])
             name = part.frame_name(robot)
             target = self.target_frames.index(name) if name in self.target_frames else 0
             start = self.constants.size
             stop = start + own.size
             address = part.entry.address(part.kernel)
-            self.blocks.append(Block(part, kind, address, first, rows, start, stop, target))
+            self.parts.append(part)
+            row = (kind, address, first, rows, start, stop, target)
+            self.table = np.vstack([self.table, np.array(row, dtype=np.int64)])
             weight = [part.weight] if kind is BlockKind.SOFT_TASK and isinstance(part, Task) else []
             self.constants = np.concatenate([self.constants, own, np.array(weight)])
             first += rows
@@ -135,23 +111,17 @@ class ProgramLayout:
         return [*self.target_frames, *own, *further]
 
     @property
-    def parts(self) -> list[Part]:
-        """The parts, in the order of the blocks."""
-        return [block.part for block in self.blocks]
-
-    @property
     def rate_limits(self) -> MotionLimits | None:
         """Acceleration and jerk limits, if there are any."""
         return next((part for part in self.parts if isinstance(part, MotionLimits)), None)
 
-    def constants_of(self, kind: type[Part]) -> list[Vector]:
-        """Return the constants of each part of a kind, views."""
-        found = [self.blocks[k] for k in self.places_of(kind)]
-        return [self.constants[block.start : block.stop] for block in found]
+    def constants_of(self, k: int) -> Vector:
+        """Return the constants of part k, a view."""
+        return self.constants[self.table[k, Column.START] : self.table[k, Column.STOP]]
 
     def places_of(self, kind: type[Part]) -> list[int]:
-        """Return the numbers of the blocks of the parts of a kind."""
-        return [k for k, block in enumerate(self.blocks) if isinstance(block.part, kind)]
+        """Return the indices of the parts of a kind."""
+        return [k for k, part in enumerate(self.parts) if isinstance(part, kind)]
 
     @property
     def least(self) -> Vector:
@@ -161,7 +131,7 @@ class ProgramLayout:
     @property
     def reads_targets(self) -> bool:
         """Test whether `refresh` has to know the targets; obstacles that move do not."""
-        return any(not isinstance(block.part, CollisionAvoidance) for block in self.refreshed)
+        return any(not isinstance(self.parts[k], CollisionAvoidance) for k in self.refreshed)
 
     @property
     def needs_inertia(self) -> bool:
@@ -205,12 +175,13 @@ class ProgramLayout:
         """
         named = dict(zip(self.target_frames, map(Target.from_data, targets), strict=True))
         step = Step(self.robot, q, named, dt, t, last, self.kinematics)
-        for block in self.refreshed:
-            own = self.constants[block.start : block.stop]
-            if block.part.copies:
-                own[:] = answer_of(block.part, step, self.sizes[0], block.rows)
+        for k in self.refreshed:
+            part = self.parts[k]
+            own = self.constants_of(k)
+            if part.copies:
+                own[:] = answer_of(part, step, self.sizes[0], int(self.table[k, Column.ROWS]))
             else:
-                block.part.refresh(step, own)
+                part.refresh(step, own)
 
     def qp_at(
         self,

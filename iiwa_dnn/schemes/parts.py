@@ -15,7 +15,6 @@ A part may override a method in numpy instead. It is asked before each step, and
 of its kind, copies the answer out of the constants.
 """
 
-import math
 from dataclasses import fields
 from typing import Any, ClassVar, TypeVar
 
@@ -138,14 +137,18 @@ class Part(Checked):
         return {"name": type(self).__name__} | {name: getattr(self, name) for name in names}
 
 
-def answer_size(part: Part, n: int, rows: int) -> int:
-    """Return the length of `answer_of`."""
-    names = [name for pair in part._methods.values() for name in pair]
-    return sum(math.prod(_shape(name, n, rows)) for name in names)
+def idle_arrays(part: Part, n: int, rows: int) -> dict[str, Matrix]:
+    """Return the arrays of a part in a program of n variables by their names, without effect."""
+    shapes = {"P": (n, n), "A": (rows, n), "G": (rows, n), "b": (rows,), "h": (rows,)}
+    return {
+        name: np.full(shapes.get(name, (n,)), _IDLE.get(name, 0.0))
+        for names in part._methods.values()
+        for name in names
+    }
 
 
 def answer_of(part: Part, step: Step, n: int, rows: int) -> Vector:
-    """Return what a part's methods in numpy answer, as the kernel `copy` reads it, (k,).
+    """Return the answers of a part's methods in numpy, as the kernel `copy` reads them, (k,).
 
     Args:
         part: The part.
@@ -157,41 +160,32 @@ def answer_of(part: Part, step: Step, n: int, rows: int) -> Vector:
         InvalidInputError: An answer is no pair of arrays, has a wrong shape, is not finite
             where it has to be, or is a P that is not convex.
     """
-    arrays: dict[str, Matrix] = {}
+    arrays = idle_arrays(part, n, rows)
+    of_joints = idle_arrays(part, step.robot.dof, rows)
     for method, names in part._methods.items():
-        arrays |= _checked(part, getattr(part, method)(step), names, step.robot.dof, n, rows)
+        answer = getattr(part, method)(step)
+        for name, array in _named(part, names, answer).items():
+            known = of_joints if array.shape[-1] == step.robot.dof else arrays
+            shape = known[name].shape
+            if array.shape != shape:
+                problem = f"{name} has shape {array.shape}, not {shape}"
+                raise InvalidInputError(type(part).__name__, problem, array)
+            if not (np.isfinite(array) | (array == _IDLE.get(name, 0.0))).all():
+                kind = "NaN" if np.isnan(array).any() else "an infinite number"
+                raise InvalidInputError(type(part).__name__, f"{name} holds {kind}", array)
+            arrays[name][tuple(map(slice, shape))] = array
     part._check(arrays)
     return np.concatenate([array.ravel() for array in arrays.values()])
 
 
-def _checked(
-    part: Part, answer: Any, names: tuple[str, str], dof: int, n: int, rows: int
-) -> dict[str, Matrix]:
-    """Return both arrays of an answer by name, with all n variables."""
+def _named(part: Part, names: tuple[str, str], answer: Any) -> dict[str, Matrix]:
+    """Return both arrays of an answer by name; raises InvalidInputError if it is no such pair."""
     try:
         named = zip(names, answer, strict=True)
-        given = {name: np.atleast_1d(real_array(name, x)) for name, x in named}
+        return {name: np.atleast_1d(real_array(name, array)) for name, array in named}
     except (TypeError, ValueError) as error:
         problem = f"must return two arrays, {' and '.join(names)}, not {answer!r:.80}"
         raise InvalidInputError(type(part).__name__, problem, answer) from error
-    for name, array in given.items():
-        width = dof if array.shape[-1] == dof else n
-        shape = _shape(name, width, rows)
-        if array.shape != shape:
-            problem = f"{name} has shape {array.shape}, not {shape}"
-            raise InvalidInputError(type(part).__name__, problem, array)
-        if not (np.isfinite(array) | (array == _IDLE.get(name, 0.0))).all():
-            problem = f"{name} holds {'NaN' if np.isnan(array).any() else 'an infinite number'}"
-            raise InvalidInputError(type(part).__name__, problem, array)
-        given[name] = np.full(_shape(name, n, rows), _IDLE.get(name, 0.0))
-        given[name][tuple(map(slice, shape))] = array
-    return given
-
-
-def _shape(name: str, n: int, rows: int) -> tuple[int, ...]:
-    """Return the shape of an array of a part's program with n variables, by its name."""
-    shapes = {"P": (n, n), "A": (rows, n), "G": (rows, n), "b": (rows,), "h": (rows,)}
-    return shapes.get(name, (n,))
 
 
 @compiled

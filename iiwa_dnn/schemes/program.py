@@ -48,7 +48,17 @@ class BlockKind(IntEnum):
 
 
 class Column(IntEnum):
-    """Columns of the table of blocks; their meaning is that of the fields of `Block`."""
+    """Columns of the table of parts.
+
+    Members:
+        KIND: `BlockKind` of the part.
+        ADDRESS: Address of its kernel.
+        FIRST: Its first row among the program's equality or inequality rows.
+        ROWS: Number of its rows; 0 for a cost.
+        START: Beginning of its constants; those of a soft task are followed by its weight.
+        STOP: Their end.
+        TARGET: Index of the target of its frame.
+    """
 
     KIND = 0
     ADDRESS = 1

@@ -207,8 +207,7 @@ class MotionLimits(Limit):
             row = rates[limit.row - 2]
             np.minimum(row, limit.of(robot), out=row)
         for coupling in self.couplings * len(self.couplings):  # of chains too
-            (relation,) = coupling.relations(robot)
-            fractions = np.abs(relation.coefficients)
+            fractions = np.abs(coupling.constants(robot).coefficients)
             joints = np.flatnonzero(fractions)
             for i in joints:
                 others = joints[joints != i]

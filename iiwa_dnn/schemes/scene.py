@@ -21,7 +21,6 @@ displacement, and twice its remainder of second order in the joints', are at mos
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import astuple
 from typing import NamedTuple
 
 import numpy as np
@@ -60,6 +59,7 @@ class SceneHead(Record):
         gain: Largest rate at which a distance shrinks towards it [1/s].
         bodies: Number of bodies.
         pairs: Number of pairs.
+        pair_size: Length of a `Pair`.
         first: Number of pairs of the scenes before this one.
     """
 
@@ -67,42 +67,49 @@ class SceneHead(Record):
     gain: float
     bodies: int
     pairs: int
+    pair_size: int
     first: int
 
 
 class Body(Record):
-    """A box in a frame.
+    """A box with a radius, in a frame of the robot.
 
     Attributes:
-        frame: Index of the frame.
+        frame: Index of the frame; 0 is the world.
+        radius: Radius by which the box is grown [m].
+        speed: Speed [m/s].
         half: Half-extents [m]; a segment lies along the third axis.
         axes: The box's axes in the frame, one a row.
         center: Its centre in the frame [m].
     """
 
     frame: int
+    radius: float
+    speed: float
     half: Vector = part(3)
     axes: Matrix = part(3, 3)
     center: Vector = part(3)
 
 
 class Pair(Record):
-    """Two bodies that may meet.
+    """Two bodies that may meet, of a robot with n joints.
 
     Attributes:
-        speed: Bound on the speed of the first body [m/s].
         second: Index of the second body, a segment.
         first: Index of the first body, any box.
-        radius: Sum of both radii [m].
         still: 1 or 2 for the end of the segment that no joint moves towards or away from the first
             body, else 0.
+        support: For each joint 1 if it moves the second body alone, -1 if it moves the first alone,
+            else 0, (n,).
+        radii: For each joint the largest distance of the second body from its axis [m], -1 for a
+            prismatic joint, 0 for one that moves neither alone, (n,).
     """
 
-    speed: float
     second: int
     first: int
-    radius: float
     still: int
+    support: Vector = part()
+    radii: Vector = part()
 
 
 class SceneViews(NamedTuple):
@@ -111,20 +118,14 @@ class SceneViews(NamedTuple):
     Attributes:
         head: Settings of the scene.
         dq_max: Velocity limits of the joints [rad/s], (n,).
-        bodies: A `Body` in each row, (b, 16).
-        pairs: A `Pair` in each row, (k, 5).
-        support: For each pair and joint 1 if it moves the second body alone, -1 if it moves the
-            first alone, else 0, (k, n).
-        radii: For each pair and joint the largest distance of the second body from its axis [m], -1
-            for a prismatic joint, 0 for one that moves neither alone, (k, n).
+        bodies: A `Body` in each row, (b, 17).
+        pairs: A `Pair` in each row, (k, 3 + 2 n).
     """
 
     head: SceneHead
     dq_max: Vector
     bodies: Matrix
     pairs: Matrix
-    support: Matrix
-    radii: Matrix
 
 
 class Contact(NamedTuple):
@@ -148,7 +149,7 @@ class Scene(NamedTuple):
         robot: The robot, n joints.
         pairs: Names of the bodies of each pair: a link or an obstacle, and a link beside it.
         frames: Links whose placements are needed.
-        moving: Obstacles that move, each with the number of its body.
+        moving: Obstacles that move, each with the index of its body.
         constants: Numbers that compiled code sees through `scene_views`, (k,).
         left_out: Names of the bodies of each pair that is not watched, and the reason.
     """
@@ -161,11 +162,11 @@ class Scene(NamedTuple):
     left_out: tuple[tuple[str, str, str], ...]
 
     def move(self, constants: Vector, t: float) -> None:
-        """Bring the moving obstacles in a copy of `constants`, (k,), to a time [s]."""
-        resting = scene_views(self.constants, self.robot.dof).bodies
+        """Write the obstacles' places at a time [s] into a copy of `constants`, (k,)."""
+        begun = scene_views(self.constants, self.robot.dof).bodies
         moved = scene_views(constants, self.robot.dof).bodies
         for obstacle, k in self.moving:
-            Body.of(moved[k]).center = Body.of(resting[k]).center + obstacle.shift(t)
+            Body.of(moved[k]).center = Body.of(begun[k]).center + obstacle.shift(t)
 
     def distances(self, q: Matrix, t: Vector) -> Matrix:
         """Compute the distances of all pairs [m], (k, pairs), at q (k, n) [rad] and t (k,) [s]."""
@@ -187,16 +188,6 @@ class Scene(NamedTuple):
         return found.min(axis=1), found.argmin(axis=1)
 
 
-class _Body(NamedTuple):
-    """A box with a radius in a frame of the robot, 0 the world, where it may have a speed."""
-
-    name: str
-    frame: int
-    box: PlacedBox
-    radius: float
-    speed: float
-
-
 def make_scene(
     robot: Robot,
     obstacles: Sequence[Obstacle],
@@ -204,7 +195,7 @@ def make_scene(
     distances: tuple[float, float],
     left_out: Sequence[tuple[str, str]] = (),
 ) -> Scene:
-    """Lay the capsules of a robot, obstacles and their pairs out; among them, or not, of links.
+    """Lay out the capsules of a robot, obstacles, and the pairs of both that are watched.
 
     Args:
         robot: The robot.
@@ -223,53 +214,51 @@ def make_scene(
         name = robot.joint_names[int(np.argmax(robot.dq_max))]
         problem = f"must have a velocity limit on {name}, or no distance can be kept"
         raise InvalidInputError("robot", problem, robot)
-    bodies = _bodies(robot, obstacles)
-    links = len(bodies) - len(obstacles)
-    pairs = [*collision_model(robot).pairs(robot)] if self_collision else []
-    carried = [k for k in range(links) if robot.support[bodies[k].frame].any()]
-    pairs += itertools.product(range(links, len(bodies)), carried)
-    frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
-    rows, motions = _layout(robot, bodies, pairs)
-    moved = _moved_ends(robot, frames, _constants(robot, distances, bodies, rows, motions))
-    names = [(bodies[i].name, bodies[k].name) for i, k in pairs]
-    watched = moved.any(axis=1) & ~_are_given(names, left_out, bodies)
+    capsules = collision_model(robot).capsules
+    links = [each.link for each in capsules]
+    names = links + [f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)]
+    bodies = [
+        _body(robot.frame_id(each.link), box_around(each.a, each.b), each.radius, 0.0)
+        for each in capsules
+    ]
+    bodies += [_body(0, each.box, each.thickness, each.speed) for each in obstacles]
+    numbered = [*collision_model(robot).pairs(robot)] if self_collision else []
+    carried = [k for k in range(len(links)) if robot.support[bodies[k].frame].any()]
+    numbered += itertools.product(range(len(links), len(bodies)), carried)
+    rows = [_pair(robot, bodies, i, k) for i, k in numbered]
+    pairs = np.reshape(rows, (-1, Pair.width(robot.dof)))
+    frames = tuple(dict.fromkeys(links))
+    moved = _moved_ends(robot, frames, _constants(robot, distances, bodies, pairs))
+    for row, ends in zip(pairs, moved, strict=True):
+        Pair.of(row).still = 0 if ends.all() else 1 + ends[0]
+    for name in itertools.chain(*left_out):
+        if name not in names:
+            raise NotFoundError("link or obstacle", name, names)
+    named = [(names[i], names[k]) for i, k in numbered]
+    given = [pair in left_out or pair[::-1] in left_out for pair in named]
+    watched = moved.any(axis=1) & ~np.array(given, dtype=bool)
     if not watched.any():
         bare = unwatched_links(robot)
         reason = f"; {unwatched(bare)}" if bare else ""
         problem = f"there is no pair that could meet{reason}"
         raise InvalidInputError("obstacles", problem, obstacles)
-    still = np.where(moved.all(axis=1), 0, 1 + moved[:, 0])
-    for row, end in zip(rows, still, strict=True):
-        Pair.of(row).still = end
-    constants = _constants(robot, distances, bodies, rows[watched], motions[watched])
-    numbered = enumerate(obstacles, links)
-    moving = [(each, k) for k, each in numbered if each.speed]
     reasons = np.where(moved.any(axis=1), "given", "no joint moves it").tolist()
-    left = tuple((*names[at], reasons[at]) for at in np.flatnonzero(~watched))
-    return Scene(robot, [*itertools.compress(names, watched)], frames, moving, constants, left)
+    left = tuple((*named[at], reasons[at]) for at in np.flatnonzero(~watched))
+    constants = _constants(robot, distances, bodies, pairs[watched])
+    moving = [(each, k) for k, each in enumerate(obstacles, len(links)) if each.speed]
+    return Scene(robot, [*itertools.compress(named, watched)], frames, moving, constants, left)
 
 
-def _bodies(robot: Robot, obstacles: Sequence[Obstacle]) -> list[_Body]:
-    """Return the capsules of a robot's links, then the obstacles."""
-    bodies = [
-        _Body(link, robot.frame_id(link), box_around(a, b), radius, 0.0)
-        for link, a, b, radius in map(astuple, collision_model(robot).capsules)
-    ]
-    return bodies + [
-        _Body(f"{type(each).__name__} {number}", 0, each.box, each.thickness, each.speed)
-        for number, each in enumerate(obstacles, 1)
-    ]
-
-
-def _are_given(
-    names: list[tuple[str, str]], left_out: Sequence[tuple[str, str]], bodies: list[_Body]
-) -> NDArray[np.bool_]:
-    """Test which pairs of names are left out; raises NotFoundError if no body has a name."""
-    known = [body.name for body in bodies]
-    for name in itertools.chain(*left_out):
-        if name not in known:
-            raise NotFoundError("link or obstacle", name, known)
-    return np.array([pair in left_out or pair[::-1] in left_out for pair in names], dtype=bool)
+def _body(frame: int, box: PlacedBox, radius: float, speed: float) -> Body:
+    """Return the `Body` of a box in a frame, grown by a radius [m], with a speed [m/s]."""
+    return Body.make(
+        frame=frame,
+        radius=radius,
+        speed=speed,
+        half=box.half_extents,
+        axes=box.rotation.T,
+        center=box.center,
+    )
 
 
 def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArray[np.bool_]:
@@ -278,73 +267,40 @@ def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArr
     A body that moves by itself counts as moved, if any joint moves the other beside it.
     """
     scene = scene_views(constants, robot.dof)
+    pairs = Pair.of(scene.pairs)
     kinematics = Kinematics(robot, frames)
-    rates = np.zeros((len(scene.pairs), 2))
+    rates = np.zeros((len(pairs), 2))
     for q in robot.draw(np.random.default_rng(0), POSTURES):
         kinematics.update(q)
-        write_end_rates(constants, kinematics.jacobian, kinematics.placements, rates)
-    itself = [[Pair.of(row).speed > 0.0] for row in scene.pairs]
-    moved = (rates > UNMOVED) | np.array(itself, dtype=bool).reshape(-1, 1)
-    return np.array(moved & scene.support.any(axis=1, keepdims=True))
+        raise_end_rates(constants, kinematics.jacobian, kinematics.placements, rates)
+    alone = Body.of(scene.bodies[pairs.first]).speed > 0.0
+    supported = np.any(pairs.support, axis=1)
+    return np.array(((rates.T > UNMOVED) | alone) & supported).T
 
 
 def _constants(
-    robot: Robot,
-    distances: tuple[float, float],
-    bodies: list[_Body],
-    rows: Matrix,
-    motions: Matrix,
+    robot: Robot, distances: tuple[float, float], bodies: list[Body], pairs: Matrix
 ) -> Vector:
-    """Return `Scene.constants`, (k,), for bodies and the pairs of `_layout`."""
-    placed = [
-        Body.make(
-            frame=body.frame,
-            half=body.box.half_extents,
-            axes=body.box.rotation.T,
-            center=body.box.center,
-        )
-        for body in bodies
-    ]
+    """Return `Scene.constants`, (k,), for bodies and pairs (pairs, 3 + 2 n)."""
     least, gain = distances
-    head = SceneHead.make(least=least, gain=gain, bodies=len(bodies), pairs=len(rows), first=0)
-    parts = (head, robot.dq_max, placed, rows, motions[:, 0], motions[:, 1])
-    return np.concatenate([np.ravel(part) for part in parts])
+    count, size = pairs.shape
+    head = SceneHead.make(
+        least=least, gain=gain, bodies=len(bodies), pairs=count, pair_size=size, first=0
+    )
+    return np.concatenate([head, robot.dq_max, *bodies, pairs.ravel()])
 
 
-def _layout(
-    robot: Robot, bodies: list[_Body], pairs: list[tuple[int, int]]
-) -> tuple[Matrix, Matrix]:
-    """Return `SceneViews.pairs`, (k, 5), `support` and `radii`, (k, 2, n), of pairs of bodies."""
-    rows = [
-        Pair.make(
-            speed=bodies[i].speed,
-            second=k,
-            first=i,
-            radius=bodies[i].radius + bodies[k].radius,
-            still=0,
-        )
-        for i, k in pairs
-    ]
-    motions = [_motion(robot, bodies[i], bodies[k]) for i, k in pairs]
-    return np.reshape(rows, (-1, Pair.width())), np.reshape(motions, (-1, 2, robot.dof))
-
-
-def _motion(robot: Robot, first: _Body, second: _Body) -> Matrix:
-    """Find the joints that move the second body, a segment, beside the first one.
-
-    Returns:
-        Two rows, (2, n): 1 for each joint that moves the second body alone, -1 for each that moves
-        the first alone, else 0; and the largest distance of the segment from the axis of each joint
-        that moves it [m], -1 for a prismatic joint, 0 for the others.
-    """
+def _pair(robot: Robot, bodies: list[Body], i: int, k: int) -> Pair:
+    """Find the joints that move body k, a segment, beside body i, and how far it is from them."""
     model = robot.model
-    center, rotation, half = second.box
+    second = bodies[k]
     placement = model.frames[second.frame].placement
-    support = robot.support[second.frame] - robot.support[first.frame]
+    support = robot.support[second.frame] - robot.support[bodies[i].frame]
     radii = np.zeros(robot.dof)
     # From the second body to the base, and up to the first: nothing is farther than `reach` from
     # the joint in turn, and `offsets` lead from the joint before it.
-    offsets = np.array([placement.act(center + z * rotation[:, 2]) for z in (-half[2], half[2])])
+    half = second.half[2] * second.axes[2]
+    offsets = np.array([placement.act(second.center + end) for end in (-half, half)])
     reach = float(np.linalg.norm(offsets, axis=1).max())
     for j in np.flatnonzero(support > 0.0)[::-1].tolist():
         # The axis may be met anywhere along itself: only what is across it counts.
@@ -358,27 +314,21 @@ def _motion(robot: Robot, first: _Body, second: _Body) -> Matrix:
         radii[j] = reach
     slides = list(robot.slides)
     radii[slides] = np.where(support[slides], -1.0, 0.0)
-    return np.array([support, radii])
+    return Pair.make(second=k, first=i, still=0, support=support, radii=radii)
 
 
 @compiled
 def scene_views(constants: Vector, dof: int) -> SceneViews:
     """Make the views of a scene's constants (k,) for a robot of `dof` joints."""
-    at_limits = SceneHead.width()
-    head = SceneHead.of(constants[:at_limits])
-    bodies = head.bodies
-    pairs = head.pairs
-    at_bodies = at_limits + dof
-    at_pairs = at_bodies + Body.width() * bodies
-    at_support = at_pairs + Pair.width() * pairs
-    at_radii = at_support + dof * pairs
+    at_speeds = SceneHead.width()
+    head = SceneHead.of(constants[:at_speeds])
+    at_bodies = at_speeds + dof
+    at_pairs = at_bodies + Body.width() * head.bodies
     return SceneViews(
         head,
-        constants[at_limits:at_bodies],
-        constants[at_bodies:at_pairs].reshape(bodies, Body.width()),
-        constants[at_pairs:at_support].reshape(pairs, Pair.width()),
-        constants[at_support:at_radii].reshape(pairs, dof),
-        constants[at_radii : at_radii + dof * pairs].reshape(pairs, dof),
+        constants[at_speeds:at_bodies],
+        constants[at_bodies:at_pairs].reshape(head.bodies, Body.width()),
+        constants[at_pairs:].reshape(head.pairs, head.pair_size),
     )
 
 
@@ -412,8 +362,9 @@ def ends_of(scene: SceneViews, placed: Matrix, body: int) -> tuple[Vector3, Vect
 def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
     """Compute the contact of pair k, for the placements of all bodies (b, 12)."""
     pair = Pair.of(scene.pairs[k])
+    first = Body.of(scene.bodies[pair.first])
     base = Placement.of(placed[pair.first])
-    half = triple(Body.of(scene.bodies[pair.first]).half)
+    half = triple(first.half)
     a, b = ends_of(scene, placed, pair.second)
     path = combined(1.0, b, -1.0, a)
     start = seen_from(base, combined(1.0, a, -1.0, triple(base.position)))
@@ -429,7 +380,8 @@ def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
         flat = 0.0 if half[0] == 0.0 else 1.0
         normal = (flat * x, flat * y, flat * z)
     outward = axis_at(base, normal)
-    return Contact(combined(1.0, a, s, path), outward, core - pair.radius)
+    radius = first.radius + Body.of(scene.bodies[pair.second]).radius
+    return Contact(combined(1.0, a, s, path), outward, core - radius)
 
 
 @compiled
@@ -459,10 +411,10 @@ def write_distances(constants: Vector, dof: int, placements: Matrix, distances: 
 
 
 @compiled
-def write_end_rates(constants: Vector, jacobian: Matrix, placements: Matrix, rates: Matrix) -> None:
+def raise_end_rates(constants: Vector, jacobian: Matrix, placements: Matrix, rates: Matrix) -> None:
     """Raise the rates (pairs, 2) to those at which joints move the ends of each pair [m/rad].
 
-    The largest of a joint counts, along the pair's normal; inf where there is none.
+    The largest of a joint counts, along the pair's normal.
 
     Args:
         constants: `Scene.constants`, (k,).
@@ -475,37 +427,29 @@ def write_end_rates(constants: Vector, jacobian: Matrix, placements: Matrix, rat
     placed = np.empty((len(scene.bodies), Placement.width()))
     place_bodies(scene, placements, placed)
     for k in range(len(scene.pairs)):
-        contact = contact_of(scene, k, placed)
-        ends = ends_of(scene, placed, Pair.of(scene.pairs[k]).second)
+        pair = Pair.of(scene.pairs[k])
+        normal = contact_of(scene, k, placed).normal
+        ends = ends_of(scene, placed, pair.second)
         for at in range(2):
-            if dot(contact.normal, contact.normal) == 0.0:
-                rates[k, at] = np.inf
             for j in range(dof):
-                rate = abs(scene.support[k, j] * rate_along(jacobian, j, ends[at], contact.normal))
+                rate = abs(pair.support[j] * rate_along(jacobian, j, ends[at], normal))
                 rates[k, at] = max(rates[k, at], rate)
 
 
 @compiled
-def second_order(support: Matrix, radii: Matrix, k: int, travel: Vector) -> float:
-    """Compute B [m] for pair k, whose joints travel by `travel` (n,) [rad].
-
-    Args:
-        support: `SceneViews.support`, (pairs, n).
-        radii: `SceneViews.radii`, (pairs, n).
-        k: Index of the pair.
-        travel: Displacement of each joint, at least 0, (n,) [rad].
-    """
+def second_order(pair: Pair, travel: Vector) -> float:
+    """Compute B [m] for a pair whose joints travel by `travel` (n,) [rad], at least 0 each."""
     n = travel.size
     B = 0.0
     turning = 0.0
     for step in range(2 * n):  # from the first body up to the common base, then down
         j = n - 1 - step if step < n else step - n
-        if support[k, j] == 0.0 or (support[k, j] < 0.0) != (step < n):
+        if pair.support[j] == 0.0 or (pair.support[j] < 0.0) != (step < n):
             continue
-        if radii[k, j] < 0.0:
+        if pair.radii[j] < 0.0:
             B += 2.0 * travel[j] * turning
         else:
-            B += travel[j] * radii[k, j] * (2.0 * turning + travel[j])
+            B += travel[j] * pair.radii[j] * (2.0 * turning + travel[j])
             turning += travel[j]
     return B
 

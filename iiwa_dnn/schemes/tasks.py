@@ -489,17 +489,17 @@ def _normals(axis: Sequence[float]) -> Matrix:
 
 
 class JointConstants(Record):
-    """Gain [1/s] of a task of joints, and its relations one after another."""
+    """Constants of a task of joints, whose rows are C dq = gain (c - C q).
+
+    Attributes:
+        gain: Rate at which the error decays [1/s].
+        offsets: c [rad], (rows,).
+        coefficients: C, row by row, (rows * n,).
+    """
 
     gain: float
-    relations: Vector = part()
-
-
-class Relation(Record):
-    """A linear relation between joints: its c [rad], and its row of C."""
-
-    offset: float
-    coefficients: Vector = part()
+    offsets: Vector = part("rows")
+    coefficients: Vector = part("entries")
 
 
 @compiled
@@ -507,15 +507,13 @@ def joint_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
     """Write the rows of a task of joints."""
-    dof = step.q.size
-    own = JointConstants.of(constants)
-    relations = own.relations.reshape(b.size, dof + 1)
+    own = JointConstants.of(constants, b.size)
+    C = own.coefficients.reshape(b.size, step.q.size)
     gain = min(own.gain, step.rate)
     for i in range(b.size):
-        relation = Relation.of(relations[i])
-        missing = relation.offset
-        for j in range(dof):
-            A[i, j] = relation.coefficients[j]
+        missing = own.offsets[i]
+        for j in range(step.q.size):
+            A[i, j] = C[i, j]
             missing -= A[i, j] * step.q[j]
         b[i] = gain * missing
 
@@ -542,27 +540,20 @@ class JointTask(GainTask):
         """Return the number of relations."""
         return len(self._relations())
 
-    def relations(self, robot: Robot) -> list[Relation]:
-        """Return the relations between the n joints of a robot.
+    def constants(self, robot: Robot) -> JointConstants:
+        """Return the constants for a robot.
 
         Raises:
             NotFoundError: The robot has no joint of a name.
         """
-        relations = []
-        for named, offset in self._relations():
-            relation = Relation.zeros(robot.dof)
-            relation.offset = offset
+        coefficients, offsets = zip(*self._relations(), strict=True)
+        C = np.zeros((len(offsets), robot.dof))
+        for row, named in zip(C, coefficients, strict=True):
             for name, coefficient in named.items():
                 if name not in robot.joint_names:
                     raise NotFoundError("joint", name, robot.joint_names)
-                relation.coefficients[robot.joint_names.index(name)] = coefficient
-            relations.append(relation)
-        return relations
-
-    def constants(self, robot: Robot) -> Vector:
-        """Return `JointConstants`."""
-        relations = np.ravel(self.relations(robot))
-        return JointConstants.make(gain=self.gain, relations=relations)
+                row[robot.joint_names.index(name)] = coefficient
+        return JointConstants.make(gain=self.gain, offsets=offsets, coefficients=C.ravel())
 
 
 @dataclass(frozen=True)
@@ -607,5 +598,5 @@ class JointCouplingTask(JointTask):
 
     def missing(self, robot: Robot, q: Vector) -> float:
         """Return the error of the relation at joint positions q (n,), c_0 - c^T q [rad]."""
-        (relation,) = self.relations(robot)
-        return float(relation.offset - relation.coefficients @ q)
+        own = self.constants(robot)
+        return float(own.offsets[0] - own.coefficients @ q)

@@ -10,7 +10,7 @@ import iiwa_dnn as d
 from helpers_simulation import driven
 from iiwa_dnn.control import stopping
 from iiwa_dnn.schemes.rate_limits import MotionConstants
-from iiwa_dnn.schemes.scene import second_order
+from iiwa_dnn.schemes.scene import Pair, second_order
 from judge_limits import breaches
 
 ROBOT = d.load_robot("iiwa7")
@@ -329,8 +329,8 @@ def test_a_ball_that_no_joint_can_evade_is_said_to_be_limiting() -> None:
 )
 def test_joints_that_slide_and_turn_curve_a_path(support, radii, expected) -> None:
     travel = np.array([0.2, 0.1])
-    found = second_order(np.array([support]), np.array([radii]), 0, travel)
-    assert found == pytest.approx(expected)
+    pair = Pair.make(second=0, first=0, still=0, support=support, radii=radii)
+    assert second_order(pair, travel) == pytest.approx(expected)
 
 
 def test_a_velocity_that_others_chose_is_tested_for_distances() -> None:
