@@ -31,6 +31,8 @@ DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("do
 
 _BLOCK = re.compile(r"^```python\n(.*?)^```$(?:\s*^```text\n(.*?)^```$)?", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"(?<!`)!?\[[^]]*\]\(([^)#\s]+)(?:#[^)\s]*)?\)")
+_ANCHOR = re.compile(r"\]\(([\w/.]*\.md)?#([^)\s]+)\)")
+_HEADING = re.compile(r"^#{1,3} (.+)$", re.MULTILINE)
 _RAW_LINK = re.compile(r'<a href="([^"#:]+)"')
 _RUN = re.compile(r"^iiwa-dnn ((?:track|physics|export) (?!--help).*|track)$", re.MULTILINE)
 _TEST = re.compile(r"`(tests/[\w/]+\.py)(?:::(\w+))?`")
@@ -39,6 +41,14 @@ _TEST = re.compile(r"`(tests/[\w/]+\.py)(?:::(\w+))?`")
 def defined(path: Path) -> set[str]:
     """Names of the functions in a Python file."""
     return set(re.findall(r"^def (\w+)", path.read_text(encoding="utf-8"), re.MULTILINE))
+
+
+def anchors(text: str) -> set[str]:
+    """Anchors of the headings of a page, as the forge and Sphinx name them."""
+    return {
+        re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+        for heading in _HEADING.findall(text)
+    }
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
@@ -64,6 +74,9 @@ def test_links_and_named_tests_exist(path: Path) -> None:
     for target in [*_LINK.findall(text), *_RAW_LINK.findall(text)]:
         if not target.startswith(("http://", "https://", "mailto:")):
             assert (path.parent / target).exists(), f"{path.name} links to {target}"
+    for target, anchor in _ANCHOR.findall(text):
+        page = (path.parent / target if target else path).read_text(encoding="utf-8")
+        assert anchor in anchors(page), f"{path.name} links to {target}#{anchor}"
     for file, name in _TEST.findall(text):
         assert (ROOT / file).is_file(), f"{path.name} names {file}"
         assert not name or name in defined(ROOT / file), f"{path.name} names {file}::{name}"
