@@ -1,8 +1,8 @@
 """Dynamic neural networks that resolve the redundancy of robot arms, checked at every step."""
 
-from importlib.metadata import version
+from importlib import import_module
+from typing import TYPE_CHECKING
 
-from iiwa_dnn import export as export
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.posing import PoseSolution, solve_pose
@@ -84,7 +84,20 @@ from iiwa_dnn.schemes import (
 )
 from iiwa_dnn.simulation import MujocoPlant, RunSettings, simulate
 
-__version__ = version("iiwa-dnn")
+if TYPE_CHECKING:
+    from iiwa_dnn import export as export
+
+    __version__: str
+else:
+
+    def __getattr__(name: str) -> object:
+        """Load what few programs need, and a third of an import's time, when it is asked for."""
+        if name == "export":
+            return import_module("iiwa_dnn.export")
+        if name == "__version__":
+            return import_module("importlib.metadata").version("iiwa-dnn")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
 
 __all__ = [
     "QP",

@@ -5,7 +5,7 @@ which is the name of the caller's own argument.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from numbers import Integral, Real
 from typing import Any, ClassVar, TypeVar
 
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.compiling.trigonometry import LARGEST
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError, NotFoundError
 
 Array = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -90,6 +90,13 @@ def one_of(argument: str, value: T, choices: Sequence[object]) -> T:
         known = ", ".join(map(str, choices))
         raise InvalidInputError(argument, f"must be one of {known}, not {value!r:.80}", value)
     return value
+
+
+def known(kind: str, given: Iterable[str], there: Collection[str]) -> None:
+    """Raise a NotFoundError with the nearest names for a name of this kind that is not there."""
+    for name in given:
+        if name not in there:
+            raise NotFoundError(kind, name, there)
 
 
 def names(argument: str, value: str | Iterable[str]) -> list[str]:
@@ -184,7 +191,8 @@ def _has_booleans(given: NDArray[Any]) -> bool:
 def is_masked(value: object) -> bool:
     """Test whether an array, or a row of a list of arrays, hides some of its numbers."""
     rows = value if isinstance(value, list | tuple) else [value]
-    return any(map(np.ma.is_masked, rows))
+    # Not by np.ma, whose import takes longer than that of most of this package.
+    return any(isinstance(row, np.ndarray) and np.any(getattr(row, "mask", False)) for row in rows)
 
 
 def rotation(argument: str, value: ArrayLike) -> Array:

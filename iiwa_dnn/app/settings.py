@@ -25,7 +25,6 @@ from iiwa_dnn import (
     Line,
     Lissajous,
     MujocoPlant,
-    NotFoundError,
     Reference,
     Robot,
     RunSettings,
@@ -200,7 +199,15 @@ def call(
     try:
         return function(**arguments)
     except (AttributeError, TypeError, ValueError) as error:  # an InvalidInputError is one too
-        raise InvalidInputError(table, one_line(error), given) from error
+        option = _option(table, getattr(error, "argument", ""))
+        raise InvalidInputError(f"{table}{option}", one_line(error), given) from error
+
+
+def _option(table: str, key: str) -> str:
+    """Return the option of a table or of one of its keys, in brackets, or nothing."""
+    places = (table, f"{table}.{key}")
+    options = [word for word, (place, *_) in WORDS.items() if place in places]
+    return f" (--{options[-1].replace('_', '-')})" if options else ""
 
 
 def choose(choices: Choices, table: str, values: Tables) -> Any:
@@ -217,8 +224,7 @@ def objects(known: Collection[str], table: str, values: Tables) -> Tables:
         InvalidInputError: A value is out of range.
     """
     for name in values:
-        if name not in known:
-            raise NotFoundError(f"setting in [{table}]", name, known)
+        checks.known(f"setting in [{table}]{_option(table, name)}", [name], known)
     return {name: _made(f"{table}.{name}", value) for name, value in values.items()}
 
 

@@ -78,7 +78,7 @@ def paper(
         seeds: number of noises in Table II (100)
         duration: length of each run [s] (10)
         table: table of the paper to run alone, 1 or 2 (everything)
-        weights: weights xi in [0, 1] of the columns of Table I (all)
+        weights: weights xi in [0, 1] of columns of Table I: 0.1, 0.2, 0.4, 0.5, 0.6, 0.8, 0.9 (all)
     """
     from iiwa_dnn.studies import paper_report, paper_tables, runs, sweeps
 

@@ -14,9 +14,7 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
-from .binding import extension
 from .sources import has_kernels
-from .translator import Translator
 
 FLAGS = (
     *("-std=gnu11", "-O3", "-ffp-contract=off", "-fno-strict-aliasing", "-shared", "-fPIC"),
@@ -47,6 +45,9 @@ def build(package: Path) -> Path:
     noted = stamp.read_text().split() if made.is_file() and stamp.is_file() else []
     if noted and noted[0] == _digest(package, noted[2:], kind):
         return made
+    from .binding import extension  # not needed by an import after which nothing is compiled
+    from .translator import Translator
+
     translator = Translator(package, is_checked)
     translator.all()
     text = extension(translator)

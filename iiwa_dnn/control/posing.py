@@ -33,7 +33,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.naming import active_limits, describe
+from iiwa_dnn.naming import LimitKind, active_limits, describe
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Solution, Vector
 from iiwa_dnn.references import Target
@@ -81,7 +81,8 @@ class PoseSolution:
         position_error: Distance of `nearest` from the target [m].
         orientation_error: Angle between the orientations of `nearest` and of the target [rad].
         active_limits: Limits and obstacles that keep `nearest` from the target, in words. If empty
-            though none was found, the arm is too short, or in a fold that it does not leave.
+            though no posture was found, its links are too short, its joints too few, or it is
+            folded another way.
     """
 
     q: Vector | None
@@ -252,9 +253,13 @@ def _solve(program: ProgramLayout, solver: DNNSolver, point: _Point, damping: fl
 def _active_limits(
     program: ProgramLayout, solver: DNNSolver, point: _Point, weight: float
 ) -> tuple[str, ...]:
-    """Name the limits that keep a posture from the goal, by their multipliers."""
+    """Name the limits that keep a posture from the goal, by their multipliers.
+
+    The velocity limits of the program limit an iteration's step, not a posture.
+    """
     step = _solve(program, solver, point, _DAMPING)
     least = _ACTS * math.hypot(*point.qp.b[:3], *weight * point.qp.b[3:6])
     lower, upper = program.kinds
     codes = np.where(step.z_box > 0.0, upper, -lower) * (np.abs(step.z_box) > least)
+    codes[np.abs(codes) == LimitKind.VELOCITY] = 0
     return tuple(map(describe, active_limits(LimitNames(program).settings, codes, step.z > least)))

@@ -5,7 +5,6 @@ only: the URDFs as their makers publish them.
 """
 
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +48,8 @@ class Arm:
         own = robots_folder() / self.file
         if own.is_file():
             return own
+        from importlib.metadata import PackageNotFoundError, distribution  # a slow import
+
         try:
             return Path(str(distribution(_PACKAGE).locate_file(_FOLDER))) / self.file
         except PackageNotFoundError as error:

@@ -242,11 +242,12 @@ class CollisionAvoidance(Limit):
             FileError: It cannot be read, or something in it is wrong; the message says what.
         """
         tables = read_toml(path)
+        parameters = [name for name in cls._checks if name != "obstacles"]
         try:
+            checks.known("key", tables, ["obstacle", *parameters])
             return cls(make_obstacles(tables.pop("obstacle", [])), **tables)
-        except (IiwaDnnError, TypeError, ValueError, AttributeError) as error:
-            text = one_line(error).replace(f"{cls.__name__}.__init__() ", "")
-            raise FileError(path, text) from error
+        except IiwaDnnError as error:
+            raise FileError(path, one_line(error)) from error
 
     @lru_cache(maxsize=8)  # noqa: B019  few parts, few robots
     def scene(self, robot: Robot) -> Scene:

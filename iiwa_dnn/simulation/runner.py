@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
-from importlib.metadata import version
 from typing import Any
 
 from numpy.typing import ArrayLike
 
+from iiwa_dnn import checks
 from iiwa_dnn.control.command import log_of
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import References, beyond_reach, by_frame
@@ -36,7 +36,13 @@ BLOCK = 1000
 
 _PACKAGES = ("iiwa-dnn", "numpy", "pin", "qpsolvers", "proxsuite", "osqp")
 
-_version = cache(version)  # reading the versions of all takes as long as a hundred steps
+
+@cache  # reading them takes as long as a hundred steps
+def _versions() -> dict[str, str]:
+    """Return the versions of the packages that a run depends on."""
+    from importlib.metadata import version  # a slow import
+
+    return {name: version(name) for name in _PACKAGES}
 
 
 def simulate(
@@ -70,10 +76,12 @@ def simulate(
 
     Raises:
         InvalidInputError: An argument is out of range; the message names it.
+        NotFoundError: There is no setting of a name; the error lists those of similar names.
         RunInterrupted: Ctrl-C was pressed; it has the record of the steps that were taken.
     """
     began = time.perf_counter()
     start = Configuration(robot, q0)
+    checks.known("setting of a run", changes, [each.name for each in fields(RunSettings)])
     run = replace(settings, **changes) if settings else RunSettings(**changes)
     controller = Controller(
         robot,
@@ -182,7 +190,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         "path_duration": max((path.duration for path in paths), default=duration),
         "mode": controller.mode,
         "policy": controller.policy,
-        "versions": {name: _version(name) for name in _PACKAGES},
+        "versions": _versions(),
         "robot": robot.name,
         "joints": robot.joint_names,
         "locked": dict(zip(robot.locked, robot.q_locked, strict=True)) or None,

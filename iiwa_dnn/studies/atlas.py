@@ -456,12 +456,12 @@ def cells(size: Size, gains: Mapping[str, Mapping[str, Any]]) -> list[Cell]:
     """
     found = []
     for network in size.networks:
-        own = Cell(network, size.schemes[0], work=size.work, seeds=size.seeds, **gains[network])
-        found += [replace(own, disturbance=kind) for kind in size.disturbances]
-        found += [replace(own, scheme=scheme) for scheme in size.schemes[1:]]
+        settings = {"work": size.work, "seeds": size.seeds, **gains[network]}
+        found += [Cell(network, size.schemes[0], kind, **settings) for kind in size.disturbances]
+        found += [Cell(network, scheme, **settings) for scheme in size.schemes[1:]]
         if isinstance(entry_of(network).network, ZeroingNetwork):
-            once = replace(own, work=UNLIMITED, most=1, seeds=1)
-            found += [replace(once, dt=dt) for dt in PERIODS]
+            once = Cell(network, size.schemes[0], **settings | {"work": UNLIMITED, "most": 1})
+            found += [replace(once, seeds=1, dt=dt) for dt in PERIODS]
     return found
 
 

@@ -75,7 +75,12 @@ BAD = [
     ("track --duration 1e12", "duration: 1e+16 steps"),
     ("track --joint-limit 0", "joint-limit: must be"),
     ("track --speed 0", "speed: must be"),
-    ("track --acceleration-limit -1", "limits.acceleration: limit: must be"),
+    (
+        "track --acceleration-limit -1",
+        "limits.acceleration (--acceleration-limit): limit: must be",
+    ),
+    ("track circle --smooth 1", "no setting in [reference] (--smooth) 'noise'"),
+    ("track --weight 3", "scheme (--weight): weight: must be in [0, 1]"),
     ("track --seed -1", "seed: must be"),
     ("track hart", "reference: must be one of heart, circle, "),
     ("track bad.csv", "bad.csv: a header must name t, x, y, z"),

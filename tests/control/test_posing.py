@@ -80,6 +80,20 @@ def test_a_limit_limiting_is_named() -> None:
     assert f"joint 4 {side} position limit" in answer.active_limits
 
 
+def test_no_velocity_limit_keeps_a_posture_from_a_pose() -> None:
+    """A step of the last posture, which is almost singular, would be a long one."""
+    robot = d.load_robot("panda")
+    rng = np.random.default_rng(1)
+    for _ in range(23):
+        conf = d.Configuration(robot, robot.draw(rng, 1)[0])
+        turn = pin.exp3(rng.uniform(-2.0, 2.0, 3))
+        farther = rng.choice([1.0, 1.0, 1.02, 1.1])
+    target = d.Target(conf.position * farther, turn @ conf.rotation)
+    answer = d.solve_pose(robot, target, starts=6)
+    assert not answer.found
+    assert answer.active_limits == ()
+
+
 def test_obstacles_are_kept_clear_of_and_named() -> None:
     robot = d.load_robot("iiwa7")
     q0 = robot.start_posture()

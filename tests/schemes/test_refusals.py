@@ -97,7 +97,8 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
             ("[[obstacle]]\nshape = 'Box'\ncenter = [0,0,0]\nhalf_extents = [1,1,-1]", "half_ext"),
             ("distance = -1", f"distance: {NUMBER}"),
             ("self_collision = 'no'", "self_collision: must be one of True, False, not 'no'"),
-            ("distanz = 1", "unexpected keyword argument 'distanz'"),
+            ("distanz = 1", "no key 'distanz'; did you mean: distance"),
+            ("[[obstacles]]\nshape = 'Box'", "no key 'obstacles'; did you mean: obstacle$"),
             ("obstacle = 3", "obstacle: must be tables"),
             ("x = [", "cannot be read as TOML"),
         )

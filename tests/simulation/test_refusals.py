@@ -44,6 +44,7 @@ REFUSED: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
     ("motion", physics, {"timestep": 1e-3, "motion": "rk4"}),
     *[("noise", simulate, {"noise": bad}) for bad in NUMBERS],
     *[("filter_window", simulate, {"filter_window": bad}) for bad in (0, -3, 2.5, *NUMBERS[1:])],
+    ("no setting of a run 'duratoin'; did you mean: duration", simulate, {"duratoin": 1.0}),
     *[("seed", simulate, {"seed": bad}) for bad in (-1, 1.5, None, "lucky")],
     *[("q", simulate, {"q": bad}) for bad in (np.zeros(6), np.full(7, np.nan), "home", None)],
     ("home", simulate, {"scheme": d.DoubleIndicator(home=(0.0,))}),
@@ -77,5 +78,5 @@ REFUSED: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
 
 @pytest.mark.parametrize(("name", "call", "arguments"), REFUSED)
 def test_an_argument_that_makes_no_sense_is_named(name, call, arguments) -> None:
-    with pytest.raises(d.InvalidInputError, match=rf"^{name}\b"):
+    with pytest.raises((d.InvalidInputError, d.NotFoundError), match=rf"^{name}\b"):
         call(**arguments)

@@ -205,6 +205,14 @@ def test_each_networks_gain_is_the_best_of_the_same_fractions() -> None:
     )
 
 
+def test_every_seed_disturbs_a_run_and_those_without_differ_by_their_paths_alone() -> None:
+    size = atlas.Size(["dual"], list(atlas.SCHEMES)[:2], ["white"], seeds=9)
+    cells = atlas.cells(size, {"dual": {"fraction": 0.4, "most": None}})
+    seeds = [(cell.scheme, cell.disturbance, cell.seeds) for cell in cells]
+    first, second = size.schemes
+    assert seeds == [(first, "none", 3), (first, "white", 9), (second, "none", 3)]
+
+
 def test_formulas_have_their_orders_against_the_control_period() -> None:
     cells = [
         atlas.Cell(f"zeroing, {name}", work=atlas.UNLIMITED, most=1, dt=dt, fraction=0.4)
