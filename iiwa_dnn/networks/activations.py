@@ -34,7 +34,7 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.networks.base import Flow, Network
+from iiwa_dnn.networks.base import Flow, Network, checked_flow
 from iiwa_dnn.networks.dual import DualNetwork
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
@@ -163,7 +163,7 @@ class ActivatedNetwork(Network):
 
         The derivative is that at a constant speed: a long implicit step is then Newton's.
         """
-        inner = self.network.flow(qp, rate)
+        inner = checked_flow(self.network, qp, rate)
 
         def rates(state: Vector) -> Vector:
             values = inner.rates(state)

@@ -13,7 +13,7 @@ from iiwa_dnn.compiling.library import entry
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Triple, Vector, check_size
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import point_of_state
+from iiwa_dnn.qp.residuals import kkt_point
 
 
 @entry
@@ -71,11 +71,11 @@ class Flow(NamedTuple):
         Returns:
             Its residuals ``(primal, dual, gap)``, as qpsolvers defines them.
         """
-        n, m, p = qp.sizes
-        check_size("point", point, 2 * n + m + p)
+        size = sum(qp.sizes)
+        check_size("point", point, size + qp.sizes[0])
         unknowns = state if self.unknowns is None else self.unknowns(state)
-        check_size("state", unknowns[: n + m + p], n + m + p)
-        return point_of_state(qp.data, n, m, p, unknowns, point)
+        check_size("state", unknowns[:size], size)
+        return kkt_point(qp.views, unknowns, point)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,14 +134,14 @@ class Network:
 
     def rates(self, qp: QP, state: Vector) -> Vector:
         """Evaluate the right-hand side, rho ds/dt, of shape (state_size,)."""
-        return self.flow(qp).rates(state)
+        return checked_flow(self, qp).rates(state)
 
     def stable_step(self, qp: QP, state: Vector) -> float:
         """Bound the stable steps of explicit Euler around a state (state_size,), in units of rho.
 
         It is 0 where none is known to be stable. By default it is `Flow.linear_limit`.
         """
-        return self.flow(qp).linear_limit(state)
+        return checked_flow(self, qp).linear_limit(state)
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
         """Count the floating-point operations of one program's set-up and of one evaluation.
@@ -154,6 +154,12 @@ class Network:
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
         return settings_of(self)
+
+
+def checked_flow(network: Network, qp: QP, rate: QP | None = None) -> Flow:
+    """Set a program up by `Network.flow`; refuse a method that returns anything but a `Flow`."""
+    flow = network.flow(qp) if rate is None else network.flow(qp, rate)
+    return checks.instance(f"{type(network).__name__}.flow", flow, Flow)
 
 
 def kkt_product(sizes: Sizes) -> float:

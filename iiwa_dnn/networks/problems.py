@@ -51,17 +51,18 @@ def solve_problem(
         qp = QP.from_qpsolvers(problem)
     qp.check_numbers()
     if solver is None:
-        try:
-            solver = default_solver(tol, eps_rel, max_iter)
-        except TypeError:  # no number: it is refused by its name
-            solver = default_solver.__wrapped__(tol, eps_rel, max_iter)
+        solver = default_solver(
+            checks.positive("tol", tol),
+            checks.not_negative("eps_rel", eps_rel),
+            checks.integer("max_iter", max_iter, 1),
+        )
     solution = checks.instance("solver", solver, DNNSolver).solve_cold(qp, sharpen)
     if not solution.found:
         qp.check_values()  # an answer that was found belongs to a convex program
     return solution.to_qpsolvers(problem)
 
 
-@lru_cache(typed=True)
+@lru_cache
 def default_solver(tol: float, eps_rel: float, max_iter: int) -> DNNSolver:
     """Return the solver with these settings, the same one each time: making it takes time."""
     return DNNSolver(tol=tol, eps_rel=eps_rel, solve_integrator=ImplicitEuler(max_steps=max_iter))

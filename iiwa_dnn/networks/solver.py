@@ -8,17 +8,17 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Network, enter_rates
+from iiwa_dnn.networks.base import Network, checked_flow, enter_rates
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
 from iiwa_dnn.networks.integrators.base import AnswerSettings, CompiledAnswer, enter_answer
 from iiwa_dnn.networks.integrators.explicit import follow
 from iiwa_dnn.networks.integrators.implicit import solve
 from iiwa_dnn.networks.integrators.scaling import (
     LARGE,
+    STEEP,
     Scaling,
-    balanced,
     is_ordinary,
-    steep,
+    scaled,
 )
 from iiwa_dnn.networks.projection import ProjectionNetwork, is_projection
 from iiwa_dnn.qp.certificates import find_certificate
@@ -155,13 +155,7 @@ class DNNSolver:
             The solution; `found` only if P is convex and `QP.accepts` the point. Its iterations are
             the linear solves of all attempts, at most those of `solve_integrator`.
         """
-        state = self._take(qp)
-        solution = self._solve(qp, state)
-        # Without a solution the state is not kept: the multipliers grow without bound then, and
-        # would spoil every later call.
-        if solution.found:
-            self._keep(qp.sizes, state)
-        return solution
+        return self._solve(qp, self._take(qp), False)
 
     def solve_cold(self, qp: QP, sharpen: bool = False) -> Solution:
         """Solve a program from the network's initial state; threads do not disturb each other.
@@ -171,16 +165,10 @@ class DNNSolver:
             sharpen: Whether to take a few more steps down to rounding.
         """
         self.reset()
-        state = self._fresh(qp)
-        solution = self._solve(qp, state)
-        if sharpen:
-            solution = self._sharpened(qp, solution, state)
-        if solution.found:
-            self._keep(qp.sizes, state)
-        return solution
+        return self._solve(qp, self._fresh(qp), sharpen)
 
-    def _solve(self, qp: QP, state: Vector) -> Solution:
-        """Make the attempts of a `solve` from a state (size,), which is advanced."""
+    def _solve(self, qp: QP, state: Vector, sharpen: bool) -> Solution:
+        """Make the attempts of a `solve` from a state (size,), and keep the state of a solution."""
         plan = _COSTS if is_projection(self.network) else _COSTS[:1]
         if not is_ordinary(qp.data, *qp.sizes):
             qp = QP(*qp.views)  # P becomes symmetric
@@ -190,7 +178,7 @@ class DNNSolver:
         for cost in plan:
             if cost == LARGE and taken > 0:
                 state[:] = 0.0
-            scaling = balanced(qp, cost) if cost else None
+            scaling = scaled(qp, cost) if cost else None
             left = self.solve_integrator.max_steps - taken
             solution = self._attempt(qp, scaling, state, self.tol, left)
             taken += solution.iterations
@@ -199,6 +187,11 @@ class DNNSolver:
                 break
         if taken > solution.iterations:
             solution = solution._replace(iterations=taken, network_time=time)
+        if sharpen:
+            solution = self._sharpened(qp, solution, state)
+        # Without a solution the multipliers grow without bound, and would spoil every later call.
+        if solution.found:
+            self._keep(qp.sizes, state)
         return solution
 
     def _attempt(
@@ -259,7 +252,7 @@ class DNNSolver:
             if left < 1 or solution.residuals.largest <= SHARPENED:
                 break
             new = state.copy()
-            scaling = steep(qp) if is_steep else None
+            scaling = scaled(qp, STEEP, 0) if is_steep else None
             sharper = self._attempt(qp, scaling, new, SHARPENED, left)
             if sharper.found and sharper.residuals.largest < solution.residuals.largest:
                 state[:] = new
@@ -293,7 +286,7 @@ class DNNSolver:
         """Judge the point of a state that was advanced by a time [rho]; keep it if it is finite."""
         n, m, p = qp.sizes
         point = np.empty(2 * n + m + p)
-        residuals = self.network.flow(qp).read(qp, state, point)
+        residuals = checked_flow(self.network, qp).read(qp, state, point)
         status = Status.NOT_FINITE
         # The point of an infinite state is finite, since it is clipped to the bounds.
         if math.isfinite(sum(residuals)) and np.isfinite(state).all():

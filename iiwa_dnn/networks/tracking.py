@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.networks.base import checked_flow
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.layout import Sizes, Vector
 from iiwa_dnn.qp.program import QP
@@ -115,7 +116,7 @@ class TrackingSolver(DNNSolver):
         rate = weights @ np.where(np.isfinite(programs), programs, 0.0) / (self.substeps * step)
         now = QP.from_data(programs[0] + i * step * rate, sizes)
         moving = QP.from_data(self.network.rho * rate, sizes)
-        change = step / self.network.rho * self.network.flow(now, moving).rates(state)
+        change = step / self.network.rho * checked_flow(self.network, now, moving).rates(state)
         past = [state.copy(), *self._past["states"]]
         known = self.formula if len(past) >= len(self.formula.past) else EULER
         state[:] = known.rate * change

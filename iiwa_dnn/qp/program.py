@@ -205,7 +205,8 @@ class QP:
     @property
     def views(self) -> QPViews:
         """The fields, as compiled code takes them."""
-        return QPViews(*[getattr(self, name) for name in FIELDS])
+        fields = field_slices(self.sizes)
+        return QPViews(*[self.data[part].reshape(shape) for part, shape in fields])
 
     def residuals(self, point: Vector) -> Residuals:
         """Compute qpsolvers' residuals of a point ``[x | y | z | z_box]``, (2 n + m + p,)."""

@@ -106,12 +106,6 @@ def kkt_point(qp: QPViews, s: Vector, point: Vector) -> Triple:
 
 
 @compiled
-def point_of_state(data: Vector, n: int, m: int, p: int, s: Vector, point: Vector) -> Triple:
-    """Write the `kkt_point` (2n + m + p,) of a state, for a program's flat array, `QP.data`."""
-    return kkt_point(qp_views(data, n, m, p), s, point)
-
-
-@compiled
 def within(primal: float, dual: float, gap: float, tol: float) -> bool:
     """Check that no residual is above the tolerance, and none NaN."""
     return primal <= tol and dual <= tol and gap <= tol

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 import osqp
@@ -237,13 +238,14 @@ def test_singular_cost_converges_but_not_with_the_dual_networks() -> None:
         (Flow(lambda s: np.zeros(3)), r"^rates of Own: has shape \(3,\), not \(4,\)"),
         (Flow(lambda s: None), r"^rates of Own: has shape \(\)"),
         (Flow(lambda s: -s, lambda s: np.eye(3)), r"^jacobian: must have shape \(4, 4\)"),
+        (None, r"^Own\.flow: must be an iiwa_dnn\.Flow, not None"),
         (Flow(lambda s: s), "^Own: no explicit step is known to be stable"),
         (Flow(lambda s: -1e9 * s), "^Own: no explicit step .* more than 1000000 would"),
     ],
 )
-def test_a_network_of_wrong_shapes_or_sign_is_named(flow: Flow, problem: str) -> None:
+def test_a_network_of_wrong_shapes_or_sign_is_named(flow: Any, problem: str) -> None:
     qp = d.QP(np.diag([1.0, 2.0, 4.0]), np.ones(3), A=np.ones((1, 3)), b=[0.5])
-    own = type("Own", (Network,), {"flow": lambda self, qp, rate=None: flow})
+    own = type("Own", (Network,), {"flow": lambda self, qp: flow})
     with pytest.raises(d.InvalidInputError, match=problem):
         d.DNNSolver(own()).advance(qp, 1e-4)
 

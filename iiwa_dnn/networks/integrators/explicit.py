@@ -8,7 +8,7 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Network, enter_rates
+from iiwa_dnn.networks.base import Network, checked_flow, enter_rates
 from iiwa_dnn.networks.integrators.base import Answered, AnswerSettings, Integrator
 from iiwa_dnn.networks.projection import mark_active, stable_step
 from iiwa_dnn.qp.layout import QPViews, Vector, check_size
@@ -53,7 +53,7 @@ class ExplicitEuler(Integrator):
                 network.
         """
         check_size("state", state, network.state_size(qp))
-        rates = network.flow(qp).rates
+        rates = checked_flow(network, qp).rates
         count = self.substeps
         if count is None:
             stable = SAFETY * network.stable_step(qp, state)

@@ -24,7 +24,7 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled, released
-from iiwa_dnn.networks.base import Network
+from iiwa_dnn.networks.base import Network, checked_flow
 from iiwa_dnn.networks.integrators import pseudo_transient
 from iiwa_dnn.networks.integrators.base import (
     Answered,
@@ -84,7 +84,7 @@ class ImplicitEuler(Integrator):
         length = duration / count
         if is_projection(network) and not network.primal_projection:
             return sum(step_program(qp.data, *qp.sizes, state, length) for _ in range(count))
-        flow = network.flow(qp)
+        flow = checked_flow(network, qp)
         for _ in range(count):
             state += pseudo_transient.linear_change(flow, state, length, flow.rates(state))
         return count

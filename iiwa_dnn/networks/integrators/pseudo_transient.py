@@ -9,7 +9,7 @@ SIAM J. Numer. Anal. 35 (1998).
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, Network
+from iiwa_dnn.networks.base import Flow, Network, checked_flow
 from iiwa_dnn.networks.integrators.base import Progress
 from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
@@ -25,7 +25,7 @@ def solve(
     network: Network, qp: QP, state: Vector, point: Vector, tol: float, max_linear_solves: int
 ) -> Progress:
     """Advance `state` (size,) with growing implicit steps; arguments as `Integrator.solve`'s."""
-    flow = network.flow(qp)
+    flow = checked_flow(network, qp)
     step = 1.0
     linear_solves = 0
     time = 0.0

@@ -10,7 +10,7 @@ cost has the curvature c, so that a steeper cost converges sooner where it is ne
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,6 +27,7 @@ LARGE = 1e3
 of a cost in scaled units, at first."""
 STRICTER = 1e-4
 """Tolerance in scaled units over that in the program's own, where the residuals grow."""
+SQRT2 = math.sqrt(2.0)
 STEEP = 1e5
 """Largest entry of a cost that was made steep."""
 ROUNDS = 10
@@ -89,66 +90,79 @@ class Scaling(NamedTuple):
         return status, certificate
 
 
-@np.errstate(over="ignore", invalid="ignore", divide="ignore")
-def balanced(qp: QP, largest: float) -> Scaling:
-    """Scale a program so that the rows of its KKT matrix have a size near 1.
+def scaled(qp: QP, largest: float, rounds: int = ROUNDS) -> Scaling:
+    """Scale a program so that the rows of its KKT matrix have largest entries near 1.
 
-    The largest entry of the cost is given. A large one converges sooner where the cost is nearly
-    flat, a small one where active rows are nearly dependent.
+    Args:
+        qp: The program.
+        largest: Largest entry of the scaled cost, to the nearest power of two. A large one
+            converges sooner where the cost is nearly flat, a small one where active rows are nearly
+            dependent.
+        rounds: Rounds of balancing; 0 scales the cost alone.
     """
     n, m, p = qp.sizes
-    rows = np.vstack([qp.A, qp.G])
-    limits = np.concatenate([qp.b, qp.h])
-    cost = cost_size(qp.views) or 1.0
-    matrix = np.block([[qp.P / cost, rows.T], [rows, np.zeros((m + p, m + p))]])
-    of_x, of_rows = np.split(factors(matrix), [n])
-    # A row of zeros gets a limit near 1: if it cannot hold, its multiplier is seen to grow.
-    of_rows = np.where(rows.any(axis=1) | ~np.isfinite(limits), of_rows, _power(1.0 / limits))
-    size = np.abs(np.vstack([qp.P * np.outer(of_x, of_x), qp.q * of_x])).max()
-    of_cost = _power(size / largest)
-    of_A, of_G = np.split(of_rows, [p])
-    scaled = QP(
-        qp.P * np.outer(of_x, of_x) / of_cost,
-        qp.q * of_x / of_cost,
-        qp.G * np.outer(of_G, of_x),
-        qp.h * of_G,
-        qp.A * np.outer(of_A, of_x),
-        qp.b * of_A,
-        qp.lb / of_x,
-        qp.ub / of_x,
-    )
-    of_box = of_cost / of_x
-    of_state = np.concatenate([of_x, of_cost * of_rows, of_box, of_box])
-    return Scaling(scaled, of_state, STRICTER * min(1.0, 1.0 / of_cost))
-
-
-def steep(qp: QP) -> Scaling:
-    """Scale the cost of a program so that its largest entry is near `STEEP`."""
-    n, m, p = qp.sizes
-    scaled = QP.from_data(qp.data.copy(), qp.sizes)
-    cost = scaled.data[: n * n + n]
-    of_cost = 2.0 ** round(math.log2(np.abs(cost).max(initial=1e-300) / STEEP))
+    views = qp.views
+    kkt = np.zeros((n + p + m, n + p + m))
+    kkt[:n, :n] = views.P / (cost_size(views) or 1.0)
+    kkt[n : n + p, :n] = views.A
+    kkt[n + p :, :n] = views.G
+    units = np.ones(n + p + m)
+    balance(kkt, np.concatenate([np.zeros(n), views.b, views.h]), rounds, units)
+    of_x = units[:n]
+    of_A = units[n : n + p]
+    of_G = units[n + p :]
+    bounds = 1.0 / of_x
+    factors = (np.outer(of_x, of_x), of_x, np.outer(of_G, of_x), of_G, np.outer(of_A, of_x), of_A)
+    data = qp.data * np.concatenate([*factors, bounds, bounds], axis=None)
+    cost = data[: n * n + n]
+    of_cost = power_of_two(largest_entry(cost) / largest)
     cost /= of_cost
-    of_state = np.ones(3 * n + m + p)
-    of_state[n:] = of_cost
-    return Scaling(scaled, of_state, 1.0 / of_cost)
+    of_state = np.concatenate([of_x, of_cost * units[n:], of_cost * bounds, of_cost * bounds])
+    of_tolerance = STRICTER * min(1.0, 1.0 / of_cost) if rounds else 1.0 / of_cost
+    return Scaling(QP.from_data(data, qp.sizes), of_state, of_tolerance)
 
 
-def _power(size: Any) -> Any:
-    """Return the nearest power of two of a number or of each entry, 1 of a zero."""
-    return np.exp2(np.round(np.log2(np.where(size == 0.0, 1.0, np.abs(size)))))
+@compiled
+def balance(kkt: Matrix, limits: Vector, rounds: int, units: Vector) -> None:
+    """Balance a symmetric matrix: rows and columns in the units found have entries of at most 1.
 
+    A row of zeros gets the unit with which its limit is 1: if it cannot hold, its multiplier is
+    seen to grow. Units are rounded to powers of two.
 
-def factors(matrix: Matrix) -> Vector:
-    """Return factors of rows and columns of a symmetric matrix that bring each to a size near 1.
-
-    They are powers of two.
+    Args:
+        kkt: The matrix, whose lower half is read, (k, k).
+        limits: Limits of the rows, (k,).
+        rounds: Rounds, each of which takes the square root of what is left.
+        units: Units, (k,), ones at first, overwritten.
 
     Source: D. Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices",
     Rutherford Appleton Laboratory, RAL-TR-2001-034.
     """
-    units = np.ones(len(matrix))
-    for _ in range(ROUNDS):
-        sizes = units * np.abs(matrix * units).max(axis=1)
-        units /= np.sqrt(np.where(sizes > 0.0, sizes, 1.0))
-    return np.asarray(_power(units))
+    sizes = np.empty(units.size)
+    for _ in range(rounds):
+        sizes[:] = 0.0
+        for i in range(units.size):
+            for k in range(i + 1):
+                entry = abs(kkt[i, k])
+                sizes[i] = max(sizes[i], entry * units[k])
+                sizes[k] = max(sizes[k], entry * units[i])
+        for i in range(units.size):
+            size = units[i] * sizes[i]
+            limit = abs(limits[i])
+            if size > 0.0:
+                units[i] /= np.sqrt(size)
+            elif limit > 0.0 and limit < np.inf:
+                units[i] = 1.0 / limit
+    for i in range(units.size):
+        units[i] = power_of_two(units[i])
+
+
+@compiled
+def power_of_two(size: float) -> float:
+    """Return the power of two nearest to a size in the logarithm; 1 if it is 0."""
+    power = 1.0
+    while power * SQRT2 < size:
+        power *= 2.0
+    while size > 0.0 and power > size * SQRT2:
+        power *= 0.5
+    return power

@@ -7,7 +7,7 @@ import pytest
 
 import programs
 from iiwa_dnn import QP, DNNSolver, ImplicitEuler, Status
-from iiwa_dnn.networks.integrators.scaling import balanced
+from iiwa_dnn.networks.integrators.scaling import scaled
 from iiwa_dnn.qp.certificates import certified
 
 
@@ -96,6 +96,15 @@ def test_contradictions_in_other_units_are_seen() -> None:
         assert certified(qp, solution.certificate) is solution.status
 
 
+@pytest.mark.parametrize("limit", [0.0, 1e-9, 1e9])
+def test_rows_of_zeros_are_no_obstacle(limit: float) -> None:
+    zeros = [[0.0, 0.0]]
+    qp = QP(1e6 * np.eye(2), [1e6, -1e6], zeros, [limit], zeros, [0.0])
+    solution = DNNSolver().solve(qp)
+    assert solution.found
+    np.testing.assert_allclose(solution.x, [-1.0, 1.0], rtol=1e-9)
+
+
 def test_an_exact_point_ends_the_steps() -> None:
     """Its rates are zero, and no step is better: the gap is rounding, the tolerance below that."""
     for seed in range(200):
@@ -117,7 +126,7 @@ def test_scaled_units_round_nothing() -> None:
         n, m, p = plain.sizes
         units = 10.0 ** rng.uniform(-4.0, 4.0, n)
         qp, point = programs.in_other_units(plain, point, units, np.ones(m + p), 1e-5)
-        scaling = balanced(qp, 1e3)
+        scaling = scaled(qp, 1e3)
         factors = scaling.of_point
         assert (np.frexp(factors)[0] == 0.5).all()
         x, box = factors[:n], factors[-n:]
