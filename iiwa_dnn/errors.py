@@ -2,6 +2,8 @@
 
 import copyreg
 import os
+import sys
+import warnings
 from collections.abc import Iterable
 from difflib import get_close_matches
 from importlib import import_module
@@ -107,3 +109,13 @@ def import_extra(module: str, remedy: str) -> Any:
     except ImportError as error:
         package = module.partition(".")[0]
         raise MissingDependencyError(f"the Python package {package}", remedy) from error
+
+
+def warn_caller(message: str) -> None:
+    """Warn of the line outside of this package that called it."""
+    frame = sys._getframe()
+    level = 1
+    while frame.f_back is not None and frame.f_globals["__name__"].startswith("iiwa_dnn."):
+        frame = frame.f_back
+        level += 1
+    warnings.warn(message, stacklevel=level)

@@ -111,12 +111,7 @@ def physics(options: RunWords) -> int:
 def _export_package(options: ExportWords, tables: Tables, arguments: Arguments) -> int:
     """Write a shield with the robot, obstacles and period of the settings as a package."""
     avoidance = avoidance_of(arguments.scheme)
-    shield = Shield(
-        _limited(arguments),
-        dt=arguments.settings.dt,
-        obstacles=avoidance.obstacles if avoidance else None,
-        distance=avoidance.distance if avoidance else 0.02,
-    )
+    shield = Shield(_limited(arguments), dt=arguments.settings.dt, obstacles=avoidance)
     folder = options.out or Path(options.python)
     check_folder(folder, tables, options.overwrite)
     write_settings(folder, tables)

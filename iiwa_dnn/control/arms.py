@@ -1,9 +1,9 @@
 """Step of a shield as kernels over the memory of an arm: at the desk, for many arms, and in C.
 
-A step takes what it is given over, needs the kinematics at the commanded positions, and answers the
-request. `Shield` asks Pinocchio for the kinematics, `step_arm` the kernel `write_kinematics`. An
-arm keeps what can be asked about its last step: which limits are active, its margin, the time to
-rest.
+`begin_step` takes positions, request and periods into the state of the arm; `finish_step` computes
+the command from the kinematics at the commanded positions. Between them `Shield` has Pinocchio
+compute the kinematics; `step_arm`, for `Shields` and in C, calls the kernel `write_kinematics`. The
+state holds what can be asked about the last step: active limits, margin, stopping time.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from iiwa_dnn.control.requests import (
 )
 from iiwa_dnn.control.state import MotionState, change_spacing, count_as_sent
 from iiwa_dnn.control.stopping import least_periods
+from iiwa_dnn.control.yielding import NONE
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
 from iiwa_dnn.qp.layout import IntVector, copied
@@ -47,10 +48,10 @@ class ArmSettings(Record):
 
     Attributes:
         dt: Control period [s].
-        longest: Longest control period where periods vary [s]; 0: they do not.
-        timeout: Time for which a request counts [s].
-        tracking_error: Difference from which on the arm is resynchronised to measured positions
-            [rad].
+        longest: Longest control period where periods vary [s]; 0: they are constant.
+        timeout: Age above which a request no longer counts [s].
+        tracking_error: Difference of measured and commanded positions above which the arm is
+            resynchronised to the measured ones [rad].
         delay: Time by which the arm is behind its commands [s].
     """
 
@@ -65,7 +66,7 @@ class SentCommand(Record):
     """Command that was sent to n joints, and may not show in the measured positions yet.
 
     Attributes:
-        period: Time for which it is held [s]; 0: there is none.
+        period: Time for which the command is held [s]; 0: no command was sent.
         dq: Joint velocity [rad/s], (n,).
     """
 
@@ -74,7 +75,7 @@ class SentCommand(Record):
 
 
 class ArmSizes(NamedTuple):
-    """Sizes of `ArmState`, by its names."""
+    """Sizes of the parts of `ArmState`, in the order of their names there."""
 
     n: int
     request: int
@@ -87,34 +88,30 @@ class ArmSizes(NamedTuple):
 
 
 class ArmState(Record):
-    """All that an arm keeps from one step to the next, and of the last one what can be asked.
+    """State of an arm between steps, with the results of the last step.
 
     Attributes:
-        time: Time of the arm's clock [s].
-        period: Period that counts for the last command [s].
-        age: Time since the request came [s].
-        reason: `Reason` why the request is replaced by one to rest.
+        time: Time since the arm's first step [s].
+        period: Time for which the last command is held [s].
+        age: Time since the last request came [s].
+        reason: `Reason` for which the request is replaced by zero velocity; `NONE`: it counts.
         kind: `Request` of the last request.
-        answered: `Request` that the last step answered; `NONE`: the positions are
-            not known, and no step was taken.
-        action: `Action` of the last step.
-        has_begun: Whether there was a first step.
+        answered: `Request` that the last step answered; `NONE`: the positions are not known, and
+            no step was taken.
+        has_begun: Whether joint positions are known.
         is_repeated: Whether the request is that of the step before.
-        is_resynchronised: Whether it was resynchronised to measured positions.
-        is_blind: Whether the measured positions were not finite.
-        is_cut: Whether the request was cut.
-        is_late: Whether the period was above the longest.
-        is_singular: Whether the damping alone kept a twist from being fulfilled.
-        is_clipped: Whether the command was another one than the request.
+        is_clipped: Whether the last command differs from the request.
         positions: Commanded joint positions [rad], (n,).
-        request: The request that counts, (max(n, 6),): zero without one.
+        request: The request that counts, (max(n, 6),); zero without one.
+        reasons: 1 for each `Reason` of the last step, else 0.
         motion: `MotionState`.
         network: State of the network that answers twists.
         fallback: States of the networks of fallback programs, for requests of joints.
         twist_fallback: The same for twists.
-        obstacles: Places of the obstacles at time 0 [m], (k, 3).
-        limiting: Bounds and rows that limit the command, as in `StepLog`, (n + m,).
-        sent: `SentCommand` of the commands that cover the delay, the last first, (k (1 + n),).
+        obstacles: Centres that the obstacles had, or would have had, at time 0 [m], (k, 3).
+        limiting: Active bounds and rows of the last step, as in `StepLog`, (n + m,).
+        sent: A `SentCommand` for each command of the last `delay` seconds, the last first,
+            (k (1 + n),).
     """
 
     time: float
@@ -123,17 +120,12 @@ class ArmState(Record):
     reason: int
     kind: int
     answered: int
-    action: int
     has_begun: bool
     is_repeated: bool
-    is_resynchronised: bool
-    is_blind: bool
-    is_cut: bool
-    is_late: bool
-    is_singular: bool
     is_clipped: bool
     positions: Vector = part("n")
     request: Vector = part("request")
+    reasons: Vector = part(len(Reason))
     motion: Vector = part("motion")
     network: Vector = part("network")
     fallback: Vector = part("fallback")
@@ -144,16 +136,16 @@ class ArmState(Record):
 
 
 class ArmPlan(NamedTuple):
-    """Layout and settings that all arms of a kind share.
+    """Layout and settings of the steps of a shield's arms.
 
     Attributes:
         robot: Tables of the robot, n joints.
         step: Layout of the control step.
-        request: Number of the block of the request.
-        scene: Number of the block of the watched pairs; -1: there is none.
+        request: Number of the program's block that holds the request.
+        scene: Number of the program's block that holds the watched pairs; -1: none are watched.
         width: Length of the log of a step.
-        motion: Limits of the joints.
-        fastest: Largest number of a twist [m/s], [rad/s]; a larger one is cut to it.
+        motion: Limits of the joints' motion.
+        fastest: Largest entry of a twist [m/s], [rad/s]; a larger twist is scaled down to it.
         lower: Lower position limits [rad], (n,).
         upper: Upper position limits [rad], (n,).
         velocities: Velocities of the obstacles [m/s], (k, 3).
@@ -176,12 +168,12 @@ class ArmPlan(NamedTuple):
 
 
 class ArmInput(NamedTuple):
-    """Hold what an arm is given for a step.
+    """Inputs of a step.
 
     Attributes:
         q: Measured joint positions [rad], (n,).
-        kind: Kind of the new request; `NONE`: there is none.
-        request: The request, at least (n,) or (6,).
+        kind: Kind of the new request; `Request.NONE`: there is none.
+        request: Numbers of the new request, at least (n,) or (6,).
         dt: Period for which the command will be held [s]; 0: not stated.
         elapsed: Time since the last step [s]; 0: not stated.
     """
@@ -195,7 +187,7 @@ class ArmInput(NamedTuple):
 
 @compiled
 def arm_state(plan: ArmPlan, memory: Vector) -> ArmState:
-    """View the memory (k,) of an arm by its names."""
+    """View the memory (k,) of an arm as its state."""
     return ArmState.of(
         memory,
         plan.sizes.n,
@@ -210,162 +202,157 @@ def arm_state(plan: ArmPlan, memory: Vector) -> ArmState:
 
 
 @compiled
-def motion_of(plan: ArmPlan, own: ArmState) -> MotionState:
+def motion_of(plan: ArmPlan, arm: ArmState) -> MotionState:
     """View the state of an arm's motion."""
     sizes = plan.step.arrays.sizes
-    return MotionState.of(own.motion, sizes.joints, sizes.pairs)
+    return MotionState.of(arm.motion, sizes.joints, sizes.pairs)
 
 
 @compiled
 def rest_arm(plan: ArmPlan, memory: Vector, q: Vector) -> None:
-    """Let an arm stand at joint positions q (n,) [rad], or without any where it is measured next.
+    """Reset an arm to rest at joint positions q (n,) [rad]; its obstacles stay where they are.
 
-    The obstacles stay where they are.
+    If q is empty, the arm begins at the positions that the next step measures.
     """
-    own = arm_state(plan, memory)
-    places = own.obstacles.copy()
+    arm = arm_state(plan, memory)
+    centers = arm.obstacles.copy()
     memory[:] = 0.0
-    for k in range(len(places)):
-        copied(own.obstacles[k], places[k])
-    own.period = plan.settings.dt
-    own.reason = Reason.NO_REQUEST
+    for k in range(len(centers)):
+        copied(arm.obstacles[k], centers[k])
+    arm.period = plan.settings.dt
+    arm.reason = Reason.NO_REQUEST
     if q.size > 0:
-        own.has_begun = True
-        copied(own.positions, q)
+        arm.has_begun = True
+        copied(arm.positions, q)
 
 
 @compiled
 def place_arm(plan: ArmPlan, memory: Vector, centers: Matrix) -> None:
-    """Let the obstacles have their centres at places (k, 3) [m] now, and move on from there."""
-    own = arm_state(plan, memory)
-    for k in range(len(own.obstacles)):
+    """Place the centres of an arm's obstacles, (k, 3) [m], at the present time."""
+    arm = arm_state(plan, memory)
+    for k in range(len(arm.obstacles)):
         for i in range(3):
-            own.obstacles[k, i] = centers[k, i] - own.time * plan.velocities[k, i]
+            arm.obstacles[k, i] = centers[k, i] - arm.time * plan.velocities[k, i]
 
 
 @compiled
 def halt_arm(plan: ArmPlan, memory: Vector) -> None:
-    """Brake from now on, whatever is requested, until the arm rests anew."""
-    own = arm_state(plan, memory)
-    own.reason = Reason.HALTED
+    """Make an arm brake at each step, whatever is requested, until `rest_arm`."""
+    arm = arm_state(plan, memory)
+    arm.reason = Reason.HALTED
 
 
 @compiled
 def send_arm(plan: ArmPlan, memory: Vector, dq: Vector, period: float) -> None:
     """Count a velocity dq (n,) [rad/s] as sent for a period [s], in place of a step's command."""
-    own = arm_state(plan, memory)
-    motion = motion_of(plan, own)
+    arm = arm_state(plan, memory)
+    motion = motion_of(plan, arm)
     count_as_sent(motion, dq, period)
-    own.age += own.period
-    own.period = period
-    _go_on(own, plan.settings, motion)
+    arm.age += arm.period
+    arm.period = period
+    _advance(arm, plan.settings, motion)
 
 
 @compiled
-def step_arm(plan: ArmPlan, memory: Vector, given: ArmInput) -> int:
+def step_arm(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> int:
     """Take a step of a shield; its command is then the last one of `motion_of` the arm.
 
-    Joint positions that are not finite count as those that were commanded, and the arm brakes.
+    If a measured position is not finite, the arm brakes along the commanded positions.
 
     Returns:
-        The first `Reason` for another command than the request; `INVALID` if a stated period is
-        none: then nothing is changed.
+        The first `Reason` of the step; `INVALID` if a stated period is not valid: nothing is then
+        changed.
     """
-    if take_input(plan, memory, given) == INVALID:
+    if not begin_step(plan, memory, inputs):
         return INVALID
-    own = arm_state(plan, memory)
+    arm = arm_state(plan, memory)
     base = plan.step.arrays
-    jacobian = np.empty((own.positions.size, 6))
+    jacobian = np.empty((arm.positions.size, 6))
     placements = np.empty((base.placements.shape[0], 12))
-    write_kinematics(plan.robot, own.positions, jacobian, placements, base.inertia)
-    row = np.empty(plan.width)
-    answer_request(plan, memory, given, jacobian, placements, row)
-    return first_reason(own)
+    write_kinematics(plan.robot, arm.positions, jacobian, placements, base.inertia)
+    data = np.empty(plan.width)
+    finish_step(plan, memory, inputs, jacobian, placements, data)
+    return first_reason(arm)
 
 
 @compiled
-def take_input(plan: ArmPlan, memory: Vector, given: ArmInput) -> int:
-    """Take positions, a request and periods over: the part of a step before the kinematics.
+def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> bool:
+    """Take the inputs of a step into an arm's state: the part of a step before the kinematics.
 
     Returns:
-        The `Request` that is to be answered; `NONE`: the arm's positions are not known. `INVALID`
-        if a stated period is none: then nothing is changed.
+        False if a stated period is not valid: nothing is then changed.
     """
-    own = arm_state(plan, memory)
+    arm = arm_state(plan, memory)
     settings = plan.settings
-    stated = max(given.dt, given.elapsed)
-    fits = stated < np.inf and min(given.dt, given.elapsed) == 0.0
-    if not fits or (given.elapsed > 0.0 and settings.longest == 0.0):
-        return INVALID
-    periods = _periods_of(settings, given)
-    if given.elapsed > 0.0:
-        _count_as_elapsed(own, motion_of(plan, own), given.elapsed)
-    own.is_late = periods.exceeded
-    _take_positions(own, settings, given)
-    _take_request(own, settings, given)
-    own.period = periods.expected
-    own.answered = Request.VELOCITY
-    if own.reason == Reason.NONE and not own.is_blind:
-        own.answered = own.kind
-    if not own.has_begun:
-        own.answered = Request.NONE
-    return own.answered
+    stated = max(inputs.dt, inputs.elapsed)
+    fits = stated < np.inf and min(inputs.dt, inputs.elapsed) == 0.0
+    if not fits or (inputs.elapsed > 0.0 and settings.longest == 0.0):
+        return False
+    periods = periods_of(settings.dt, settings.longest, inputs.dt, inputs.elapsed)
+    if inputs.elapsed > 0.0:
+        _correct_last_period(arm, motion_of(plan, arm), inputs.elapsed)
+    arm.reasons[:] = 0.0
+    arm.reasons[Reason.PERIOD_EXCEEDED] = 1.0 if periods.exceeded else 0.0
+    _update_positions(arm, settings, inputs)
+    _update_request(arm, settings, inputs)
+    arm.period = periods.expected
+    arm.answered = Request.VELOCITY
+    if arm.reason == Reason.NONE and arm.reasons[Reason.Q_NOT_FINITE] == 0.0:
+        arm.answered = arm.kind
+    if not arm.has_begun:
+        arm.answered = Request.NONE
+    return True
 
 
 @compiled
-def _periods_of(settings: ArmSettings, given: ArmInput) -> Periods:
-    """Return the periods that a step states."""
-    return periods_of(settings.dt, settings.longest, given.dt, given.elapsed)
-
-
-@compiled
-def _count_as_elapsed(own: ArmState, motion: MotionState, elapsed: float) -> None:
-    """Count the last command as held for `elapsed` [s]."""
+def _correct_last_period(arm: ArmState, motion: MotionState, elapsed: float) -> None:
+    """Correct positions and time for a last command that was held for `elapsed` [s]."""
     for i in range(motion.last.size):
-        own.positions[i] += (elapsed - own.period) * motion.last[i]
-    own.time = own.time + elapsed - own.period
-    own.period = elapsed
-    if own.sent.size > 0:
-        last = _sent_command(own, 0)
+        arm.positions[i] += (elapsed - arm.period) * motion.last[i]
+    arm.time = arm.time + elapsed - arm.period
+    arm.period = elapsed
+    if arm.sent.size > 0:
+        last = _sent_command(arm, 0)
         last.period = elapsed
 
 
 @compiled
-def _take_positions(own: ArmState, settings: ArmSettings, given: ArmInput) -> None:
-    """Take measured positions over at the first step, if they are far, or if nobody states periods.
+def _update_positions(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> None:
+    """Set the commanded positions to the measured ones, where these count.
 
-    Then nobody says for how long the last command was held. What commands have moved that do not
-    show yet is added to the measured positions.
+    They count at the first step; where they differ by more than the tracking error; and where
+    periods vary and none is stated, since the time for which the last command was held is then
+    unknown. The displacement that the delay still hides is added to them.
     """
-    q = given.q[: own.positions.size].copy()
-    _add_pending(own, settings.delay, q)
+    q = inputs.q[: arm.positions.size].copy()
+    _add_pending(arm, settings.delay, q)
     far = 0
     beyond = 0
     for i in range(q.size):
-        far += not abs(q[i] - own.positions[i]) <= settings.tracking_error
+        far += not abs(q[i] - arm.positions[i]) <= settings.tracking_error
         beyond += not abs(q[i]) <= LARGEST
-    unstated = settings.longest > 0.0 and max(given.dt, given.elapsed) == 0.0
-    own.is_blind = beyond > 0
-    own.is_resynchronised = False
-    if not own.is_blind and (far > 0 or unstated or not own.has_begun):
-        own.is_resynchronised = own.has_begun and not unstated
-        own.has_begun = True
-        copied(own.positions, q)
+    unstated = settings.longest > 0.0 and max(inputs.dt, inputs.elapsed) == 0.0
+    if beyond > 0:
+        arm.reasons[Reason.Q_NOT_FINITE] = 1.0
+    elif far > 0 or unstated or not arm.has_begun:
+        arm.reasons[Reason.RESYNCHRONISED] = 1.0 if arm.has_begun and not unstated else 0.0
+        arm.has_begun = True
+        copied(arm.positions, q)
 
 
 @compiled
-def _sent_command(own: ArmState, k: int) -> SentCommand:
+def _sent_command(arm: ArmState, k: int) -> SentCommand:
     """View the command that was sent k commands before the last one."""
-    width = 1 + own.positions.size
-    return SentCommand.of(own.sent[k * width : (k + 1) * width])
+    width = 1 + arm.positions.size
+    return SentCommand.of(arm.sent[k * width : (k + 1) * width])
 
 
 @compiled
-def _add_pending(own: ArmState, delay: float, q: Vector) -> None:
+def _add_pending(arm: ArmState, delay: float, q: Vector) -> None:
     """Add the displacement by the commands of the last `delay` [s] to positions q (n,) [rad]."""
     age = 0.0
-    for k in range(own.sent.size // (1 + q.size)):
-        command = _sent_command(own, k)
+    for k in range(arm.sent.size // (1 + q.size)):
+        command = _sent_command(arm, k)
         pending = min(max(delay - age, 0.0), command.period)
         for i in range(q.size):
             q[i] += pending * command.dq[i]
@@ -373,16 +360,14 @@ def _add_pending(own: ArmState, delay: float, q: Vector) -> None:
 
 
 @compiled
-def _note_sent(own: ArmState, period: float, dq: Vector) -> None:
-    """Note a command as the last one that was sent.
+def _note_sent(arm: ArmState, period: float, dq: Vector) -> None:
+    """Note a command dq (n,) [rad/s] as the last one that was sent.
 
-    Args:
-        own: The arm.
-        period: Control period [s]; two commands that last no longer together become one.
-        dq: The command [rad/s], (n,).
+    If the two before it last no longer than a control period [s] together, they become one with
+    their mean velocity: so a bounded number of commands covers the delay.
     """
-    last = _sent_command(own, 0)
-    before = _sent_command(own, 1)
+    last = _sent_command(arm, 0)
+    before = _sent_command(arm, 1)
     both = last.period + before.period
     if min(last.period, before.period) > 0.0 and both <= period:
         for i in range(dq.size):
@@ -391,103 +376,98 @@ def _note_sent(own: ArmState, period: float, dq: Vector) -> None:
         before.period = both
     else:
         width = 1 + dq.size
-        for k in range(own.sent.size - width):
-            place = own.sent.size - 1 - k
-            own.sent[place] = own.sent[place - width]
-    last.period = own.period
+        for k in range(arm.sent.size - width):
+            place = arm.sent.size - 1 - k
+            arm.sent[place] = arm.sent[place - width]
+    last.period = arm.period
     copied(last.dq, dq)
 
 
 @compiled
-def _take_request(own: ArmState, settings: ArmSettings, given: ArmInput) -> None:
-    """Take a request over; without one the last one counts, or one to rest for a reason."""
+def _update_request(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> None:
+    """Set the request that counts: the new one, else the last one, or zero for a `Reason`."""
     count = 0
-    if given.kind != Request.NONE:
-        own.kind = given.kind
-        count = TWIST if given.kind == Request.TWIST else own.positions.size
-    own.age += own.period
-    if count > 0 and own.reason != Reason.HALTED:
-        own.age = 0.0
-        finite = all_finite(given.request, 0, count)
-        own.reason = Reason.NONE if finite else Reason.NOT_FINITE
-    if own.reason == Reason.NONE and own.age > settings.timeout + 0.5 * own.period:
-        own.reason = Reason.TIMED_OUT
+    if inputs.kind != Request.NONE:
+        arm.kind = inputs.kind
+        count = TWIST if inputs.kind == Request.TWIST else arm.positions.size
+    arm.age += arm.period
+    if count > 0 and arm.reason != Reason.HALTED:
+        arm.age = 0.0
+        finite = all_finite(inputs.request, 0, count)
+        arm.reason = Reason.NONE if finite else Reason.NOT_FINITE
+    if arm.reason == Reason.NONE and arm.age > settings.timeout + 0.5 * arm.period:
+        arm.reason = Reason.TIMED_OUT
+    if arm.reason != Reason.NONE:
+        arm.reasons[arm.reason] = 1.0
     other = 0
-    for i in range(own.request.size):
-        now = given.request[i] if i < count else own.request[i]
-        now = now if own.reason == Reason.NONE else 0.0
-        other += now != own.request[i]
-        own.request[i] = now
-    own.is_repeated = other == 0 and not own.is_blind
+    for i in range(arm.request.size):
+        now = inputs.request[i] if i < count else arm.request[i]
+        now = now if arm.reason == Reason.NONE else 0.0
+        other += now != arm.request[i]
+        arm.request[i] = now
+    arm.is_repeated = other == 0 and arm.reasons[Reason.Q_NOT_FINITE] == 0.0
 
 
 @compiled
-def answer_request(
+def finish_step(
     plan: ArmPlan,
     memory: Vector,
-    given: ArmInput,
+    inputs: ArmInput,
     jacobian: Matrix,
     placements: Matrix,
-    row: Vector,
+    data: Vector,
 ) -> int:
-    """Answer the request that `take_input` has found: the part of a step after the kinematics.
+    """Compute the command of a step: the part of a step after the kinematics.
 
     Args:
         plan: Layout of the step.
-        memory: The arm's memory, (k,).
-        given: As for `take_input`.
+        memory: The arm's memory after `begin_step`, (k,).
+        inputs: The inputs of the step.
         jacobian: `Kinematics.jacobian` at the commanded positions, (n, 6).
         placements: `Kinematics.placements` there, (frames, 12).
-        row: Room for the log of the control step.
+        data: The log of the control step, overwritten, (width,).
 
     Returns:
-        The action that was taken, or `INVALID`; that of the step before if `take_input` found that
-        no step can be taken.
+        The `Action` that was taken, or `INVALID`; `NONE` if the positions are not known.
     """
-    own = arm_state(plan, memory)
-    if own.answered != Request.NONE:
-        own.action = _answer(plan, own, given, jacobian, placements, row)
-    _go_on(own, plan.settings, motion_of(plan, own))
-    return own.action
+    arm = arm_state(plan, memory)
+    action = NONE
+    if arm.answered != Request.NONE:
+        action = _answer(plan, arm, inputs, jacobian, placements, data)
+    _advance(arm, plan.settings, motion_of(plan, arm))
+    return action
 
 
 @compiled
-def _go_on(own: ArmState, settings: ArmSettings, motion: MotionState) -> None:
-    """Lead positions and clock to the end of the last command's period."""
-    if own.sent.size > 0:
-        _note_sent(own, settings.dt, motion.last)
-    for i in range(own.positions.size):
-        own.positions[i] += own.period * motion.last[i]
-    own.time += own.period
+def _advance(arm: ArmState, settings: ArmSettings, motion: MotionState) -> None:
+    """Advance the commanded positions and the time by the last command's period."""
+    if arm.sent.size > 0:
+        _note_sent(arm, settings.dt, motion.last)
+    for i in range(arm.positions.size):
+        arm.positions[i] += arm.period * motion.last[i]
+    arm.time += arm.period
 
 
 @compiled
-def first_reason(own: ArmState) -> int:
-    """Return the first `Reason` for another command than the request, beside limits."""
-    if own.is_blind and own.reason != Reason.HALTED:
-        return Reason.Q_NOT_FINITE
-    if own.reason != Reason.NONE:
-        return own.reason
-    if own.is_resynchronised:
-        return Reason.RESYNCHRONISED
-    if own.is_cut:
-        return Reason.CUT
-    if own.is_late:
-        return Reason.PERIOD_EXCEEDED
-    return Reason.SINGULAR if own.is_singular else Reason.NONE
+def first_reason(arm: ArmState) -> int:
+    """Return the first `Reason` of an arm's last step, by their codes; `NONE`: there is none."""
+    for k in range(arm.reasons.size):
+        if arm.reasons[k] != 0.0:
+            return k
+    return Reason.NONE
 
 
 @compiled
 def _answer(
     plan: ArmPlan,
-    own: ArmState,
-    given: ArmInput,
+    arm: ArmState,
+    inputs: ArmInput,
     jacobian: Matrix,
     placements: Matrix,
-    row: Vector,
+    data: Vector,
 ) -> int:
-    """Answer a request by the program of a step, and keep its command; return the action."""
-    timing = _periods_of(plan.settings, given)
+    """Answer the request of an arm by a control step, and keep its results; return the action."""
+    timing = periods_of(plan.settings.dt, plan.settings.longest, inputs.dt, inputs.elapsed)
     base = plan.step.arrays
     arrays = ProgramArrays(
         base.sizes,
@@ -500,83 +480,84 @@ def _answer(
         base.tip,
     )
     if plan.scene >= 0:
-        _place_obstacles(plan, own, own.time, block_constants(arrays, plan.scene))
-    motion = motion_of(plan, own)
+        _place_obstacles(plan, arm, arm.time, block_constants(arrays, plan.scene))
+    motion = motion_of(plan, arm)
     change_spacing(motion, timing.dt)
-    log = log_of(row, base.sizes)
+    log = log_of(data, base.sizes)
     log.targets.reshape(log.targets.size)[:] = 0.0
-    is_twist = own.answered == Request.TWIST
-    state = own.network if is_twist else np.zeros(own.network.size)
+    is_twist = arm.answered == Request.TWIST
+    state = arm.network if is_twist else np.zeros(arm.network.size)
     request = RequestConstants.of(block_constants(arrays, plan.request))
     request.is_twist = is_twist
     if is_twist:
-        size = largest_entry(own.request[: Twist.width()])
-        own.is_cut = size > plan.fastest
+        excess = max(largest_entry(arm.request[: Twist.width()]) / plan.fastest, 1.0)
+        arm.reasons[Reason.CUT] = 1.0 if excess > 1.0 else 0.0
         for i in range(TWIST):
-            request.asked[i] = own.request[i] / max(size / plan.fastest, 1.0)
+            request.velocity[i] = arm.request[i] / excess
     else:
-        come_nearer(own, motion, plan.motion, timing, state)
-        copied(request.asked, state[: own.positions.size])
+        approach_request(arm, motion, plan.motion, timing, state)
+        copied(request.velocity, state[: arm.positions.size])
     step = ControlPlan(
         arrays,
         plan.step.network,
         plan.step.paths,
         plan.step.yielding,
-        own.twist_fallback if is_twist else own.fallback,
+        arm.twist_fallback if is_twist else arm.fallback,
         plan.step.policy,
         False,
         timing,
     )
-    next_motion_state = np.empty(own.motion.size)
-    action = take_step(row, step, own.positions, own.motion, next_motion_state, state, own.time)
-    if action == INVALID:  # positions that have been led beyond all limits
+    next_motion_state = np.empty(arm.motion.size)
+    action = take_step(data, step, arm.positions, arm.motion, next_motion_state, state, arm.time)
+    if action == INVALID:  # the commanded positions are beyond `LARGEST`
         motion.last[:] = 0.0
         return action
-    copied(own.motion, next_motion_state)
-    motion.yields = False  # a request that can be had again is had at once
+    copied(arm.motion, next_motion_state)
+    motion.yields = False  # the next step tries the request again
     qp = program_views(log.program, base.sizes)
-    own.is_singular = is_twist and falls_short(qp, request.asked)
-    _note_limits(own, log)
+    if is_twist and falls_short(qp, request.velocity):
+        arm.reasons[Reason.SINGULAR] = 1.0
+    _note_limits(arm, log)
     return action
 
 
 @compiled
-def _place_obstacles(plan: ArmPlan, own: ArmState, t: float, constants: Vector) -> None:
-    """Write the places of the obstacles at time t [s] among the constants (k,) of a scene."""
-    bodies = scene_views(constants, own.positions.size).bodies
-    first = len(bodies) - len(own.obstacles)
-    for k in range(len(own.obstacles)):
+def _place_obstacles(plan: ArmPlan, arm: ArmState, t: float, constants: Vector) -> None:
+    """Write the centres of the obstacles at time t [s] into the constants (k,) of a scene."""
+    bodies = scene_views(constants, arm.positions.size).bodies
+    first = len(bodies) - len(arm.obstacles)
+    for k in range(len(arm.obstacles)):
         body = Body.of(bodies[first + k])
         for i in range(body.center.size):
-            body.center[i] = own.obstacles[k, i] + t * plan.velocities[k, i]
+            body.center[i] = arm.obstacles[k, i] + t * plan.velocities[k, i]
 
 
 @compiled
-def come_nearer(
-    own: ArmState, motion: MotionState, limits: MotionConstants, periods: Periods, dq: Vector
+def approach_request(
+    arm: ArmState, motion: MotionState, limits: MotionConstants, periods: Periods, dq: Vector
 ) -> None:
-    """Write the next velocities dq (n,) [rad/s] on the quickest path to the request that counts.
+    """Write the next velocities dq (n,) [rad/s] of the joints on their way to the request.
 
-    Those on the way to positions are the quickest ones from which all joints can still rest there.
-    A joint that jerk limits keep from its velocity in this step, or that is asked for the same one
-    as in the last step, does not pass it.
+    For requested positions each joint takes the largest velocity from which it can still come to
+    rest there. A joint that cannot reach its requested velocity in this step because of a jerk
+    limit, or whose request is that of the step before, approaches it without overshoot.
 
     Args:
-        own: The request, and where the joints are.
-        motion: Last commands.
+        arm: The arm, with its request.
+        motion: The last commands.
         limits: Limits of the joints.
         periods: Periods of the step.
         dq: The velocities, or longer, overwritten.
     """
-    reaches = own.answered == Request.POSITION
-    own.is_cut = False
-    for i in range(own.positions.size):
+    reaches = arm.answered == Request.POSITION
+    brakes = arm.reasons[Reason.Q_NOT_FINITE] != 0.0
+    for i in range(arm.positions.size):
         last = motion.last[i]
         before = motion.before[i]
-        wanted = 0.0 if own.is_blind else own.request[i]
-        left = wanted - own.positions[i]
-        above = limits.upper[i] - own.positions[i]
-        below = own.positions[i] - limits.lower[i]
+        wanted = 0.0 if brakes else arm.request[i]
+        left = wanted - arm.positions[i]
+        above = limits.upper[i] - arm.positions[i]
+        below = arm.positions[i] - limits.lower[i]
         rates = joint_rates(limits, i)
         most = CUT * min(rates.velocity, FASTEST)
         if reaches:
@@ -587,37 +568,37 @@ def come_nearer(
             wanted = min(max(left / periods.hold, -most), most)
         elif abs(wanted) > most:
             wanted = math.copysign(most, wanted)
-            own.is_cut = True
+            arm.reasons[Reason.CUT] = 1.0
         lower, upper, _, _ = joint_bounds(last, before, above, below, rates, periods)
         if reaches:
             wanted = min(max(wanted, lower), upper)
             wanted = arriving(last, before, left, wanted, rates, periods)
-        elif own.is_repeated or wanted < lower or wanted > upper:
+        elif arm.is_repeated or wanted < lower or wanted > upper:
             wanted += braking(last - wanted, -np.inf, np.inf, limits.jerk[i], periods)
         dq[i] = wanted
 
 
 @compiled
-def _note_limits(own: ArmState, log: StepLog) -> None:
-    """Note which bounds and rows keep the command from the request, and whether they do."""
-    copied(own.limiting, log.limiting)
+def _note_limits(arm: ArmState, log: StepLog) -> None:
+    """Note the active bounds and rows of a step, and whether its command differs from the request.
+
+    A command for a twist or for positions differs if a limit is active or there is a `Reason`.
+    """
+    copied(arm.limiting, log.limiting)
     differs = 0
-    limits = 0
-    for i in range(own.limiting.size):
-        limits += own.limiting[i] != 0.0
-    for i in range(own.positions.size):
-        differs += log.dq[i] != own.request[i]
-    reason = first_reason(own)
-    own.is_clipped = limits > 0 or reason != Reason.NONE
-    if own.answered == Request.VELOCITY and reason == Reason.NONE:
-        own.is_clipped = differs > 0
+    for i in range(arm.positions.size):
+        differs += log.dq[i] != arm.request[i]
+    reason = first_reason(arm)
+    arm.is_clipped = largest_entry(log.limiting) > 0.0 or reason != Reason.NONE
+    if arm.answered == Request.VELOCITY and reason == Reason.NONE:
+        arm.is_clipped = differs > 0
 
 
 @compiled
 def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
-    """Compute `Margin` at the joint positions that an arm's last command starts from."""
-    own = arm_state(plan, memory)
-    q = motion_of(plan, own).q
+    """Compute the `Margin` of an arm at the joint positions that its last command starts from."""
+    arm = arm_state(plan, memory)
+    q = motion_of(plan, arm).q
     joint = np.inf
     for i in range(q.size):
         joint = min(joint, min(q[i] - plan.lower[i], plan.upper[i] - q[i]))
@@ -628,7 +609,7 @@ def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
         placements = np.empty((base.placements.shape[0], 12))
         write_kinematics(plan.robot, q, jacobian, placements, base.inertia)
         constants = block_constants(base, plan.scene).copy()
-        _place_obstacles(plan, own, own.time - own.period, constants)
+        _place_obstacles(plan, arm, arm.time - arm.period, constants)
         scene = scene_views(constants, q.size)
         distances = np.empty(len(scene.pairs))
         write_distances(constants, q.size, placements, distances)
@@ -639,67 +620,34 @@ def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
 
 @compiled
 def stopping_time_of(plan: ArmPlan, memory: Vector) -> float:
-    """Compute the time of the motion to rest from an arm's last command [s]."""
-    own = arm_state(plan, memory)
-    motion = motion_of(plan, own)
-    support = 0.0
-    for i in range(motion.last.size):
-        support = 1.0 if motion.last[i] != 0.0 else support
+    """Compute the time of the stopping motion from an arm's last command [s]."""
+    arm = arm_state(plan, memory)
+    motion = motion_of(plan, arm)
     cubic = plan.step.yielding.cubic
     dt = motion.spacing
     periods = least_periods(motion.last, motion.before, plan.motion, dt, cubic, False)
-    return dt * max(periods, support)
-
-
-class ArmInputs(NamedTuple):
-    """Hold what N arms are given for a step.
-
-    Attributes:
-        q: Measured joint positions [rad], (N, n).
-        kind: Kind of the new requests.
-        requests: The requests, (N, n) or (N, 6).
-        given: 1 for the arms that have a new one, else 0, (N,).
-        dt: As in `ArmInput`.
-        elapsed: As in `ArmInput`.
-    """
-
-    q: Matrix
-    kind: int
-    requests: Matrix
-    given: IntVector
-    dt: float
-    elapsed: float
-
-
-class ArmOutputs(NamedTuple):
-    """Commands of N arms, overwritten.
-
-    Attributes:
-        dq: Joint velocities [rad/s], (N, n).
-        next_q: Joint positions at the end of the period [rad], (N, n).
-        clipped: 1 where the command differs from the request, else 0, (N,).
-        reason: `Reason` of each arm, (N,).
-    """
-
-    dq: Matrix
-    next_q: Matrix
-    clipped: IntVector
-    reason: IntVector
+    return dt * max(periods, 1.0 if largest_entry(motion.last) > 0.0 else 0.0)
 
 
 @released
 def step_arms(
-    plan: ArmPlan, memories: Matrix, given: ArmInputs, out: ArmOutputs, first: int, last: int
-) -> int:
-    """Take a step of the arms from one number to another; returns the last of `step_arm`'s."""
-    found = 0
+    plan: ArmPlan, memories: Matrix, inputs: ArmInput, kinds: IntVector, first: int, last: int
+) -> None:
+    """Take a step of the arms from number `first` to the one before `last`.
+
+    Args:
+        plan: Layout of the step.
+        memories: Memories of all N arms, (N, k).
+        inputs: Inputs of all arms: the positions (N n,) and requests (N n,) or (N 6,) of one arm
+            after those of another; `kind` does not count.
+        kinds: `Request` of each arm's new request, (N,).
+        first: Number of the first arm.
+        last: Number after that of the last arm.
+    """
+    n = plan.sizes.n
+    width = inputs.request.size // len(memories)
     for k in range(first, last):
-        kind = given.kind if given.given[k] != 0 else Request.NONE
-        own = ArmInput(given.q[k], kind, given.requests[k], given.dt, given.elapsed)
-        found = step_arm(plan, memories[k], own)
-        state = arm_state(plan, memories[k])
-        copied(out.dq[k], motion_of(plan, state).last)
-        copied(out.next_q[k], state.positions)
-        out.clipped[k] = 1 if state.is_clipped else 0
-        out.reason[k] = found
-    return found
+        q = inputs.q[k * n : (k + 1) * n]
+        request = inputs.request[k * width : (k + 1) * width]
+        own = ArmInput(q, kinds[k], request, inputs.dt, inputs.elapsed)
+        step_arm(plan, memories[k], own)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import threading
-import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, Literal
@@ -28,7 +27,7 @@ from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.state import ControllerState, MotionState, count_as_sent
 from iiwa_dnn.control.stopping import stopping_time
 from iiwa_dnn.control.yielding import BRAKE
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError, warn_caller
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Reference, Target
@@ -325,7 +324,7 @@ class Controller:
         start = Configuration(self.robot, checks.joint_positions("q", q, self.robot.dof))
         self.anchor(start)
         if not self._state.warned:
-            self.warn_of_start(start, t, own, stacklevel=5)
+            self.warn_of_start(start, t, own)
         return self.control_layout
 
     @property
@@ -370,14 +369,13 @@ class Controller:
             self._anchored = scheme
             self._state.motion.q[:] = start.q
 
-    def warn_of_start(self, start: Configuration, t: float, own: bool, stacklevel: int) -> None:
+    def warn_of_start(self, start: Configuration, t: float, own: bool) -> None:
         """Warn of settings, a start posture or a first target that are most likely wrong, once.
 
         Args:
             start: The start.
             t: Time [s].
             own: Whether the targets are the reference's.
-            stacklevel: That of the warnings.
         """
         self._state.warned.add("start")
         program = self.program
@@ -388,7 +386,7 @@ class Controller:
             away = beyond_reach(self.reference, self.robot)
             found += [f"the path leads {away:.3g} m beyond the arm's reach"] * (away > 0.0)
         for message in found:
-            warnings.warn(message, stacklevel=stacklevel)
+            warn_caller(message)
 
     def reset(self) -> None:
         """Forget the network's state, the last commands and the path lag; the home stays."""
@@ -473,7 +471,7 @@ def periods_of_step(
     if periods.exceeded and EXCEEDED not in warned:
         warned.add(EXCEEDED)
         problem = f"a period of {periods.dt:g} s is above the longest, {longest:g} s"
-        warnings.warn(f"{problem}: limits may be passed", stacklevel=5)
+        warn_caller(f"{problem}: limits may be passed")
     return periods
 
 

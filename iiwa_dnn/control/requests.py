@@ -6,10 +6,13 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.control.command import EXCEEDED
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import cholesky_factor, factor_solve
 from iiwa_dnn.qp.layout import QPViews
@@ -21,26 +24,23 @@ from iiwa_dnn.schemes.program import add_soft
 from iiwa_dnn.schemes.step import StepViews, point_rate
 
 DAMPING = 0.02
-"""Lambda of a twist's program [m/rad]: near a singular pose the joints do not race."""
+"""Damping lambda of a twist's program [m/rad], which limits joint velocities near a singular pose.
+"""
 
 SIDEWAYS = 10.0
-"""Weight of the motion beside a twist: where a twist cannot be had, the frame stays rather than
-slides."""
+"""Weight of the error perpendicular to a twist, relative to the error along it."""
 
 SHORT = 0.02
-"""Part of a twist that may be missing where the damping alone keeps it from being fulfilled."""
+"""Relative error above which a twist that only the damping limits is reported as not fulfilled."""
 
 CUT = 100.0
-"""Velocity to which a larger request is cut, in units of the largest one that joints can do."""
+"""Largest request, in units of the largest velocity of the joints; a larger one is cut to it."""
 
 FASTEST = 1e4
-"""Largest velocity of a joint that has no velocity limit [rad/s], for the cut."""
+"""Velocity limit of a joint without one [rad/s], where requests are cut."""
 
 TWIST = 6
 """Numbers of a twist."""
-
-ARGUMENTS = ("", "dq", "twist", "position")
-"""Arguments of a step by the `Request` that they are."""
 
 REASONS = (
     "",
@@ -54,11 +54,11 @@ REASONS = (
     EXCEEDED,
     "singular posture",
 )
-"""Words of each `Reason`."""
+"""Words of each `Reason`, in the order of their codes."""
 
 
 class Request(IntEnum):
-    """Kinds of a request."""
+    """Kinds of a request: the quantity that it states."""
 
     NONE = 0
     VELOCITY = 1
@@ -67,7 +67,10 @@ class Request(IntEnum):
 
 
 class Reason(IntEnum):
-    """Reasons beside limits for another command than the request: those to rest come first."""
+    """Reasons, other than limits, for a command that differs from the request.
+
+    With those from `NO_REQUEST` to `Q_NOT_FINITE` the arm brakes to rest.
+    """
 
     NONE = 0
     NO_REQUEST = 1
@@ -81,38 +84,66 @@ class Reason(IntEnum):
     SINGULAR = 9
 
 
+def one_request(
+    shape: tuple[int, ...],
+    dq: ArrayLike | None,
+    twist: ArrayLike | None,
+    position: ArrayLike | None,
+) -> tuple[Request, Vector]:
+    """Return the kind and the numbers of the one request that is given, which may be NaN.
+
+    Args:
+        shape: Shape of joint velocities, (n,), or (N, n) for N arms; that of twists ends in 6.
+        dq: Joint velocities [rad/s].
+        twist: Twists of a frame [m/s], [rad/s].
+        position: Joint positions [rad].
+
+    Returns:
+        Kind and numbers; `Request.NONE` and zeros if none is given.
+
+    Raises:
+        InvalidInputError: There are several requests, or the one has a wrong shape.
+    """
+    if (dq is not None) + (twist is not None) + (position is not None) > 1:
+        raise InvalidInputError("dq, twist, position", "pass exactly one of them")
+    if dq is not None:
+        return Request.VELOCITY, checks.array("dq", dq, shape)
+    if twist is not None:
+        return Request.TWIST, checks.array("twist", twist, (*shape[:-1], TWIST))
+    if position is not None:
+        return Request.POSITION, checks.array("position", position, shape)
+    return Request.NONE, np.zeros(shape)
+
+
 class RequestConstants(Record):
-    """Request of a step, and the frame that a twist is of.
+    """Request of a step as the constants of its cost.
 
     Attributes:
-        frame: Index of the frame.
+        frame: Index of the frame whose twist is requested.
         is_twist: Whether the request is a twist; else it is joint velocities.
-        asked: Its numbers, (max(n, 6),).
+        velocity: The requested joint velocities [rad/s] or twist [m/s], [rad/s], (max(n, 6),).
     """
 
     frame: int
     is_twist: bool
-    asked: Vector = part()
+    velocity: Vector = part()
 
 
 @compiled
 def add_request(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
-    """Add the cost of a request: of joint velocities w, or of a twist v with the damping.
-
-    W leaves v as it is and weighs what is beside it.
-    """
-    own = RequestConstants.of(constants)
+    """Add the cost of a request (`RequestCost`) to P (n, n) and q (n,)."""
+    request = RequestConstants.of(constants)
     n = q.size
     for i in range(n):
-        P[i, i] += DAMPING * DAMPING if own.is_twist else 1.0
-        q[i] -= 0.0 if own.is_twist else own.asked[i]
-    if not own.is_twist:
+        P[i, i] += DAMPING * DAMPING if request.is_twist else 1.0
+        q[i] -= 0.0 if request.is_twist else request.velocity[i]
+    if not request.is_twist:
         return
-    v = own.asked[: Twist.width()]
+    v = request.velocity[: Twist.width()]
     A = np.empty((TWIST, n))
-    point = triple(Placement.of(step.placements[own.frame]).position)
+    point = triple(Placement.of(step.placements[request.frame]).position)
     for j in range(n):
-        support = step.support[own.frame, j]
+        support = step.support[request.frame, j]
         linear = point_rate(step.jacobian, j, point)
         angular = triple(Twist.of(step.jacobian[j]).angular)
         for i in range(3):
@@ -133,27 +164,32 @@ def add_request(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> Non
 
 @dataclass(frozen=True)
 class RequestCost(Cost):
-    """Distance of the command from the request, the one cost of a shield's programs.
+    r"""Distance of the command x from the request, the one cost of a shield's programs.
+
+    For joint velocities w it is :math:`\tfrac12 \|x - w\|^2`; for a twist v of the frame with
+    Jacobian J it is :math:`\tfrac12 \|W (J x - v)\|^2 + \tfrac12 \lambda^2 \|x\|^2`, with lambda
+    `DAMPING`. W multiplies the component of an error perpendicular to v by `SIDEWAYS`.
 
     Attributes:
-        frame: Name of the frame of twists.
+        frame: Name of the frame whose twists are requested.
     """
 
     kernel = staticmethod(add_request)
     frame: str
 
     def constants(self, robot: Robot) -> Vector:
-        """Return `RequestConstants`, for a request to rest."""
+        """Return `RequestConstants` of a request for zero joint velocity."""
         rest = np.zeros(max(robot.dof, TWIST))
-        return RequestConstants.make(frame=robot.frame_id(self.frame), is_twist=False, asked=rest)
+        frame = robot.frame_id(self.frame)
+        return RequestConstants.make(frame=frame, is_twist=False, velocity=rest)
 
 
 @compiled
 def falls_short(qp: QPViews, twist: Vector) -> bool:
-    """Test whether the damping alone keeps a twist (6,) from being fulfilled by `SHORT` of it.
+    """Test whether a twist v (6,) is missed by more than `SHORT` |v| though no limit is active.
 
-    |W (J x - v)|^2 at the least of the cost of a twist's program, whose P is (W J)^T W J +
-    DAMPING^2 I.
+    The error is |W (J x - v)| at the unconstrained minimum x of the twist's program `qp`, whose P
+    is (W J)^T W J + DAMPING^2 I.
     """
     n = qp.q.size
     K = qp.P.copy()

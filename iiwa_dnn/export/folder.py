@@ -222,7 +222,7 @@ def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
         command and its reason.
     """
     random = np.random.default_rng(0)
-    arms = Shields.of(shield, 1, frame)
+    arms = Shields(shield, frame=frame)
     kinds = [Request.VELOCITY, Request.TWIST, Request.POSITION, Request.NONE]
     late = math.ceil(shield.delay / shield.dt)
     path = [q] * (1 + late)

@@ -95,7 +95,7 @@ def simulate(
     controller.solver.reset()
     steps = run.steps(reference)
     controller.anchor(start)
-    controller.warn_of_start(start, 0.0, own=True, stacklevel=3)
+    controller.warn_of_start(start, 0.0, own=True)
     plant = run.plant
     one_clock = run.mode == "continuous" or not plant.exact
     check_motion(run.motion, one_clock, controller.scheme.sample == "end")

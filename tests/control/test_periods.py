@@ -212,7 +212,7 @@ def test_a_shield_passes_no_limit_whatever_period_comes(said: str, jerk: float) 
             measured = {"dt": period, "elapsed": elapsed, "neither": DT}[said]
             stated = {} if said == "neither" else {said: measured}
             command = shield.step(q, **request, **stated)
-            np.testing.assert_allclose(command.command.log.q, q, atol=1e-12)
+            np.testing.assert_allclose(command.log.q, q, atol=1e-12)
             turned = (command.dq - last) / measured - slope
             slope = slope + turned
             assert np.abs(slope).max() <= 10.0 + 1e-6
@@ -233,7 +233,7 @@ def test_a_shield_takes_the_period_of_a_command_without_a_longest_one() -> None:
         q, last = q + period * command.dq, command.dq
     with pytest.raises(d.InvalidInputError, match="elapsed: needs a longest_period"):
         shield.step(q, elapsed=1e-3)
-    np.testing.assert_array_equal(shield.step(q, dt=1e-3).command.log.q, q)
+    np.testing.assert_array_equal(shield.step(q, dt=1e-3).log.q, q)
 
 
 @pytest.mark.parametrize("late", [10, 40])
@@ -288,7 +288,7 @@ def test_a_blocked_arm_is_found_and_goes_on_from_where_it_is_and_what_is_under_w
         blocked.append(shield.step(q, np.full(7, 0.5)))
     # 20 ms until it should have begun to move, 40 ms until it should be 0.02 rad on.
     assert 38 <= len(blocked) <= 42
-    np.testing.assert_allclose(blocked[-1].command.log.q, q + 0.02 * 0.5, atol=1e-12)
+    np.testing.assert_allclose(blocked[-1].log.q, q + 0.02 * 0.5, atol=1e-12)
     twin = pickle.loads(pickle.dumps(shield))
     np.testing.assert_array_equal(
         twin.step(q, twist=[0.1] * 6).dq, shield.step(q, twist=[0.1] * 6).dq

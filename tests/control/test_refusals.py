@@ -10,11 +10,15 @@ from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, paper_start
 from iiwa_dnn import (
     AccelerationLimits,
+    CollisionAvoidance,
     Controller,
     DoubleIndicator,
     InvalidInputError,
+    NotFoundError,
     Shield,
+    Shields,
     Target,
+    simulate,
     solve_pose,
 )
 from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
@@ -48,6 +52,12 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("filter_window", lambda: MovingAverage(2.5)),  # type: ignore[arg-type]
     ("dt", lambda: Shield(paper_robot(), dt=0.0)),
     ("timeout", lambda: Shield(paper_robot(), timeout=-1.0)),
+    ("distance", lambda: Shield(paper_robot(), distance=-0.1)),
+    ("distance", lambda: Shield(paper_robot(), 1e-3, CollisionAvoidance(), distance=0.05)),
+    ("robot", lambda: Shield("64")),  # type: ignore[arg-type]
+    ("robot", lambda: Shields(64)),  # type: ignore[arg-type]
+    ("robot", lambda: Shields(Shield(paper_robot()), 2, dt=1e-3)),
+    ("count", lambda: Shields(paper_robot(), 0)),
     ("tracking_error", lambda: Shield(paper_robot(), tracking_error=np.nan)),
     ("starts", lambda: solve_pose(paper_robot(), POSE, starts=0)),
     ("target", lambda: solve_pose(paper_robot(), np.eye(4))),  # type: ignore[arg-type]
@@ -63,6 +73,30 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
 def test_an_argument_that_makes_no_sense_is_named(name: str, call: Callable[[], object]) -> None:
     with pytest.raises(InvalidInputError, match=rf"^{name}\b"):
         call()
+
+
+def test_a_setting_of_shields_that_is_misspelt_is_named() -> None:
+    with pytest.raises(NotFoundError, match="no setting of a shield 'timeuot'; did you mean"):
+        Shields(paper_robot(), 2, timeuot=0.1)
+
+
+@pytest.mark.parametrize("settings", [{"dt": 0.5}, {"longest_period": 1.5e-3}])
+def test_a_warning_names_the_line_that_called(settings: dict[str, Any]) -> None:
+    """Those of `Shield.step` named the line `sys:1`."""
+    robot = paper_robot()
+    loop = controller(policy="stop", **settings)
+    shield, warm = (Shield(robot, **{"dt": 1e-3} | settings) for _ in range(2))
+    calls: list[Callable[[], object]] = [
+        lambda: loop.step(PAPER_Q0, 0.0, **elapsed),
+        lambda: shield.step(PAPER_Q0, **elapsed),
+        lambda: warm.warm_up(PAPER_Q0),
+        lambda: simulate(robot, DoubleIndicator(), heart(), PAPER_Q0, dt=0.5, duration=0.5),
+    ]
+    elapsed = {} if "dt" in settings else {"elapsed": 2e-3}
+    for call in calls[: 2 if elapsed else 4]:
+        with pytest.warns(UserWarning, match="period") as caught:
+            call()
+        assert {each.filename for each in caught} == {__file__}
 
 
 READINGS: dict[str, Any] = {

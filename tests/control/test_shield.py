@@ -1,6 +1,7 @@
 """A shield gives the request where the limits admit it, and a safe command close to it else."""
 
 import copy
+import dataclasses
 import itertools
 import pickle
 import threading
@@ -66,8 +67,8 @@ def test_a_clipped_command_is_the_nearest_one_by_another_solver(robot: d.Robot) 
     for _ in range(600):
         requested = 2.0 * robot.dq_max * random.standard_normal(7)
         command = shield.step(q, requested)
-        if command.command.ok:
-            qp = command.command.limits
+        if command.ok:
+            qp = command.limits
             if robot is not SMOOTH:
                 np.testing.assert_array_equal(qp.q, -requested)
             nearest = qpsolvers.solve_problem(
@@ -234,9 +235,9 @@ def test_measured_positions_count_only_where_they_are_far() -> None:
     shield = d.Shield(ROBOT, DT, tracking_error=0.01)
     shield.step(START, np.zeros(7))
     near = shield.step(START + 0.009, np.zeros(7))
-    np.testing.assert_array_equal(near.command.log.q, START)
+    np.testing.assert_array_equal(near.log.q, START)
     far = shield.step(START + 0.011, np.zeros(7))
-    np.testing.assert_array_equal(far.command.log.q, START + 0.011)
+    np.testing.assert_array_equal(far.log.q, START + 0.011)
     assert far.active_limits == ("resynchronised to measured positions",)
 
 
@@ -325,6 +326,36 @@ def test_a_limit_that_is_added_holds() -> None:
     assert "TipSpeedLimit" in commands[-1].active_limits[0]
 
 
+def test_limits_are_refused_while_the_arm_moves_and_hold_from_rest_on() -> None:
+    """It began anew at rest: commands jumped by the whole velocity, beyond the acceleration."""
+    shield = d.Shield(SMOOTH, DT)
+    path, _ = drive(shield, 100, dq=np.full(7, 0.2))
+    before = shield.limits
+    with pytest.raises(d.InvalidInputError, match="limits: are set at rest: halt the arm first"):
+        shield.limits += (d.TipSpeedLimit(0.2),)
+    assert shield.limits is before
+    shield.halt()
+    rest, _ = drive(shield, 100, path[-1])
+    assert limits_broken(np.vstack([path, rest[1:]]), SMOOTH) == []
+    shield.limits += (d.TipSpeedLimit(0.2),)
+    assert shield.step(rest[-1], np.full(7, 0.2)).active_limits == ("halted",)
+
+
+def test_a_collision_avoidance_states_distance_and_pairs() -> None:
+    avoidance = d.CollisionAvoidance([BALL], distance=0.03)
+    made = d.Shield(ROBOT, DT, avoidance)
+    path, commands = drive(made, 300, dq=np.ones(7))
+    same, _ = drive(d.Shield(ROBOT, DT, [BALL], distance=0.03), 300, dq=np.ones(7))
+    np.testing.assert_array_equal(path, same)
+    assert min(command.margin.distance for command in commands) < 1e-3
+    alone = dataclasses.replace(avoidance, self_collision=False)
+    scene = alone.scene(ROBOT)
+    order = np.argsort(distances := scene.distances(START[np.newaxis], np.zeros(1))[0])
+    free = dataclasses.replace(alone, left_out=[scene.pairs[order[0]]])
+    found = d.Shield(ROBOT, DT, free).step(START).margin.distance
+    assert found == pytest.approx(distances[order[1]] - 0.03, abs=1e-9)
+
+
 def test_a_warm_shield_takes_its_first_steps_as_any_other() -> None:
     shield = d.Shield(SMOOTH, DT, [BALL])
     shield.warm_up(START, [SMOOTH.tip])
@@ -359,7 +390,7 @@ def test_threads_may_share_a_shield() -> None:
     found.sort(key=lambda command: command.state.time)
     assert len({command.state.time for command in found}) == 900
     for before, after in itertools.pairwise(found):
-        np.testing.assert_array_equal(after.command.log.last, before.dq)
+        np.testing.assert_array_equal(after.log.last, before.dq)
         assert np.abs(after.dq - before.dq).max() <= 10.0 * DT + 1e-12
 
 
@@ -500,7 +531,7 @@ def test_a_command_that_was_handed_out_never_changes() -> None:
     for k in range(60):
         command = shield.step(q, np.full(7, 5.0 * (-1) ** (k // 20)))
         own = (command.clipped, command.active_limits, command.margin, command.stopping_time)
-        kept.append((command, own, command.command.qp.data.copy()))
+        kept.append((command, own, command.qp.data.copy()))
         q = command.next_q
     shield.halt()
     shield.step(q)
@@ -508,4 +539,4 @@ def test_a_command_that_was_handed_out_never_changes() -> None:
     for command, own, data in kept:
         found = (command.clipped, command.active_limits, command.margin, command.stopping_time)
         assert found == own
-        np.testing.assert_array_equal(command.command.qp.data, data)
+        np.testing.assert_array_equal(command.qp.data, data)

@@ -11,7 +11,7 @@ import pytest
 
 import iiwa_dnn
 from iiwa_dnn import InvalidInputError, Shield, Shields, Sphere, load_robot
-from iiwa_dnn.control.requests import Reason
+from iiwa_dnn.control.requests import REASONS, Reason
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 
@@ -201,13 +201,42 @@ def test_a_wrong_input_changes_no_arm() -> None:
     np.testing.assert_array_equal(stepped(shields, 10), expected)
 
 
-def test_what_is_given_to_be_overwritten_is() -> None:
+def test_numbers_of_other_types_and_with_gaps_are_taken_and_commands_stay() -> None:
     shields = Shields(PLAIN, 2, dt=DT)
-    q = np.tile(START, (2, 1))
-    first = shields.step(q, np.full((2, 7), 0.001))
-    found = shields.step(q.astype(np.float32)[::-1], np.full((2, 7), 0.003), out=first)
-    assert found is first
-    assert first.dq == pytest.approx(0.003)
+    q = np.tile(START, (2, 1)).astype(np.float32)
+    first = shields.step(q[::-1], np.full((2, 7), 0.001))
+    kept = copy.deepcopy(first[:4])
+    shields.step(q, np.full((7, 2), 0.003).T)
+    for found, expected in zip(first, kept, strict=False):
+        np.testing.assert_array_equal(found, expected)
+    twin = Shields(PLAIN, 2, dt=DT)
+    np.testing.assert_array_equal(twin.step(q.astype(float), [[0.001] * 7] * 2).dq, first.dq)
+
+
+def test_the_reason_of_an_arm_is_the_first_of_its_active_limits() -> None:
+    shields = Shields(PLAIN.with_limits(acceleration=10.0), 3, dt=DT)
+    q = np.tile(START, (3, 1))
+    shields.step(q, np.ones((3, 7)))
+    q[0, 0] = np.nan
+    shields.halt(np.array([False, True, False]))
+    command = shields.step(q, np.full((3, 7), np.nan))
+    assert command.reason.tolist() == [Reason.NOT_FINITE, Reason.HALTED, Reason.NOT_FINITE]
+    for i, reason in enumerate(command.reason):
+        assert command.active_limits(i)[0] == REASONS[reason]
+    assert command.active_limits(0)[:2] == ("request not finite", "q not finite")
+
+
+def test_shields_of_a_shield_have_its_limits() -> None:
+    """The speed of the tips is that of finite differences of Pinocchio's placements."""
+    shield = Shield(PLAIN.with_limits(acceleration=10.0), DT)
+    shield.limits += (iiwa_dnn.TipSpeedLimit(0.2),)
+    shields = Shields(shield, 2)
+    path = [np.tile(START, (2, 1))]
+    for _ in range(200):
+        path.append(shields.step(path[-1], np.ones((2, 7))).next_q)
+    tips = np.array([iiwa_dnn.Configuration(PLAIN, q[1]).position for q in path])
+    speeds = np.linalg.norm(np.diff(tips, axis=0), axis=1) / DT
+    assert 0.19 < speeds.max() < 0.2 + 1e-4
 
 
 def _commands(shields: Shields) -> np.ndarray:

@@ -132,19 +132,12 @@ bool shield_is_clipped(const struct shield *s)
 int shield_active_limits(const struct shield *s, int *codes)
 {
     const control_arms_ArmState state = shield_state(s);
-    const double flags[] = { /* from SHIELD_Q_NOT_FINITE on */
-        state.at->is_blind, state.at->is_resynchronised, state.at->is_cut,
-        state.at->is_late, state.at->is_singular,
-    };
     int count = 0;
     if (!shield_is_clipped(s)) {
         return 0;
     }
-    if (state.at->reason != 0.0) {
-        codes[count++] = (int)state.at->reason;
-    }
-    for (int k = SHIELD_Q_NOT_FINITE; k <= SHIELD_SINGULAR; k++) {
-        if (flags[k - SHIELD_Q_NOT_FINITE] != 0.0) {
+    for (int k = 0; k < state.reasons.size0; k++) {
+        if (state.reasons.data[k] != 0.0) {
             codes[count++] = k;
         }
     }
