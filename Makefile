@@ -34,7 +34,7 @@ lint: $(FULL)  ## check style, layout and types
 docs: $(FULL)  ## build the documentation into site/, any warning an error
 	$(VENV_PYTHON) -m sphinx -W --keep-going -q -b html docs site $(ARGS)
 
-figures: $(FULL)  ## draw the figures of the pages anew, minutes, and the live page, with clang and lld
+figures: $(FULL)  ## draw the figures of the pages anew, minutes, and the two live pages, with clang and lld
 	$(VENV_PYTHON) docs/figures.py $(ARGS)
 	$(VENV_PYTHON) docs/browser/make_page.py
 

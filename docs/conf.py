@@ -57,7 +57,7 @@ napoleon_numpy_docstring = False
 napoleon_use_ivar = True
 napoleon_attr_annotations = False
 
-html_extra_path = ["heart.html"]
+html_extra_path = ["heart.html", "shield-live.html"]
 html_static_path = ["static"]
 html_css_files = ["pages.css"]
 html_theme = "furo"

@@ -97,6 +97,23 @@ def test_the_commands_of_a_page_are_understood_and_none_is_refused_its_folder(pa
             assert owner == words, f"{path.name}: iiwa-dnn {line}"
 
 
+def test_attributes_that_the_pages_name_exist() -> None:
+    found = {
+        match
+        for path in DOCUMENTS
+        for match in re.findall(r"`([A-Z]\w+)\.(\w+)\b", path.read_text(encoding="utf-8"))
+    }
+    known = [
+        (getattr(iiwa_dnn, name), attribute)
+        for name, attribute in found
+        if name in iiwa_dnn.__all__
+    ]
+    assert len(known) > 10
+    for kind, attribute in known:
+        fields = {name for base in kind.__mro__ for name in vars(base).get("__annotations__", ())}
+        assert hasattr(kind, attribute) or attribute in fields, f"{kind.__name__}.{attribute}"
+
+
 def test_every_public_name_stands_on_one_page_of_the_api(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(ROOT / "docs")
     pages = importlib.import_module("api_pages")

@@ -1,10 +1,11 @@
-"""Make the page on which the exported controller runs in the reader's browser.
+"""Make the pages on which an exported controller and shield run in the reader's browser.
 
     python docs/browser/make_page.py
 
 clang and wasm-ld (on Debian: ``apt-get install clang lld``) compile the C that `iiwa_dnn.export`
-writes, and `page.c` beside this file, to WebAssembly. The page needs nothing else: it holds the
-code, and what is needed to draw the arm. It is kept in the repository, and `make docs` copies it.
+writes, and `page.c` or `shield_page.c` beside this file, to WebAssembly. A page needs nothing else:
+it holds the code, and what is needed to draw the arm. Both are kept in the repository, and
+`make docs` copies them.
 """
 
 import base64
@@ -13,6 +14,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,11 +27,14 @@ from iiwa_dnn.robot.collision import collision_model
 from iiwa_dnn.robot.shapes import visual_shapes
 
 HERE = Path(__file__).parent
-PAGE = HERE.parent / "heart.html"
 TABLE = "plan_arrays_constants"
 """Table of the C in which the ball's center lies; the page writes there when a hand moves it."""
 
-EXPORTED = ("q", "dq", "target", "begin", "step", TABLE)
+HEART = ("q", "dq", "target", "begin", "step", TABLE)
+SHIELD = ("q", "dq", "target", "begin", "step", "twist", "ball")
+SHIELD += ("count_limits", "limit_name", "stopping_time")
+"""What a page reaches by its name."""
+
 FLAGS = ("--target=wasm32", "-std=c99", "-Os", "-nostdlib", "-nostdlibinc", "-fno-math-errno")
 BALL = (0.52, -0.0625, 0.6875)
 RADIUS = 0.08
@@ -37,6 +42,24 @@ DISTANCE = 0.02
 """Center, radius and least distance of the ball [m]."""
 
 JERK = 500.0  # [rad/s^3]
+
+WORDS = {
+    "heart": {
+        "TITLE": "An arm within its limits, computed in this browser",
+        "HANDS": "Drag the red target or the blue ball.",
+        "OTHER": 'If something else drives your arm: <a href="shield-live.html">a shield.</a>',
+        "BUTTON": "Draw the heart",
+        "NOTE": "Out of reach the arm comes as near as it can.",
+    },
+    "shield-live": {
+        "TITLE": "A shield: whatever is requested, the arm keeps its limits",
+        "HANDS": "Drag the red handle, which pulls at the tip of the arm, or the blue ball.",
+        "OTHER": 'The same with a target to reach: <a href="heart.html">a controller.</a>',
+        "BUTTON": "Let the handle roam",
+        "NOTE": "The handle requests a velocity of the tip, 6/s times its distance.",
+    },
+}
+"""The pages by their files, and what they say."""
 
 
 def heart_controller() -> tuple[iiwa_dnn.Controller, np.ndarray]:
@@ -54,21 +77,30 @@ def heart_controller() -> tuple[iiwa_dnn.Controller, np.ndarray]:
     return iiwa_dnn.Controller(robot, scheme, heart, dt=1e-3), q0
 
 
-def compiled(controller: iiwa_dnn.Controller, q0: np.ndarray) -> bytes:
-    """Export a controller and compile it for a browser."""
+def pulled_shield() -> tuple[iiwa_dnn.Shield, np.ndarray]:
+    """Return the shield of the same arm beside the same ball, and where it begins, (7,) [rad]."""
+    controller, q0 = heart_controller()
+    ball = iiwa_dnn.Sphere(BALL, RADIUS)
+    return iiwa_dnn.Shield(controller.robot, 1e-3, obstacles=[ball], distance=DISTANCE), q0
+
+
+def compiled(
+    exported: iiwa_dnn.Controller | iiwa_dnn.Shield, q0: np.ndarray, page: str, names: Sequence[str]
+) -> bytes:
+    """Export a controller or a shield and compile it with its page for a browser."""
     with tempfile.TemporaryDirectory() as place:
-        folder = iiwa_dnn.export.c99(controller, place, q0)
-        result = folder / "controller.wasm"
-        code = (folder / "controller.c").read_text()
-        code, found = re.subn(rf"static const (double {TABLE}\[)", r"\1", code)
-        assert found == 1, f"{TABLE} is not in the exported C"
-        (folder / "controller.c").write_text(code)
-        sources = (folder / "controller.c", HERE / "page.c")
+        folder = iiwa_dnn.export.c99(exported, place, q0)
+        result = folder / "page.wasm"
+        source = folder / f"{type(exported).__name__.lower()}.c"
+        code, found = re.subn(rf"static const (double {TABLE}\[)", r"\1", source.read_text())
+        assert found == 1 or TABLE not in names, f"{TABLE} is not in the exported C"
+        source.write_text(code)
+        sources = (source, HERE / page, HERE / "memory.c")
         linked = (
             "no-entry",
             "strip-all",
             "allow-undefined",
-            *(f"export={name}" for name in EXPORTED),
+            *(f"export={name}" for name in names),
         )
         command = ["clang", *FLAGS, f"-I{HERE}", f"-I{folder}", *map(str, sources)]
         command += [f"-Wl,--{option}" for option in linked]
@@ -77,7 +109,7 @@ def compiled(controller: iiwa_dnn.Controller, q0: np.ndarray) -> bytes:
 
 
 def drawn(controller: iiwa_dnn.Controller, q0: np.ndarray) -> dict[str, Any]:
-    """Return what the page draws: the arm's joints and limits, the path."""
+    """Return what a page draws: the arm's joints and limits, the path."""
     robot = controller.robot
     model = robot.model
     data = model.createData()
@@ -141,17 +173,32 @@ def capsules(robot: iiwa_dnn.Robot) -> list[dict[str, Any]]:
     return listed
 
 
+def write_page(name: str, code: bytes, model: dict[str, Any]) -> None:
+    """Write a page by its name, with its code and what it draws."""
+    words = {
+        **WORDS[name],
+        "TABLE": TABLE,
+        "NEAR": f"{1e3 * DISTANCE:g}",
+        "SIZE": f"{len(code) / 1e3:.0f}",
+        "SHIELD": "true" if name == "shield-live" else "false",
+        "MODEL": json.dumps(model),
+        "WASM": base64.b64encode(code).decode(),
+    }
+    text = (HERE / "page.in.html").read_text()
+    for word, value in words.items():
+        text = text.replace(f"@{word}@", value)
+    path = HERE.parent / f"{name}.html"
+    write_text(path, text)
+    print(f"{path.name}: {len(code)} bytes of code, {path.stat().st_size} in all")
+
+
 def main() -> int:
-    """Write the page."""
+    """Write both pages."""
     controller, q0 = heart_controller()
-    code = compiled(controller, q0)
-    text = (HERE / "heart.in.html").read_text()
-    text = text.replace("@TABLE@", TABLE).replace("@NEAR@", f"{1e3 * DISTANCE:g}")
-    text = text.replace("@SIZE@", f"{len(code) / 1e3:.0f}")
-    text = text.replace("@MODEL@", json.dumps(drawn(controller, q0)))
-    text = text.replace("@WASM@", base64.b64encode(code).decode())
-    write_text(PAGE, text)
-    print(f"{PAGE.name}: {len(code)} bytes of code, {PAGE.stat().st_size} in all")
+    model = drawn(controller, q0)
+    write_page("heart", compiled(controller, q0, "page.c", HEART), model)
+    code = compiled(pulled_shield()[0], q0, "shield_page.c", SHIELD)
+    write_page("shield-live", code, {**model, "path": []})
     return 0
 
 

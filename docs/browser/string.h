@@ -1,4 +1,4 @@
-/* What an exported controller needs of C's strings; `page.c` has the functions. */
+/* What an exported controller needs of C's strings; `memory.c` has the functions. */
 #include <stddef.h>
 
 void *memcpy(void *to, const void *from, size_t size);

@@ -1,4 +1,4 @@
-"""The page of the documentation on which the exported heart runs in a browser."""
+"""The pages of the documentation on which an exported controller and shield run in a browser."""
 
 import runpy
 from collections.abc import Iterator
@@ -66,6 +66,47 @@ def test_a_ball_that_is_dragged_against_the_arm_drives_it_off(browser: Any) -> N
     assert orange.sum() > 100, "and the arm"
     assert not [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
     assert not [address for address in requested(browser) if address.startswith(("http", "ws"))]
+
+
+@needs_browser
+def test_the_shield_keeps_its_limits_whatever_a_hand_pulls_at(browser: Any) -> None:
+    browser.get((FOLDER.parent / "shield-live.html").as_uri() + "#still")
+    shield, _ = runpy.run_path(str(FOLDER / "make_page.py"))["pulled_shield"]()
+    robot = shield.robot
+    script = """
+        const path = [Array.from(q)], near = []; let kept = 0;
+        for (let k = 0; k < arguments[0]; k++) {
+          run(1);
+          path.push(Array.from(q));
+          near.push(clearance(frames(q)));
+          kept += action;
+        }
+        draw();
+        return [path, Math.min(...near), kept, limits(), wasm.stopping_time()];"""
+    roamed = browser.execute_script(script, 3000)
+    before = picture(browser)
+    drag(browser, "target", 300, 150)
+    pulled = browser.execute_script(script, 3000)
+    path = np.vstack([roamed[0], pulled[0][1:]])
+    kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, robot.dddq_max)
+    assert not breaches(path, shield.dt, *kinds, at_rest=True)
+    assert min(roamed[1], pulled[1]) > 0.0199, "the ball stands still"
+    assert roamed[2] > 100, "the handle asks for more than the arm can do"
+    assert pulled[2] > 100
+    # Python's shield at the same posture, asked for the same, says the same.
+    q, twist, said = browser.execute_script(
+        "wasm.begin(); before = new Float64Array(n); pull(); const at = Array.from(q);"
+        "const asked = Array.from(twist); run(1); return [at, asked, limits()]"
+    )
+    command = shield.step(q, twist=twist)
+    np.testing.assert_allclose(
+        command.dq, browser.execute_script("return Array.from(dq)"), atol=1e-9
+    )
+    assert said.startswith(", ".join(command.active_limits[:3]))
+    assert said
+    after = picture(browser)
+    assert (np.abs(before.astype(int) - after).max(axis=-1) > 40).sum() > 500, "the arm has moved"
+    assert not [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
 
 
 def drag(browser: Any, name: str, right: float, down: float) -> None:
