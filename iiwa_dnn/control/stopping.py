@@ -81,7 +81,7 @@ class Motion(NamedTuple):
         coefficient: b of the cubic [rad/s], (n,); zero for straight lines in time.
         periods: M.
         cubic: Whether the velocities are cubic in time.
-        uneven: `UNEVEN` where periods vary, else 0.
+        varies: Whether periods vary.
         skips: Whether a velocity may be held for no time at all.
     """
 
@@ -89,7 +89,7 @@ class Motion(NamedTuple):
     coefficient: Vector
     periods: float
     cubic: bool
-    uneven: float
+    varies: bool
     skips: bool
 
 
@@ -243,7 +243,7 @@ def end_displacement(motion: Motion, x: float, b: float, dt: float) -> float:
         displacement = least_displacement(motion, x, b, dt)
     if motion.skips and x > 0.0 and 2.0 * x + b < 0.0:
         displacement += least_displacement(motion, -x, -b, dt)  # none of what leads away
-    return displacement - motion.uneven * dt * abs(b)
+    return displacement - UNEVEN * dt * abs(b) if motion.varies else displacement
 
 
 @compiled
@@ -252,8 +252,8 @@ def keeps_joint_limits(motion: Motion, q: Vector, limits: MotionConstants, dt: f
     for i in range(q.size):
         x = motion.first[i]
         b = motion.coefficient[i]
-        top = q[i] - least_displacement(motion, -x, -b, dt)
-        bottom = q[i] + least_displacement(motion, x, b, dt)
+        top = q[i] - min(end_displacement(motion, -x, -b, dt), 0.0)
+        bottom = q[i] + min(end_displacement(motion, x, b, dt), 0.0)
         # A joint that is outside already may come back.
         if top > max(limits.upper[i], q[i]) or bottom < min(limits.lower[i], q[i]):
             return False
@@ -276,6 +276,8 @@ def keeps_varying_limit(
     for k in range(int(motion.periods)):
         x = velocity_at(motion.first[i], motion.coefficient[i], k / motion.periods, motion.cubic)
         left = limits.upper[i] - at if x > 0.0 else at - limits.lower[i]
+        if motion.varies:  # it may be held for once more
+            left -= dt * abs(x)
         needed = x * x / (2.0 * limits.slope[i]) + abs(x) * limits.lag[i]
         if needed > max(left, 0.0) * (1.0 + SLACK):
             return False
@@ -412,9 +414,8 @@ def stopping_time(
     if yielding.cubic and periods > 0.0:
         _write_coefficients(dq, before, periods, vary, coefficient)
     # Where periods vary, the first may be the longest and the others as short as can be.
-    uneven = UNEVEN if vary else 0.0
     fraction = timing.fraction
-    motion = Motion(dq, coefficient, periods + vary, yielding.cubic, uneven, fraction < 1.0)
+    motion = Motion(dq, coefficient, periods + vary, yielding.cubic, vary, fraction < 1.0)
     dt = dt / fraction
     if support and not keeps_joint_limits(motion, motion_state.q, limits, dt):
         return -1.0

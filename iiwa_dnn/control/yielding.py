@@ -476,13 +476,11 @@ def _brake(
         periods = stretched(last, before, yielding.limits, dt, rest)
     if periods < np.inf:
         _slow_down(motion_state, yielding, timing, periods, dq)
-    if rest > 0.0 and not timing.vary:
-        return max(rest - 1.0, 0.0)
+    if rest > 0.0:
+        return max(periods - 1.0, 0.0)
     lb = limits.lb.copy()
     ub = limits.ub.copy()
-    # Where periods vary, the stored stopping motion is fitted anew: bounds that any period keeps go
-    # first.
-    for i in range(dq.size if periods < np.inf and rest == 0.0 else 0):
+    for i in range(dq.size if periods < np.inf else 0):
         lb[i] = min(lb[i], max(dq[i], 0.0))
         ub[i] = max(ub[i], min(dq[i], 0.0))
     # Joints that follow others go on to, as they brake.
@@ -492,8 +490,6 @@ def _brake(
     times(limits.A, dq, rates)
     braking = QPViews(limits.P, limits.q, limits.G, idle, limits.A, rates, lb, ub)
     nearest_within(braking, dq, yielding, log.stats)
-    if rest > 0.0:
-        return max(periods - 1.0, 0.0)
     return max(stopping_time(arrays, motion_state, log.least, yielding, timing, dq[:dof]), 0.0)
 
 

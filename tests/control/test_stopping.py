@@ -80,7 +80,7 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
 
 @pytest.mark.parametrize("periods", [2.0, 3.0, 7.0, 40.0, 300.0])
 def test_what_sets_off_away_has_gone_the_square_of_the_joints_part(periods: float) -> None:
-    motion = stopping.Motion(np.ones(1), np.ones(1), periods, True, 0.0, False)
+    motion = stopping.Motion(np.ones(1), np.ones(1), periods, True, False, False)
     part, away = (
         np.array(
             [stopping.displacement_after(motion, x, b, k, 1.0) for k in range(int(periods) + 1)]
@@ -97,7 +97,7 @@ def test_the_displacement_along_a_motion_is_the_sum_of_its_velocities(cubic: boo
         M = float(random.integers(1, 40))
         x, before = random.standard_normal(2)
         b = stopping.cubic_coefficient(x, before, M, False) if cubic else 0.0
-        motion = stopping.Motion(np.array([x]), np.array([b]), M, cubic, 0.0, False)
+        motion = stopping.Motion(np.array([x]), np.array([b]), M, cubic, False, False)
         velocities = [stopping.velocity_at(x, b, u, cubic) for u in np.arange(M) / M]
         displacements = np.append(0.0, np.cumsum(velocities)) * 1e-3
         assert stopping.least_displacement(motion, x, b, 1e-3) == pytest.approx(
@@ -108,13 +108,16 @@ def test_the_displacement_along_a_motion_is_the_sum_of_its_velocities(cubic: boo
         )
 
 
-def gone(periods: np.ndarray, x: Any, a: Any, time: float, says: bool) -> np.ndarray:
-    """Ways of joints at velocities x and accelerations a that come to rest in `time` [s].
+def gone(
+    periods: np.ndarray, x: Any, a: Any, time: float, says: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Ways and velocities of joints at x with accelerations a that come to rest in `time` [s].
 
     They brake along the cubics through their last two velocities that end there, solved for here.
     """
     displacement = periods[0] * x
     displacements = [0.0 * x, displacement]
+    velocities = [x]
     for last, period in pairwise(periods):
         r = period if says else last
         next_motion_state = 0.0 * x
@@ -128,7 +131,15 @@ def gone(periods: np.ndarray, x: Any, a: Any, time: float, says: bool) -> np.nda
         time = max(time - r, 0.0)
         displacement = displacement + period * x
         displacements.append(displacement)
-    return np.array(displacements)
+        velocities.append(x)
+    return np.array(displacements), np.array(velocities)
+
+
+def blocks_of(random: np.random.Generator) -> np.ndarray:
+    """Periods up to 1 that stay the same for a while."""
+    choices = np.array([1.0, 0.02, 0.1, 0.3, 0.6])
+    blocks = [np.full(random.integers(1, 60), random.choice(choices)) for _ in range(30)]
+    return np.concatenate([*blocks, np.ones(25)])
 
 
 @pytest.mark.parametrize("says", [False, True])
@@ -138,7 +149,6 @@ def test_the_way_to_rest_in_any_periods_is_no_less_than_the_checked_one(
 ) -> None:
     """It is up to 0.94 periods of the velocity less than that in the longest periods."""
     random = np.random.default_rng(7)
-    choices = np.array([1.0, 0.02, 0.1, 0.3, 0.6])
     angles = np.linspace(0.0, 2.0 * np.pi, 145)
     x = np.cos(angles)
     a = 6.0 / M * np.sin(angles)
@@ -146,22 +156,58 @@ def test_the_way_to_rest_in_any_periods_is_no_less_than_the_checked_one(
     longest = []
     for own, rate in zip(x, a, strict=True):
         b = stopping.cubic_coefficient(own, own - rate, M, True)
-        motion = stopping.Motion(
-            np.array([own]), np.array([b]), M + 1.0, True, stopping.UNEVEN, False
-        )
+        motion = stopping.Motion(np.array([own]), np.array([b]), M + 1.0, True, True, False)
         bounds.append(min(stopping.end_displacement(motion, own, b, 1.0), 0.0))
         b = stopping.cubic_coefficient(own, own - rate, M, False)
         longest.append(stopping.least_displacement(motion, own, b, 1.0))
     least = np.full(x.size, np.inf)
     short = np.full(int(50 * M), 0.02)
     runs = [np.append(short[::step], np.ones(25)) for step in range(1, 7)]
-    for _ in range(40):
-        blocks = [np.full(random.integers(1, 60), random.choice(choices)) for _ in range(30)]
-        runs.append(np.concatenate([*blocks, np.ones(25)]))
-    for periods in runs:
-        least = np.minimum(least, gone(periods, x, a, M, says).min(axis=0))
+    for periods in [*runs, *(blocks_of(random) for _ in range(40))]:
+        least = np.minimum(least, gone(periods, x, a, M, says)[0].min(axis=0))
     assert (bounds <= least + 1e-12).all()
     assert (longest > least + (0.1 if says else 0.8)).any()
+
+
+@pytest.mark.parametrize("says", [False, True])
+@pytest.mark.parametrize("cubic", [False, True])
+@pytest.mark.parametrize("lag", [0.0, 3.0])
+def test_a_motion_to_rest_keeps_the_limits_of_a_joint_in_any_periods(
+    says: bool, cubic: bool, lag: float
+) -> None:
+    """Its range is the least that passes; above a position-dependent limit it is 0 at the end."""
+    random = np.random.default_rng(11)
+    slope = 0.3
+    for _ in range(20):
+        M = float(random.integers(1, 12))
+        x = 1.0
+        a = random.uniform(-4.0, 6.0) / M if cubic else -x / M
+        b = stopping.cubic_coefficient(x, x - a, M, True) if cubic else 0.0
+        motion = stopping.Motion(np.array([x]), np.array([b]), M + 1.0, cubic, True, False)
+        limits = MotionConstants.of(
+            np.array([0.0] * 4 + [-99.0, 0.0, 99.0, 1.0, 1.0, 1.0, slope, lag])
+        )
+        too_short = 0.0
+        enough = 99.0
+        for _ in range(40):
+            limits.upper[0] = 0.5 * (too_short + enough)
+            if stopping.keeps_joint_limits(motion, np.zeros(1), limits, 1.0):
+                enough = limits.upper[0]
+            else:
+                too_short = limits.upper[0]
+        for _ in range(10):
+            periods = blocks_of(random)
+            periods = periods[: np.searchsorted(np.cumsum(periods), M + 2.0)]
+            times = np.cumsum(periods if says else np.append(0.0, periods[:-1]))
+            if cubic:
+                way, velocities = gone(periods, x, a, M, says)
+            else:
+                velocities = np.maximum(1.0 - (times - times[0]) / M, 0.0)
+                way = np.append(0.0, np.cumsum(periods * velocities))
+            assert way.max() <= enough + 1e-9
+            if lag > 0.0:
+                needed = velocities**2 / (2.0 * slope) + velocities * lag
+                assert (needed <= enough - way[:-1] + 1e-9).all()
 
 
 @pytest.mark.parametrize("M", [1.0, 2.0, 7.0, 40.0])
@@ -170,7 +216,7 @@ def test_the_way_that_may_lead_nearer_is_that_of_the_velocities_which_do(M: floa
     for angle in np.linspace(0.0, 2.0 * np.pi, 145):
         x, a = np.cos(angle), 6.0 / M * np.sin(angle)
         b = stopping.cubic_coefficient(x, x - a, M, True)
-        motion = stopping.Motion(np.zeros(1), np.zeros(1), M + 1.0, True, stopping.UNEVEN, True)
+        motion = stopping.Motion(np.zeros(1), np.zeros(1), M + 1.0, True, True, True)
         steps = np.arange(M)
         own = stopping.cubic_coefficient(x, x - a, M, False)
         velocities = [stopping.velocity_at(x, own, i / M, True) for i in steps]
