@@ -91,7 +91,7 @@ if TYPE_CHECKING:
 else:
 
     def __getattr__(name: str) -> object:
-        """Load what few programs need, and a third of an import's time, when it is asked for."""
+        """Import `export` and the version at their first use; they take a third of the time."""
         if name == "export":
             return import_module("iiwa_dnn.export")
         if name == "__version__":

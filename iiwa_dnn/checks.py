@@ -62,6 +62,7 @@ def not_negative(argument: str, value: object) -> float:
 
 
 def _number(argument: str, value: object, kind: str, fits: Callable[[float], bool]) -> float:
+    """Return a finite number that fits as a float; refuse any other value, naming the kind."""
     # A float first: the test for any kind of number costs more than all the rest of some callers.
     if (
         isinstance(value, (float, Real))
@@ -93,7 +94,7 @@ def one_of(argument: str, value: T, choices: Sequence[object]) -> T:
 
 
 def known(kind: str, given: Iterable[str], there: Collection[str]) -> None:
-    """Raise a NotFoundError with the nearest names for a name of this kind that is not there."""
+    """Raise a NotFoundError for the first given name of this kind that is not `there`."""
     for name in given:
         if name not in there:
             raise NotFoundError(kind, name, there)
@@ -185,6 +186,7 @@ def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 
 def _has_booleans(given: NDArray[Any]) -> bool:
+    """Test whether an array of objects holds a boolean."""
     return given.dtype == object and not {bool, np.bool_}.isdisjoint(map(type, given.flat))
 
 

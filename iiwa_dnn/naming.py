@@ -34,20 +34,20 @@ DONE = {
 
 
 def limit_kinds(settings: Mapping[str, Any]) -> list[str]:
-    """Return the words for the limits of bounds in a run, in the order of their codes, from 1."""
+    """Return the names of the limits that may bound a joint in a run, by their codes from 1."""
     return [*KINDS, *(f"bound of {name}" for name in settings.get("bounding", ()))]
 
 
 def active_limits(
     settings: Mapping[str, Any], codes: Iterable[int], rows: Iterable[float]
 ) -> list[dict[str, Any]]:
-    """Return the names of bounds and rows, as `describe` takes them.
+    """Return a description of each acting bound and row, for `describe`.
 
     Args:
         settings: Settings of the run, with its inequality rows and the limits with bounds.
         codes: Code of the limit that each joint's active bound comes from, negative for a lower
             bound, 0 for none, (n,).
-        rows: Other than 0 for an inequality row that is meant, (m,).
+        rows: Other than 0 for each inequality row that acts, (m,).
     """
     words = limit_kinds(settings)
     names = settings.get("joints", ())
@@ -72,7 +72,7 @@ def describe(limit: Mapping[str, Any]) -> str:
 
 
 def short_names(settings: Mapping[str, Any]) -> list[str]:
-    """Return short names of the joints, without the words that all their names have in common."""
+    """Return the names of the joints without the words that all of them have in common."""
     names = [name.replace("_", " ").split() for name in settings["joints"]]
     common = set(names[0]).intersection(*names) if len(names) > 1 else set()
     return [" ".join(word for word in name if word not in common) for name in names]

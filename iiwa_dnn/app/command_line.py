@@ -20,7 +20,7 @@ SETTINGS_FILE = "settings.toml"
 
 
 def shown(metavar: str, about: str = "") -> Any:
-    """Describe an option whose default, None or (), the help does not show."""
+    """Return tyro's description of an option without a default in the help."""
     return arg(metavar=metavar, help_behavior_hint="", help=about or None)
 
 

@@ -113,7 +113,7 @@ def show_robot(server: Any, robot: Robot) -> Any:
 
 
 def aim(server: Any, point: Vector) -> None:
-    """Aim the cameras at the arm and a point in front of it (3,) [m]; on a phone from afar."""
+    """Aim the cameras at the arm and a point before it (3,) [m]; on phones from farther off."""
     middle = 0.6 * point + [0.0, 0.0, 0.2]
     # The first vector lies across the line from the base to the point.
     view = 1.6 * np.array([point[1], -point[0], 0.0]) + 0.4 * point + [0.0, 0.0, 0.4]
@@ -128,7 +128,7 @@ def aim(server: Any, point: Vector) -> None:
 
 
 def draw_path(server: Any, name: str, points: Matrix, color: tuple[int, int, int]) -> None:
-    """Draw a path through points (M, 3) [m], or draw it anew."""
+    """Draw a path through points (M, 3) [m] in place of the one of the same name."""
     chosen = points[np.linspace(0, len(points) - 1, min(len(points), PIECES + 1)).astype(int)]
     pieces = np.stack([chosen[:-1], chosen[1:]], axis=1)
     server.scene.add_line_segments(
@@ -199,7 +199,7 @@ class Replay:
         )
 
     def tick(self, elapsed: float) -> None:
-        """Let `elapsed` seconds pass, and show the state if the time has changed."""
+        """Advance the clock by `elapsed` seconds if the replay plays; show the new state."""
         if self.playing.value:
             passed = self.clock.value + float(self.speed.value) * elapsed
             self.clock.value = passed % self.clock.max

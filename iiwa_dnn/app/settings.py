@@ -88,11 +88,11 @@ PARTS: Choices = {
 
 
 def read_tables(options: Any) -> Tables:
-    """Merge the settings file, the options, and ``--set``: of two values the later counts.
+    """Merge the settings file, then the options, then ``--set``: a later value replaces an earlier.
 
     Raises:
         FileError: The file cannot be read.
-        InvalidInputError: There is no such table, or a table or a name is none.
+        InvalidInputError: There is no such table, or a value is no table or no name.
     """
     disturb = getattr(options, "disturb", False)
     typical = asdict(Disturbances.typical()) if disturb else {}
@@ -116,7 +116,7 @@ def read_tables(options: Any) -> Tables:
 
 
 def _absolute(place: str, value: Any) -> str:
-    """Return a name as it is, a file by its whole path, or raise an InvalidInputError."""
+    """Return a name unchanged, a file name as an absolute path; refuse what is no text."""
     if not isinstance(value, str):
         raise InvalidInputError(place, f"must be a name or a file, not {value!r}", value)
     return str(Path(value).resolve()) if Path(value).suffix else value
@@ -193,7 +193,10 @@ def build(tables: Tables) -> Arguments:
 def call(
     function: Callable[..., Any], table: str, values: Tables, others: Collection[str] = ()
 ) -> Any:
-    """Call a function with the values of a table but some `others`; errors as of `objects`."""
+    """Call a function with the values of a table, without the keys `others`.
+
+    Raises what `objects` does.
+    """
     given = objects((*others, *signature(function).parameters), table, values)
     arguments = {key: value for key, value in given.items() if key not in others}
     try:
@@ -217,7 +220,7 @@ def choose(choices: Choices, table: str, values: Tables) -> Any:
 
 
 def objects(known: Collection[str], table: str, values: Tables) -> Tables:
-    """Return the values of a table, with the objects that they define.
+    """Return the values of a table, with an object for each key of `PARTS`.
 
     Raises:
         NotFoundError: A key is none of those known.
@@ -229,7 +232,7 @@ def objects(known: Collection[str], table: str, values: Tables) -> Tables:
 
 
 def _made(place: str, value: Any) -> Any:
-    """Make the object of a setting; errors as of `objects`."""
+    """Return the object of a setting if its place is in `PARTS`, else its value."""
     if place not in PARTS:
         return value
     if not isinstance(value, dict):  # of the first argument
@@ -244,9 +247,9 @@ def load(table: Tables) -> Any:
 
 
 def bounded(sheet: Robot, table: Tables) -> tuple[Robot, list[Any]]:
-    """Return a robot with the bounds of a table [limits], and its parts.
+    """Return a robot with the bounds of a table [limits], and the table's limits for a scheme.
 
-    Where the table gives no limit, the robot's own holds.
+    If the table gives no rate limit of a kind, it is the robot's own.
     """
     parts = [key.removeprefix("limits.") for key in PARTS if key.startswith("limits.")]
     own = {limit.quantity: "robot" for limit in own_rate_limits(sheet)}

@@ -26,7 +26,7 @@ from iiwa_dnn.app.command_line import (
 )
 from iiwa_dnn.files import write_json, write_text
 from iiwa_dnn.results.plots import overview_figure, write_figures
-from iiwa_dnn.results.report import made
+from iiwa_dnn.results.report import provenance
 
 Names = Annotated[tuple[str, ...], shown("NAME ...")]
 
@@ -48,11 +48,12 @@ EVERY = SweepWords()
 def start_sweep(words: SweepWords, name: str) -> tuple[Path, Callable[..., list[Any]]]:
     """Claim the folder of a command; return it, and a function that computes cells by a task.
 
-    Cells that are there already are not computed again.
+    Cells with a stored result are not computed again.
     """
     from iiwa_dnn.studies.sweeps import sweep
 
-    checks.integer("workers", 1 if words.workers is None else words.workers, 1)
+    if words.workers is not None:
+        checks.integer("workers", words.workers, 1)
     settings = {"command": name}
     folder = words.out or Path("runs") / name
     check_folder(folder, settings, words.overwrite)
@@ -96,7 +97,7 @@ def paper(
         write_json(folder / f"{name}.json", tables[name])
         early += [values["status"] for values in results if values["status"] != "completed"]
     head = {
-        **made({package: version(package) for package in sweeps.PACKAGES}),
+        **provenance({package: version(package) for package in sweeps.PACKAGES}),
         "runs": f"{scope.duration:g} s each (the paper's: 10 s) at {scope.dt:g} s; the drift of "
         "less than a whole heart does not compare",
         "seeds": str(scope.seeds),

@@ -189,7 +189,7 @@ class OfRuns(Common):
 
 @dataclass(frozen=True)
 class OfExports(Common):
-    """Words of an export that stand for no setting."""
+    """Options of an export that are no settings."""
 
     python: Annotated[str | None, shown("NAME")] = None
     """write a shield of the robot as a package of Python, in the folder NAME"""
@@ -200,7 +200,7 @@ class OfExports(Common):
 
 
 def _options(name: str, base: type[Common], without: frozenset[str] = frozenset()) -> Any:
-    """Make the class of a command's options: the settings `WORDS` without some, and a base's."""
+    """Make the class of a command's options: `WORDS` without some of them, and those of a base."""
     fields = [
         (word, Annotated[kind, shown(metavar, about)], None)
         for word, (_, kind, metavar, about) in WORDS.items()

@@ -12,6 +12,10 @@ from iiwa_dnn.results.record import Record
 LIMIT_SLACK = 1e-9
 """Excess over a limit [rad, rad/s, m] that is forgiven: rounding of the motion's integration."""
 
+_ABRUPT = 1e-4
+"""Speed [m/s, rad/s] or distance [m] of a path's start from which on it does not begin at rest at
+the tip."""
+
 
 def failures(run: Record | Mapping[str, Any]) -> list[str]:
     """List the reasons why a run is not a success; its exit code is then 1.
@@ -45,12 +49,13 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
 
 
 def unlimited(metrics: Mapping[str, Any], named: bool) -> Iterator[str]:
-    """Report what exceeded the robot's own limits, where the run had none or larger ones.
+    """Report each limit of the robot that joints exceeded because the run's was wider, or none.
 
     Args:
         metrics: The metrics.
-        named: Whether somebody gave a limit of that kind, none or a larger one (True), or nobody
-            did (False); positions and velocities are always given.
+        named: True: only limits that the run's scheme or settings replace, by a wider one or by
+            "none"; False: only limits that they do not mention. Position and velocity limits are
+            always mentioned.
     """
     units = dict(JOINT_LIMITS.values())
     for quantity, found in metrics["beyond_robot"].items():
@@ -65,9 +70,10 @@ def unlimited(metrics: Mapping[str, Any], named: bool) -> Iterator[str]:
 
 
 def command_kinds(check: Mapping[str, Any]) -> str:
-    """Count the commands by the program that they answer, ``736 nominal, 9,264 relaxed``.
+    """Count the commands by kind of program, as ``736 nominal, 9,264 relaxed``.
 
-    A rate-limited command is checked for its bounds, its program's answer by the references.
+    The counts are of steps that were checked: the references check the solution of the program, the
+    step's own bounds a rate-limited command.
     """
     kinds = check["kinds"].items()
     return ", ".join(f"{steps:,} {kind.replace('_', '-')}" for kind, steps in kinds if steps)
@@ -88,7 +94,7 @@ def qps_checked(metrics: Mapping[str, Any]) -> str:
 
 
 def completed(metrics: Mapping[str, Any]) -> str:
-    """State the completed part of the path, or of the time of it that was asked for."""
+    """State the completed part of the path; of a run that is shorter, that of its duration."""
     part = percent(metrics["path_completed"])
     asked = metrics["settings"]["duration"]
     whole = metrics["settings"].get("path_duration") or asked
@@ -96,15 +102,17 @@ def completed(metrics: Mapping[str, Any]) -> str:
 
 
 def _show(value: float | None) -> str:
+    """Format a number in three digits; None stands for one that was not finite."""
     return "not a number" if value is None else f"{value:.3g}"
 
 
 def _at(found: Mapping[str, Any]) -> str:
+    """Name the step and the time of an event in the metrics."""
     return f"step {found['step']} (t = {found['time_s']:.6g} s)"
 
 
 def counted(steps: int) -> str:
-    """Count steps in words, ``1 step`` or ``1,000 steps``."""
+    """Format a number of steps, ``1 step`` or ``1,000 steps``."""
     return f"{steps:,} step" if steps == 1 else f"{steps:,} steps"
 
 
@@ -130,7 +138,7 @@ def _incomplete(metrics: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
-    """Name the steps without the network's answer; clipping and active bounds are no failures."""
+    """Report the steps at which a policy acted, and the limits that left no solution."""
     incidents = metrics["incidents"]
     done = {
         word: incidents[f"{action}_steps"]
@@ -154,26 +162,22 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _advice(metrics: Mapping[str, Any], kind: str | None) -> str:
-    """Advise on a path whose commands are limited most often by a limit of this kind."""
+    """Return advice for a path on which limits of this kind left no solution most often."""
     if kind not in KINDS[1:4]:
         return ""
     incidents = metrics["incidents"]
     advice = "; more time for the path (--period, --stretch) may help"
     if kind == "velocity":
         return advice
-    if incidents["first"]["step"] == 0 and _is_abrupt(metrics):
+    start = max(metrics["settings"].get("start_speed", 1.0), metrics["start_distance_m"] or 0.0)
+    if incidents["first"]["step"] == 0 and start > _ABRUPT:
         advice = "; the arm starts at rest, the path at speed or elsewhere (heart, line: at rest)"
     leaves = "; each joint is limited by itself, so the tip leaves the path" + advice
     return leaves if incidents["slow_steps"] else advice
 
 
-def _is_abrupt(metrics: Mapping[str, Any]) -> bool:
-    """Test whether the path begins at speed or away from the tip; of an old record, True."""
-    start = max(metrics["settings"].get("start_speed", 1.0), metrics["start_distance_m"] or 0.0)
-    return bool(start > 1e-4)
-
-
 def _unsolved(metrics: Mapping[str, Any]) -> Iterator[str]:
+    """Report the steps whose KKT residual is above the tolerance."""
     first = metrics["unsolved"]
     if first is not None:
         tolerance = _show(metrics["settings"]["tol"])

@@ -76,21 +76,25 @@ def rotation_angle(rotation: Array, desired: Array) -> Array:
 
 
 def limits(record: Record, key: str, unlimited: float = np.inf) -> Array:
-    """Return a limit of each joint out of the settings, (n,); None there stands for no limit."""
+    """Return the limits of the joints under a key of the settings, (n,).
+
+    `unlimited` stands for a joint without a limit, which is None in the settings.
+    """
     values = record.settings.get(key) or [None] * record.dof
     return np.array([unlimited if value is None else value for value in values], dtype=float)
 
 
 @np.errstate(invalid="ignore")  # of commands that are not finite
 def joint_rates(record: Record, quantity: str) -> tuple[Array, float]:
-    """Compute the joints' accelerations [rad/s^2] or jerks [rad/s^3], and their rounding.
+    """Compute the joints' accelerations [rad/s^2] or jerks [rad/s^3], and their error by rounding.
 
     Args:
         record: The run.
         quantity: One of `RATES`.
 
     Returns:
-        Finite differences of the commands, from rest, (N, n), and the rounding that they carry on.
+        Finite differences of the commands, from rest, (N, n), and a bound on their error by
+        rounding.
     """
     order = 1 + list(RATES).index(quantity)
     dt = record.settings["dt"]
@@ -108,7 +112,10 @@ def _rate_excess(record: Record, quantity: str, limit: Array) -> Array:
 
 
 def _excesses(record: Record) -> dict[str, Array]:
-    """Compute the excess over each joint limit of the run at each step or sample, by its metric."""
+    """Compute how far each joint is beyond each limit of the run, by the names of the metrics.
+
+    Positions have a row for each sample, (N+1, n), rates one for each step, (N, n).
+    """
     below = limits(record, "q_lower", -np.inf) - record.q
     above = record.q - limits(record, "q_upper")
     found = {
@@ -126,11 +133,11 @@ def _excesses(record: Record) -> dict[str, Array]:
 
 @np.errstate(invalid="ignore")
 def beyond_robot(record: Record) -> dict[str, dict[str, Any]]:
-    """Compute the excess of the joints over the robot's own limits, by `OWN_LIMITS`.
+    """Find the largest excess over each of the robot's own limits that the run did not keep.
 
-    Quantities whose run limit was no wider than the robot's are left out, and those that the robot
-    does not limit. ``limited`` is the run's limit, None without one; ``named`` tells whether the
-    user gave the limit, or "none".
+    The keys are quantities of `OWN_LIMITS` whose limit in the run was wider than the robot's and
+    that exceeded the robot's. ``limited`` is the run's limit, None without one; ``named`` is False
+    if neither the scheme nor the user mentions a limit of that kind.
     """
     found = {}
     for quantity, setting in OWN_LIMITS.items():
@@ -228,7 +235,7 @@ def _max(values: NDArray[Any]) -> Any:
 
 
 def _first(record: Record, acts: Any) -> dict[str, Any] | None:
-    """Count steps (N,), and name the first of them."""
+    """Count the steps that are true in `acts` (N,), and give the first; None if there is none."""
     steps = np.flatnonzero(acts)
     if not steps.size:
         return None
@@ -236,13 +243,13 @@ def _first(record: Record, acts: Any) -> dict[str, Any] | None:
 
 
 def _unsolved(record: Record) -> dict[str, Any] | None:
-    """Count the answers above the tolerance, and name the first of them."""
+    """Count the steps with a KKT residual above the tolerance, and give the first, or None."""
     first = _first(record, ~(record.kkt_residual <= record.settings["tol"]))
     return first and first | {"residual": record.kkt_residual[first["step"]]}
 
 
 def _worst(record: Record, excess: Array) -> dict[str, Any] | None:
-    """Name the joint and the step of the largest excess (k, n) above zero."""
+    """Return joint and step of the largest excess of an array (k, n); None if none is above 0."""
     if not excess.max(initial=0.0) > 0.0:
         return None
     step, joint = np.unravel_index(int(excess.argmax()), excess.shape)
@@ -308,7 +315,10 @@ def _crosscheck(record: Record) -> dict[str, Any]:
 
 
 def _judged_by(record: Record, asked: NDArray[np.bool_]) -> dict[str, int]:
-    """Count the answers that each solver judged: those asked for, and the second ones."""
+    """Count the solutions that each reference solver judged, by its name.
+
+    Where a reference gave no answer, the second solver of `CrossCheck` judged in its place.
+    """
     check = record.settings["check"]
     judge = np.where(asked, record.filled("judge"), -1)
     counts: Counter[str] = Counter()
@@ -318,7 +328,7 @@ def _judged_by(record: Record, asked: NDArray[np.bool_]) -> dict[str, int]:
 
 
 def _physics(record: Record) -> dict[str, Any]:
-    """Sum up the torques and the settled error."""
+    """Summarize the torques, and the position error after `SETTLED_AFTER`."""
     distance = np.linalg.norm(position_error(record), axis=1)
     torque = np.abs(record.torque)
     limit = limits(record, "torque_max")
@@ -335,7 +345,7 @@ def _physics(record: Record) -> dict[str, Any]:
 
 
 def _frames(record: Record) -> dict[str, Any]:
-    """Sum up the errors of the tracked frames beside the first."""
+    """Return the largest errors of each tracked frame but the first, by its name."""
     largest = [errors.max(axis=0) for errors in frame_errors(record)]
     return {
         name: {"max_position_error_m": distance, "max_orientation_error_rad": angle}
@@ -344,7 +354,7 @@ def _frames(record: Record) -> dict[str, Any]:
 
 
 def _collisions(record: Record) -> dict[str, Any]:
-    """Name the nearest pair of a run, and the distance by which it was too near."""
+    """Describe the nearest pair of bodies in a run; ``missing_m`` is how much too near it was."""
     least = int(record.distance.argmin())
     stated = record.settings["collisions"]
     first, second = stated["pairs"][record.nearest[least]]
@@ -359,7 +369,10 @@ def _collisions(record: Record) -> dict[str, Any]:
 
 
 def _incidents(record: Record) -> dict[str, Any]:
-    """Count active limits, those of fallback programs, clipped commands, and a policy's steps."""
+    """Count steps with clipped commands, with each action of a policy, and with each limit.
+
+    ``active`` are limits that bound a solution, ``limiting`` those that left none.
+    """
     multipliers = _active(record)
     action = record.filled("action")
     clipped = record.filled("clipped").any(axis=1)
@@ -382,7 +395,10 @@ def _incidents(record: Record) -> dict[str, Any]:
 
 
 def _limits(record: Record, codes: NDArray[Any]) -> list[Mapping[str, Any]]:
-    """Count the steps of each limit, the longest first; codes of bounds and rows (N, n + m)."""
+    """Count the steps at which each limit acts, most steps first.
+
+    `codes` (N, n + m) are those of `Record.limiting` for bounds, and 1 or 0 for rows.
+    """
     found = []
     for column, one in zip(codes.T, np.eye(codes.shape[1], dtype=int), strict=True):
         for code in np.unique(column[column != 0]):
@@ -398,4 +414,4 @@ FURTHER: dict[str, tuple[str, Callable[[Record], dict[str, Any]]]] = {
     "frames": ("frame_position", _frames),
     "collisions": ("distance", _collisions),
 }
-"""Optional metrics: their column, and the function that computes them."""
+"""Metrics of runs with certain columns only: the column, and the function that computes them."""

@@ -163,7 +163,7 @@ def draw_arm(
 def build_scene(
     mujoco: Any, robot: Robot, obstacles: Iterable[Obstacle], scenery: str = SCENERY
 ) -> Any:
-    """Compile robot, floor and light, and the obstacles as bodies that can be displaced."""
+    """Compile MuJoCo's model of robot, floor, light, and obstacles that can be displaced."""
     spec = mujoco.MjSpec.from_string(scenery)
     arm = build_spec(robot)
     shell = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
@@ -208,7 +208,7 @@ def obstacles_of(record: Record) -> list[Obstacle]:
 
 
 def _aim(camera: Any, record: Record) -> None:
-    """Aim a camera at the arm from before the path, so near that the path is seen."""
+    """Aim a camera at arm and path, from the side of the path."""
     path = record.position_desired.mean(axis=0)
     radius = max(float(np.linalg.norm(record.position, axis=1).max()), 0.4)
     camera.lookat[:] = 0.72 * path + np.array([0.0, 0.0, 0.2 * radius])

@@ -104,10 +104,10 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def envelope(t: Array, curve: Array, buckets: int = BUCKETS) -> tuple[Array, Array, Array, Array]:
-    """Reduce a curve (M,) over times [s] (M,) to the extremes of stretches of equal length.
+    """Reduce a curve (M,) over times [s] (M,) to mean and extremes of intervals of equal length.
 
     Returns:
-        Mean time, and mean, least and greatest value of each stretch, (min(M, buckets),) each.
+        Mean time, and mean, least and greatest value of each interval, (min(M, buckets),) each.
     """
     starts = np.linspace(0, len(curve), min(len(curve), buckets), endpoint=False).astype(int)
     counts = np.diff(starts, append=len(curve))
@@ -142,12 +142,10 @@ def overview_figure(record: Record) -> Figure:
 
 
 def title_of(record: Record) -> str:
-    """Name robot, path, and the limits of the joints that the commands kept."""
+    """Name robot, path, and the kinds of joint limits that the run had."""
     settings = record.settings
-    kept = ["position", "velocity"]
-    for kind, key in (("acceleration", "ddq_max"), ("jerk", "dddq_max")):
-        if np.isfinite(limits(record, key)).any():
-            kept.append(kind)
+    rates = [rate for rate, key in RATES.items() if np.isfinite(limits(record, key)).any()]
+    kept = ["position", "velocity", *rates]
     path = (settings.get("reference") or {}).get("name", "targets")
     return f"{settings['robot']}, {path}; limits of {', '.join(kept[:-1])} and {kept[-1]}"
 
@@ -218,7 +216,7 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
 
 
 def _draw_limits(axes: Axes, bound: Array, reach: Array, colors: Array) -> None:
-    """Draw the limits near a reach: one that all joints share as a line, others as marks."""
+    """Draw the limits (n,) near the range of an axis: a common one as a line, others as marks."""
     margin = 0.15 * np.ptp(reach)  # a limit farther off would only flatten the curves
     near = np.flatnonzero((reach[0] - margin <= bound) & (bound <= reach[1] + margin))
     dashed = {"linestyle": (0, (8, 3)), "linewidth": 0.8, "color": "0.0"}
@@ -230,7 +228,7 @@ def _draw_limits(axes: Axes, bound: Array, reach: Array, colors: Array) -> None:
 
 
 def _draw_curve(axes: Axes, t: Array, curve: Array, **line: Any) -> None:
-    """Draw the mean of each stretch as a line, and in a pale band its extremes."""
+    """Draw the means of intervals (`envelope`) as a line, and their extremes as a pale band."""
     times, mean, least, greatest = envelope(t, curve)
     axes.plot(times, mean, **line)
     axes.fill_between(times, least, greatest, color=line["color"], alpha=0.25, linewidth=0.0)
@@ -311,7 +309,7 @@ def draw_log(
     quantity: str,
     tolerance: float | None = None,
 ) -> None:
-    """Draw positive values over time on a log scale, of each stretch the largest.
+    """Draw the largest value of each interval (`envelope`) over time on a logarithmic scale.
 
     The values, one a sample or one a step of the record, (N, k), have k names. Zero and infinity
     have no point there. A tolerance is a dashed line, but not in continuous mode: what lags behind

@@ -17,7 +17,7 @@ IntArray = NDArray[np.int64]
 CodeArray = NDArray[np.int8]
 
 RATES = {"acceleration": "ddq_max", "jerk": "dddq_max"}
-"""Setting of the limits that a scheme names, by what is limited: None where it names none."""
+"""Keys in a run's settings of the rate limits that its scheme mentions, by the limited quantity."""
 
 OWN_LIMITS = {
     "lower position": "q_lower",
@@ -25,7 +25,8 @@ OWN_LIMITS = {
     "velocity": "dq_max",
     **RATES,
 }
-"""Setting of a run's limit by what is limited; the robot's own has ``robot_`` before its name."""
+"""Keys in a run's settings of its limits, by the limited quantity; with ``robot_`` before the key,
+of those of the robot's URDF or data sheet."""
 
 
 NEEDED = {"robot", "joints", "mode", "dt", "duration", "status", "tol", "check"}
@@ -49,16 +50,16 @@ class Column(NamedTuple):
     fill: float = 0.0
 
     def allocate(self, steps: int, **sizes: int) -> NDArray[Any]:
-        """Make the array of a run of so many steps, of `fill` alone; further sizes as ``n=7``."""
+        """Make the array of a run, full of `fill`; `sizes` are lengths of other axes: ``n=7``."""
         known = {"N": steps, "N+1": steps + 1, **sizes}
         lengths = [known.get(size, 0) if isinstance(size, str) else size for size in self.shape]
         # Zeros take no memory before something else is written.
         return np.full(lengths, self.fill) if self.fill else np.zeros(lengths, self.dtype)
 
     def check(self, name: str, value: ArrayLike, sizes: dict[str | int, int]) -> NDArray[Any]:
-        """Return a read-only copy of an array of this column.
+        """Return a read-only copy of an array of this column, its type and shape checked.
 
-        Sizes that no array before has had are entered into `sizes`.
+        Lengths of axes whose symbol is not yet in `sizes` are entered there.
 
         Raises:
             InvalidInputError: If the array has another type or shape.
@@ -91,7 +92,7 @@ class Record:
     `filled` makes it as long as the run.
 
     Attributes:
-        settings: Everything the run was asked for, in JSON types; an infinite limit reads None.
+        settings: Settings of the run, in JSON types; an infinite limit is None.
         wall_time_s: Wall time of the run [s]. Not saved: the same seed gives the same file.
     """
 
@@ -290,9 +291,9 @@ class Record:
 
     @property
     def path_completed(self) -> float:
-        """Fraction of the path's time that the reference's clock covered, 0 to 1.
+        """Fraction of the path's duration that the reference's clock covered, 0 to 1.
 
-        That time is the path's once, or the run's if it is shorter, in whole steps.
+        If the run is shorter than the path, it is a fraction of the run's duration.
         """
         dt = self.settings["dt"]
         asked = self.settings["duration"]
@@ -301,7 +302,7 @@ class Record:
         return float(np.nan_to_num(np.clip(self.path_time / (dt * steps), 0.0, 1.0)))
 
     def filled(self, name: str) -> NDArray[Any]:
-        """Return the column of this name, or if the run lacks it one of its fill values."""
+        """Return the column of this name, or fill values in place of one of length zero."""
         array: NDArray[Any] = getattr(self, name)
         rows = len(self.settings.get("rows") or ())
         sizes = {"n": self.dof, "k": self.solution_gap.shape[1], "m": rows}

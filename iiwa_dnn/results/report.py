@@ -90,7 +90,7 @@ def report(
     figures: Iterable[Path] = (),
     paper: Mapping[str, float] | None = None,
 ) -> str:
-    """Write a report in Markdown, with the PNG files among the figures, which lie beside it.
+    """Return a report in Markdown that shows the PNG files among the figures, which lie beside it.
 
     Every number in it is one of the metrics, or one of the paper's.
     """
@@ -105,13 +105,13 @@ def report(
         "## Settings",
         markdown_table(("setting", "value"), shown),
         "## Made",
-        *(f"- {name}: {value}" for name, value in made(metrics["versions"]).items()),
+        *(f"- {name}: {value}" for name, value in provenance(metrics["versions"]).items()),
         *(f"![{CAPTIONS[path.stem]}]({path.name})" for path in figures if path.suffix == ".png"),
     ]
     return "\n\n".join(parts).replace("\n\n- ", "\n- ") + "\n"
 
 
-def made(versions: Mapping[str, str]) -> dict[str, str]:
+def provenance(versions: Mapping[str, str]) -> dict[str, str]:
     """Return date, machine, versions of packages and command of this process, by name."""
     packages = ", ".join(f"{name} {value}" for name, value in versions.items())
     return {
@@ -162,7 +162,7 @@ def _limits(incidents: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
 
 
 def _at(metrics: Mapping[str, Any], key_path: str) -> Any:
-    """Return the metric at a key path, ``crosscheck.tolerance``; None if there is none."""
+    """Return the metric at a path of keys, as ``crosscheck.tolerance``; None if there is none."""
     found: Any = metrics
     for key in key_path.split("."):
         found = (found or {}).get(key)
@@ -170,9 +170,10 @@ def _at(metrics: Mapping[str, Any], key_path: str) -> Any:
 
 
 def verdict(metrics: Mapping[str, Any]) -> list[str]:
-    """State the reasons of a failure, or a success no stronger than the check, and warnings.
+    """Return the verdict on a run: its failures or its success, then warnings.
 
-    Limits that were not to hold, and by how much the run went beyond them, come first.
+    A success claims no more than the check did. Limits of the robot that the run was told not to
+    keep, and by how much joints exceeded them, come first.
     """
     check = metrics["crosscheck"]
     beyond = [*unlimited(metrics, named=True)]
@@ -187,7 +188,7 @@ def verdict(metrics: Mapping[str, Any]) -> list[str]:
 
 
 def _text(value: object) -> str:
-    """Put a value in words: numbers in four digits."""
+    """Format a value for a reader, numbers in four digits."""
     if isinstance(value, Mapping):
         items = value.items()
         return ", ".join(f"{key} = {_text(item)}" for key, item in items if item is not None)
@@ -199,7 +200,7 @@ def _text(value: object) -> str:
 
 
 def _listed(values: Sequence[Any]) -> str:
-    """Put a list in words: equal entries said once, a long one cut off."""
+    """Format a list for a reader: equal entries once, a long list cut off."""
     if len(values) > 1 and all(item == values[0] for item in values):
         return f"{_text(values[0])} (all {len(values)})"
     shown = [f"({_text(v)})" if isinstance(v, list | dict) else _text(v) for v in values]
@@ -209,7 +210,7 @@ def _listed(values: Sequence[Any]) -> str:
 
 
 def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Lay out a table of texts in Markdown, its cells made fit to stand in one."""
+    """Lay out a table of texts in Markdown; line ends and bars within cells are replaced."""
     cells = [
         [" ".join(str(text).split()).replace("|", "\\|") for text in row] for row in (head, *rows)
     ]

@@ -16,7 +16,7 @@ _FOLDER = "cmeel.prefix/share/example-robot-data/robots"
 
 
 def robots_folder() -> Path:
-    """Find the robots' folder: beside the rooms in an installed wheel, above in the repository."""
+    """Find the folder of the robots: in an installed package, or beside it in the repository."""
     here = Path(__file__).resolve().parents[1]
     inside = here / "robots"
     return inside if inside.is_dir() else here.parent / "robots"
@@ -24,11 +24,11 @@ def robots_folder() -> Path:
 
 @dataclass(frozen=True)
 class Arm:
-    """Facts on an arm that its URDF does not hold.
+    """An arm known by name: its URDF, and facts that no URDF holds.
 
     Attributes:
         file: The URDF's path in the robots' folder of this package or of ``example-robot-data``.
-        tips: Frames at its ends: the first follows references, joints that move one are free.
+        tips: Frames at the ends; the first follows references. Joints that move none are locked.
         start: Posture away from limits and singular postures [rad], (n,).
         rates: Acceleration [rad/s^2] and jerk [rad/s^3] limits, (2, n); () for none.
     """
@@ -148,7 +148,7 @@ ARMS = {
         (0.0, 1.4835298641951802, -1.4398966328953218, 0.0, 0.0, 0.0),
     ),
 }
-"""By name; all joints that do not move a tip are held still.
+"""Arms by name.
 
 Sources of the rates. iiwa7: KUKA publishes none. These accelerations are `drake:acceleration` of
 iiwa_description/sdf/iiwa7_no_collision.sdf in github.com/RobotLocomotion/models; its README derives

@@ -2,9 +2,9 @@
 
 It is read from ``NAME.collisions.toml`` beside the URDF, or made from the URDF's own shapes: a
 cylinder gets two round ends, any other body a capsule around it along one of its principal axes.
-The files of the named arms have smaller ones, along axes of any direction. The pairs are those of
-an SRDF file: left out are neighbours, pairs that never meet, and pairs that are as near in the
-start posture, among them those of capsules that overlap in every posture.
+The files of the named arms have smaller ones, along axes of any direction. As in an SRDF file some
+pairs are left out: neighbours, pairs that never meet, and pairs that meet in the start posture
+already, as capsules do that overlap in every posture.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def _reasons(argument: str, value: Iterable[Any]) -> tuple[tuple[str, str, str],
 
 @dataclass(frozen=True)
 class CollisionModel(checks.Checked):
-    """Capsules of a robot's links, and the pairs of links that need no watching.
+    """Capsules of a robot's links, and the pairs of links that are not kept apart.
 
     Attributes:
         capsules: The capsules.
@@ -85,7 +85,7 @@ class CollisionModel(checks.Checked):
     left_out: tuple[tuple[str, str, str], ...]
 
     def pairs(self, robot: Robot) -> list[tuple[int, int]]:
-        """List the pairs of capsules that may meet, the one nearer to the base first.
+        """List the pairs of capsules that are kept apart, by their indices, the inner link first.
 
         Raises:
             NotFoundError: The robot has no link of a name.
@@ -111,7 +111,7 @@ class CollisionModel(checks.Checked):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> CollisionModel:
-        """Read a model that `save` wrote or a person did.
+        """Read a file as `save` writes it.
 
         Raises:
             FileError: It cannot be read, or is no such file; the message says why.
@@ -126,7 +126,7 @@ class CollisionModel(checks.Checked):
 
 
 def collision_file(robot: Robot) -> Path:
-    """Return the file of a robot's collision geometry, whether it exists or not.
+    """Return the path of a robot's collision geometry; the file need not exist.
 
     Raises:
         InvalidInputError: The robot does not come from a file.
@@ -140,9 +140,9 @@ def collision_file(robot: Robot) -> Path:
 
 @lru_cache(maxsize=32)
 def collision_model(robot: Robot) -> CollisionModel:
-    """Read the collision geometry of a robot, or make it where it has no file; none is written.
+    """Read the collision geometry of a robot; if it has no file, make it from the URDF.
 
-    If that takes more than a second, a warning says how to keep it.
+    No file is written. If making takes more than a second, a warning says how to keep the result.
 
     Raises:
         InvalidInputError: The robot does not come from a file.
@@ -164,7 +164,7 @@ def collision_model(robot: Robot) -> CollisionModel:
 
 @lru_cache(maxsize=32)
 def unwatched_links(robot: Robot) -> tuple[str, ...]:
-    """Name the links on a joint that carries a mass but no capsule: no row watches them.
+    """Name the first link of each joint that carries mass but no capsule: no row keeps it clear.
 
     Raises:
         InvalidInputError, FileError, NotFoundError: As of `collision_model`.
@@ -203,7 +203,7 @@ def make_collision_model(robot: Robot, samples: int = SAMPLES) -> CollisionModel
 
 
 def _near_pairs(robot: Robot, geometry: pin.GeometryModel, postures: checks.Array) -> set[int]:
-    """Number the pairs that come within `CLEARANCE` in one of the postures (k, n), by coal."""
+    """Number the pairs that come within `CLEARANCE` in any of the postures (k, n)."""
     data = robot.model.createData()
     scratch = pin.GeometryData(geometry)
     for request in scratch.collisionRequests:
@@ -221,7 +221,7 @@ def _near_pairs(robot: Robot, geometry: pin.GeometryModel, postures: checks.Arra
 def coal_geometry(
     robot: Robot, model: CollisionModel, pairs: Iterable[tuple[int, int]]
 ) -> pin.GeometryModel:
-    """Describe capsules and pairs to coal, for `pinocchio.computeDistances`."""
+    """Make Pinocchio's geometry model of capsules and of pairs of their indices."""
     geometry = pin.GeometryModel()
     for i, capsule in enumerate(model.capsules):
         center, rotation, half = box_around(capsule.a, capsule.b)
@@ -236,6 +236,7 @@ def coal_geometry(
 
 
 def _joint(robot: Robot, link: str) -> int:
+    """Return the number of the joint that carries a link."""
     return int(robot.model.frames[robot.frame_id(link)].parentJoint)
 
 
@@ -257,7 +258,7 @@ def _capsules(robot: Robot) -> list[LinkCapsule]:
 
 
 def _holds(capsule: LinkCapsule, sphere: LinkCapsule) -> bool:
-    """Test whether an end of a capsule holds another one of its link, a sphere, to 0.03 mm."""
+    """Test whether a round end of a capsule encloses a sphere of the same link, to 0.03 mm."""
     away = np.linalg.norm(np.subtract(sphere.a, [capsule.a, capsule.b]), axis=1).min()
     return (
         sphere.link == capsule.link
@@ -280,7 +281,7 @@ def _fit(shape: coal.CollisionGeometry) -> tuple[checks.Array, checks.Array, flo
 
 
 def _enclosing_capsule(points: checks.Array) -> tuple[checks.Array, checks.Array, float]:
-    """Fit a capsule around points (k, 3) [m] along the principal axis that makes it least.
+    """Fit a capsule around points (k, 3) [m], along the principal axis that makes it smallest.
 
     For an axis and a radius the shortest segment is known in closed form. The ends of a sphere are
     equal.

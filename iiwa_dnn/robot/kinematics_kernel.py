@@ -1,7 +1,6 @@
-"""Kinematics of a robot as a kernel, from tables of its model: an exported controller's own.
+"""Kinematics of a robot as a kernel over tables of its model, for exported C and `Shields`.
 
-At the desk Pinocchio computes the same (`iiwa_dnn.robot.kinematics`), and the tests hold the kernel
-to it.
+Elsewhere Pinocchio computes them (`iiwa_dnn.robot.kinematics`); tests compare both.
 """
 
 from collections.abc import Sequence
@@ -28,9 +27,9 @@ CYCLE = (0, 1, 2, 0, 1)
 
 
 class PrincipalAxes(Record):
-    """Placement of a body's principal axes, and roots of its mass along and its moment about each.
+    """Placement of a body's principal axes in the frame of its joint, and roots of its inertia.
 
-    The placement is in the frame of the joint that carries the body.
+    `roots` are the square root of the mass, three times, and those of the principal moments.
     """
 
     placement: Placement = part(Placement)
@@ -67,7 +66,10 @@ class ModelTables(NamedTuple):
 
 
 def model_tables(robot: Robot, frames: Sequence[int], dynamics: bool = False) -> ModelTables:
-    """Return the tables of a robot and its frames, by Pinocchio's indices; with bodies if asked."""
+    """Return the tables of a robot and its frames, by Pinocchio's indices.
+
+    Tables of the bodies are empty without `dynamics`.
+    """
     model = robot.model
     moving = range(1, model.njoints)
     axes = np.array([np.reshape(model.joints[j].createData().S, (2, 3)) for j in moving])
@@ -163,7 +165,7 @@ def _turn_into(axes: Matrix, v: Array, turned: Array) -> None:
 
 @compiled
 def _move(start: Placement, slides: float, q: float, moved: Placement) -> None:
-    """Write the placement at position q of a joint from that at 0."""
+    """Write the placement of a joint at position q, out of that at 0."""
     sine, cosine = sin_cos((1.0 - slides) * q)
     for i in range(3):
         x = start.axes[0, i]

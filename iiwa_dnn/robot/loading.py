@@ -24,7 +24,7 @@ _LARGE = 40.0
 
 
 def available_robots() -> tuple[str, ...]:
-    """List the robots that `load_robot` knows by name: those of `ARMS` whose files are there."""
+    """List the names in `ARMS` whose URDF files are installed."""
     with contextlib.suppress(MissingDependencyError):
         return tuple(name for name, arm in ARMS.items() if arm.path.is_file())
     return tuple(name for name, arm in ARMS.items() if (robots_folder() / arm.file).is_file())
@@ -39,9 +39,9 @@ def load_robot(
 ) -> Robot:
     """Load a robot by its name, from a URDF file or from a Pinocchio model.
 
-    Limits are the source's; a ``velocity`` of 0 stands for "not given": no velocity limit. So do 0
-    and nothing of ``acceleration`` and ``jerk``. Joints that move neither the tip nor one of
-    `frames` are held still; unless the robot is one of a known name, a warning says which.
+    Limits are the source's. A velocity, acceleration or jerk limit that is 0 or missing is none.
+    Joints that move neither the tip nor one of `frames` are locked; unless the robot is one of a
+    known name, a warning says which.
 
     Args:
         source: A name out of `available_robots`, the path of a file (a `Path`, or a string that
@@ -98,7 +98,7 @@ def load_robot(
 
 
 def _load_warnings(robot: Robot, still: list[str], left_out: list[str]) -> Iterator[str]:
-    """State parts of the file that are left out, a limit in another unit, and joints held still."""
+    """Warn of parts that are left out, a limit in another unit, and joints locked unasked."""
     if left_out:
         more = [f"{len(left_out) - 2} more"] if len(left_out) > 2 else []
         yield f"{robot.path}: left out by Pinocchio: {'; '.join(left_out[:2] + more)}"
@@ -170,7 +170,10 @@ def _lock(model: pin.Model, locked: Collection[str]) -> tuple[pin.Model, dict[st
 
 
 def _reduce(model: pin.Model, frozen: list[int], posture: Array) -> pin.Model:
-    """Build the model without some joints; a link, a joint and a fixed joint may have one name."""
+    """Build the model with some joints frozen at a posture.
+
+    Names are made unique meanwhile: in a URDF a link and a joint may share one.
+    """
     model = model.copy()
     for frame in list(model.frames)[1:]:
         if frame.type != pin.FrameType.JOINT:  # Pinocchio looks frames up by their names alone

@@ -50,7 +50,7 @@ def import_mujoco() -> Any:
 
 
 def prepare_renderer() -> None:
-    """Let ``mujoco.Renderer`` draw without a display, whatever MuJoCo chose at its import.
+    """Make ``mujoco.Renderer`` draw without a display.
 
     Raises:
         MissingDependencyError: If MuJoCo is not there or, on Linux, an OpenGL library that opens a
@@ -119,7 +119,7 @@ def build_spec(robot: Robot) -> Any:
 
 
 def _weld(spec: Any, robot: Robot) -> None:
-    """Fix the locked joints of a robot where they are; joints that follow others are among them."""
+    """Replace the locked joints of a robot, mimic joints among them, by fixed bodies."""
     for coupling in spec.equalities:
         spec.delete(coupling)
     for joint in spec.joints:

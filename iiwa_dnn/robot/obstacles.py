@@ -95,7 +95,7 @@ class Sphere(Obstacle):
 
     @property
     def box(self) -> PlacedBox:
-        """The middle."""
+        """A point at the center."""
         return box_around(self.center, self.center)
 
 
@@ -120,7 +120,7 @@ class Capsule(Obstacle):
 
     @property
     def box(self) -> PlacedBox:
-        """The segment."""
+        """The segment from `a` to `b`."""
         return box_around(self.a, self.b)
 
 
@@ -206,9 +206,9 @@ def make_obstacles(tables: Any) -> list[Obstacle]:
 
 
 def outline(obstacle: Obstacle) -> tuple[checks.Array, NDArray[np.int32]]:
-    """Return vertices (k, 3) [m] at time 0 and triangles (m, 3) of a shape, for pictures.
+    """Return a mesh of a shape at time 0 for pictures: vertices (k, 3) [m], triangles (m, 3).
 
-    They are a ball's, each octant of which is moved to a corner of the box.
+    The mesh is a ball's, of radius `thickness`, each octant of which is moved to a corner of `box`.
     """
     center, rotation, half_extents = obstacle.box
     turn = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False) + 0.1

@@ -188,10 +188,10 @@ class Robot:
         return replace(self, limits=limits)
 
     def outside(self, q: ArrayLike) -> str:
-        """Name the first joint of q (n,) [rad] that is off its limits, in words; "" if none is.
+        """Describe the first joint of q (n,) [rad] that is beyond its limits; "" if none is.
 
-        A distance of 1e-9 beyond a limit is forgiven: a run may end there, and the next one begin.
-        Positions beyond a turn that would be within the limits in degrees are asked about.
+        An excess of 1e-9 is allowed: a run may end there, and the next one begin. If positions
+        beyond a turn would be within the limits in degrees, the text asks about the unit.
         """
         turns = np.radians(q)
         fit = (turns >= self.q_lower) & (turns <= self.q_upper)
@@ -228,10 +228,10 @@ class Robot:
     def start_posture(self) -> checks.Array:
         """Return joint positions (n,) [rad] to start from, inside the limits.
 
-        If a start is known (`iiwa_dnn.robot.arms.ARMS`), it is that one, but for joints outside
-        their limits there: they start a twentieth of their range inside the nearer limit. The
-        start of any other robot is the best of a few random postures (`best_start`), each joint in
-        the middle of its range.
+        For an arm of `iiwa_dnn.robot.arms.ARMS` they are its start there; a joint that is outside
+        its limits there starts a twentieth of its range inside the nearer limit. For any other
+        robot they are the best of random postures (`best_start`), each joint in the middle of its
+        range.
         """
         start = np.array(ARMS[self.name].start if self.name in ARMS else ())
         if start.size != self.dof:
@@ -251,7 +251,7 @@ class Robot:
     def _inside(self, ratios: checks.Array) -> checks.Array:
         """Return postures (..., n) [rad] at ratios (..., n) of the ranges.
 
-        In place of an infinite limit there is one 2 pi from 0, or from the other limit.
+        An infinite limit counts as 2 pi beyond 0, or beyond the other limit.
         """
         nearest = np.clip(0.0, self.q_lower, self.q_upper)
         lower = np.maximum(self.q_lower, nearest - 2.0 * np.pi)

@@ -46,7 +46,7 @@ def _read(model: pin.Model, path: Path, text: str, kind: pin.GeometryType) -> pi
     folders = [str(folder) for folder in (*path.absolute().parents, *path.resolve().parents)]
     loader = coal.CachedMeshLoader(coal.BV_OBB)  # half of the default's time
     try:
-        with parser_messages():  # which were told when the robot was loaded
+        with parser_messages():  # they were shown when the robot was loaded
             return pin.buildGeomFromUrdfString(model, text, kind, None, folders, loader)
     except (ValueError, RuntimeError) as error:
         # Behind where coal's source has it, before its advice.
@@ -56,7 +56,7 @@ def _read(model: pin.Model, path: Path, text: str, kind: pin.GeometryType) -> pi
 
 
 def visual_shapes(robot: Robot) -> pin.GeometryModel:
-    """Read the <visual>s of a robot; if a mesh is missing, none, which a warning says."""
+    """Read the visual shapes of a robot; if a mesh is missing, return none and warn."""
     if robot.path is None:
         return pin.GeometryModel()
     try:

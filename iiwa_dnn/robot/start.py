@@ -28,11 +28,11 @@ _ZERO = 1e-6
 def best_start(robot: Robot, postures: Array) -> Array:
     """Choose the posture out of (k, n) [rad] that is farthest from singular ones, (n,).
 
-    Its measure is the least singular value of the tip's Jacobian that is not zero everywhere, with
-    the rows of rotation times the robot's reach, or without them if there are fewer than six
-    joints. The best ones are compared by the least measure in their surroundings, a tenth of the
-    reach along each axis; those come first in which fewer collision shapes of the robot's file
-    meet. Pairs that meet in all of them are not counted.
+    The measure of a posture is the least singular value of the tip's Jacobian, among those that are
+    not zero in all postures; rows of rotation are multiplied by the robot's reach, or left out if
+    there are fewer than six joints. The `_TESTED` postures with the largest measure are ordered by
+    the number of pairs of collision shapes that meet, without pairs that meet in all of them, then
+    by the least measure a tenth of the reach away along each axis.
 
     Source: C. A. Klein, B. E. Blaho, "Dexterity measures for the design and control of
     kinematically redundant manipulators", Int. J. Robotics Research 6(2), 1987.

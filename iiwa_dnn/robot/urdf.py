@@ -85,7 +85,7 @@ def _parse(data: bytes) -> ET.Element:
 
 
 def number_of(path: Path | None, joint: ET.Element, element: ET.Element, key: str) -> float:
-    """Read a number of an element of a joint, or Drake's of that name; 0 if there is neither.
+    """Read a number from an attribute `key` or ``drake:key`` within a joint; 0 if there is none.
 
     Raises:
         FileError: If it is no number of at least 0; joint and key are named.

@@ -83,7 +83,7 @@ class Disturbances:
         )
 
     def mass_factors(self, joints: int, seed: int) -> Vector:
-        """Draw the factor on mass and inertia of the links that each joint carries, (n,)."""
+        """Draw for each joint the factor by which the links that it carries are too heavy, (n,)."""
         signs = np.random.default_rng([seed, 0]).choice([-1.0, 1.0], joints)
         return 1.0 + self.mass_error * signs
 

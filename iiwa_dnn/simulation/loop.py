@@ -16,7 +16,7 @@ from iiwa_dnn.simulation.plants import Plant
 
 
 class Outcome(NamedTuple):
-    """One step of the loop.
+    """What happened in one step of the loop.
 
     Attributes:
         commands: The controller's commands, one for each stage of the motion.
@@ -65,7 +65,7 @@ class Loop:
     def __init__(
         self, controller: Controller, plant: Plant, chain: SignalChain, method: Method, q0: Vector
     ) -> None:
-        """Take controller, plant and signal chain.
+        """Keep the parts of the loop.
 
         Args:
             controller: The controller.
@@ -83,7 +83,7 @@ class Loop:
         self._misled = chain.misleads or not plant.exact
 
     def run(self, first: int, steps: int, observe: Observer) -> int:
-        """Take steps from number `first` on until one of them ends the run; count them."""
+        """Take `steps` steps from number `first`, or until one ends the run; return how many."""
         for k in range(first, first + steps):
             outcome = self.step(k)
             observe(k, outcome)
@@ -92,7 +92,7 @@ class Loop:
         return steps
 
     def step(self, k: int) -> Outcome:
-        """Take step k."""
+        """Take step k, from time k dt to (k + 1) dt."""
         controller = self.controller
         t = k * controller.dt
         seen = self._chain.see(k, self.plant.read())
@@ -116,9 +116,9 @@ class Loop:
         )
 
     def _ask(self, q: Vector, t: float) -> tuple[list[Command], Vector, Action]:
-        """Ask for a step's commands, one a stage; return them, their mean, and the action.
+        """Compute the commands of all stages of a step; return them, their mean, and the action.
 
-        If only a later stage has no solution, the answer at the step's start is taken.
+        If one of them has no solution, the mean is the first stage's command: an Euler step.
         """
         commands: list[Command] = []
 
@@ -136,14 +136,14 @@ class Loop:
     def _alter(
         self, k: int, t: float, command: Command, velocity: Vector
     ) -> tuple[Vector, NDArray[np.int8]]:
-        """Return a velocity after noise and filter, and the joints that were clipped."""
+        """Add noise to a velocity, filter and clip it; return it, and which joints were clipped."""
         qp = command.limits
         if self._misled:
             qp = self.controller.program_at(self.q, command.targets, t)
         return self._chain.act(k, velocity, qp, self.controller)
 
     def _move(self, dq: Vector, planned: Outcome) -> Outcome:
-        """Let the plant follow a command (n,) [rad/s], unless a policy has stopped the run."""
+        """Move the plant by a command (n,) [rad/s]; end the run if a policy has stopped the arm."""
         command = planned.commands[0]
         if planned.action is Action.STOP:
             self.controller.halt()

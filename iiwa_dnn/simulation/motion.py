@@ -19,10 +19,12 @@ VelocityField = Callable[[Vector, float], Vector]
 
 
 def check_motion(motion: str, one_clock: bool, at_end: bool) -> None:
-    """Raise InvalidInputError unless a run can take this motion.
+    """Raise InvalidInputError if a motion with stages within a period does not fit the run.
 
-    Network or physics that advance by one control period a step have one clock; `at_end` are tasks
-    that track the target one control period ahead.
+    Args:
+        motion: Name out of `MOTIONS`.
+        one_clock: Whether network or physics advance by one control period at each evaluation.
+        at_end: Whether tasks track the target at the end of the control period.
     """
     problem = "must be euler in continuous mode and in physics: they have one clock"
     if at_end:
@@ -32,11 +34,11 @@ def check_motion(motion: str, one_clock: bool, at_end: bool) -> None:
 
 
 class Method(NamedTuple):
-    """An explicit Runge-Kutta method, each stage of which goes on from the one before alone.
+    """An explicit Runge-Kutta method, each stage of which depends on the stage before alone.
 
     Attributes:
-        nodes: Times at which it asks for a velocity, in the order of its questions, in units of dt.
-        weights: Weights of those velocities in their mean.
+        nodes: Times of the stages, in units of dt.
+        weights: Weights of the stages' velocities in the mean velocity of the step.
     """
 
     nodes: tuple[float, ...]

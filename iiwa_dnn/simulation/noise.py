@@ -36,12 +36,12 @@ class SignalChain:
 
     Attributes:
         settings: Entries of a run's settings, values that JSON can hold.
-        alters: Whether more than the controller's own answer moves the robot.
-        misleads: Whether the controller may see another posture than the robot has.
+        alters: Whether the command that moves the robot may differ from the controller's.
+        misleads: Whether the controller may see joint positions that differ from the true ones.
     """
 
     def __init__(self, run: RunSettings, shape: tuple[int, int]) -> None:
-        """Draw the noise of a run of so many steps and joints n, (steps, n).
+        """Draw the noise of a run, of the shape (steps, n).
 
         Raises:
             InvalidInputError: Noise that is given has another shape or is not finite.
@@ -78,7 +78,7 @@ class SignalChain:
     def act(
         self, k: int, velocity: Vector, qp: QP, controller: Controller
     ) -> tuple[Vector, NDArray[np.int8]]:
-        """Return the command that the plant gets at step k, and the joints that were clipped.
+        """Return the plant's command at step k, (n,), and 1 for each joint that was clipped, (n,).
 
         Args:
             k: The step.

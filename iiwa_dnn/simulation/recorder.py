@@ -33,7 +33,7 @@ class Recorder:
     """
 
     def __init__(self, steps: int, controller: Controller, q0: Vector) -> None:
-        """Allocate for so many steps.
+        """Allocate the columns that every run has.
 
         Args:
             steps: Steps of the whole run.
@@ -57,16 +57,16 @@ class Recorder:
         self.arrays["q"][0] = q0
 
     def observe(self, k: int, outcome: Outcome) -> None:
-        """Take in the outcome of step k."""
+        """Keep the outcome of step k until the next `flush`."""
         self.outcomes.append(outcome)
         if outcome.ends:
             self.last_step = k
 
     def flush(self) -> Matrix:
-        """Put the collected outcomes into the arrays.
+        """Write the outcomes since the last call into the arrays.
 
         Returns:
-            Rows of their commands, stage by stage, (k, width).
+            Step logs of their commands, one a stage, (k, width).
         """
         outcomes = self.outcomes
         self.outcomes = []
@@ -107,10 +107,11 @@ class Recorder:
         return data
 
     def _look_for_infeasible(self, data: Matrix) -> None:
-        """Solve the program of each `SEARCHED` rows (k, width) that is violated most.
+        """Note the first step of a run in continuous mode whose program is infeasible.
 
-        What the network lags behind in continuous mode may have no solution at all. The first one
-        of those rows without a solution is noted.
+        There a large residual may be a lag of the network, or an infeasible program. Of each
+        `SEARCHED` step logs in `data` (k, width), the program with the largest residual is solved,
+        and if it is infeasible, those before it.
         """
         if self._controller.mode != "continuous" or self.infeasible is not None:
             return
@@ -123,12 +124,12 @@ class Recorder:
                 return
 
     def _is_infeasible(self, data: Vector) -> bool:
-        """Test whether the program of a step log (width,) is shown to have no solution."""
+        """Test whether the program of a step log (width,) is proven to be infeasible."""
         qp = QP.from_data(log_of(data, self.layout.sizes).program, self.layout.qp_sizes)
         return DNNSolver().solve(qp).status is Status.PRIMAL_INFEASIBLE
 
     def finish(self, steps: int) -> dict[str, NDArray[Any]]:
-        """Return the columns, cut to so many steps of those that are in the arrays."""
+        """Write the last sample; return the columns of the first `steps` steps."""
         controller = self._controller
         self.arrays["t"] = controller.dt * np.arange(steps + 1, dtype=np.float64)
         placement = controller.placement(self.arrays["q"][steps])
@@ -140,7 +141,7 @@ class Recorder:
         }
 
     def _array(self, name: str, **sizes: int) -> NDArray[Any]:
-        """Return a column, allocated when it is first asked for."""
+        """Return a column; allocate it at its first use. Sizes are those of `Column.allocate`."""
         if name not in self.arrays:
             n = self._controller.robot.dof
             known = {"n": n, "f": len(self._frame_ids)} | sizes
@@ -166,7 +167,7 @@ class Recorder:
             self._array("limiting_rows", m=sides.size)[k] = sides
 
     def _add_kinetic_index(self, steps: slice, ended: bool) -> None:
-        """Compute the kinetic index, of the identity for all steps at once."""
+        """Write the kinetic index of some steps; if the run has `ended`, without the last one."""
         scheme = self._controller.scheme
         robot = self._controller.robot
         column = self.arrays["kinetic_index"]
@@ -178,7 +179,7 @@ class Recorder:
             column[k] = scheme.kinetic_index(conf, self.arrays["dq"][k])
 
     def _add_samples(self, first: int, placements: Matrix, targets: Matrix) -> None:
-        """Take in samples from number `first` on: placements (k, 12) and targets (k, 18 frames)."""
+        """Write samples from number `first` on: placements (k, 12) and targets (k, 18 frames)."""
         samples = slice(first, first + len(placements))
         arrays = self.arrays
         arrays["position"][samples] = placements[:, 9:]

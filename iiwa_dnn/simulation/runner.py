@@ -113,7 +113,7 @@ def simulate(
     progress(0)
     stages = MOTIONS[run.motion].stages
     pool = CheckPool(run.check, steps * stages)
-    interrupt = _take(steps, loop, recorder, pool, progress)
+    interrupt = _take_steps(steps, loop, recorder, pool, progress)
     agreement = pool.finish().worst_of(stages)
     columns = recorder.finish(len(agreement.judge))  # without what was on its way to the check
     avoidance = avoidance_of(controller.scheme)
@@ -135,14 +135,14 @@ def simulate(
     raise RunInterrupted(*interrupt.args, record=record) if record.steps else interrupt
 
 
-def _take(
+def _take_steps(
     steps: int,
     loop: Loop,
     recorder: Recorder,
     pool: CheckPool,
     progress: Callable[[int], object],
 ) -> KeyboardInterrupt | None:
-    """Take the steps of a run; return the interrupt that ended it before its time."""
+    """Take the steps of a run; return the KeyboardInterrupt that cut it short, or None."""
     layout = recorder.layout
 
     def hand_over() -> None:
@@ -166,7 +166,7 @@ def _take(
 
 
 def _settings(controller: Controller, start: Configuration, duration: float) -> dict[str, Any]:
-    """Return the settings of a run of this duration [s] from its start, values for JSON."""
+    """Return the settings that a record keeps of controller, start and duration [s] of a run."""
     robot = controller.robot
     solver = controller.solver
     program = controller.program

@@ -55,7 +55,7 @@ class RunSettings:
             is reset before the run.
         noise: Standard deviation of white noise on each joint, in the unit of the signal that it
             is added to; or the noise itself, (steps, n).
-        noise_at: ``"velocity"``, commanded; ``"network"``, its x; ``"measurement"``, read joints.
+        noise_at: Signal that the noise is added to (`NOISE_ENTRIES`).
         filter_window: Samples of the moving average of the velocity; 1: no filter.
         estimator: Noise model of a Kalman filter of the joint positions, whose bias is taken off
             the command; None: the controller sees the measured positions.
@@ -80,9 +80,6 @@ class RunSettings:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name, kind in (("plant", IdealPlant), ("check", CrossCheck), ("solver", DNNSolver)):
-            if getattr(self, name) is None:  # stands for the default
-                object.__setattr__(self, name, kind())
         checks.positive("dt", self.dt)
         if self.duration is not None:
             checks.positive("duration", self.duration)

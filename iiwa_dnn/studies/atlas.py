@@ -120,7 +120,7 @@ floor that hides a network's own error."""
 
 
 def _along(course: Callable[[Vector], Vector]) -> Callable[[np.random.Generator, Vector], Matrix]:
-    """Return a noise of given time course, along a direction drawn by a seed."""
+    """Return a function that draws a noise of this time course in a random direction."""
 
     def draw(rng: np.random.Generator, times: Vector) -> Matrix:
         direction = rng.standard_normal(STATES) / np.sqrt(7.0)
@@ -150,12 +150,12 @@ Measurement: 1e-4 rad on the joint positions.
 
 
 def disturbed(solver: DNNSolver, noise: Matrix) -> DNNSolver:
-    """Return the solver with noise (steps, k) [unit of x] in the state that is read."""
+    """Return a solver that adds a row of noise (steps, k) [unit of x] to the state at each step."""
     rows = iter(noise)
     kind: Any = type(solver)
 
     class Disturbed(kind):  # type: ignore[misc]
-        """The solver, disturbed."""
+        """The solver, which adds a row of the noise before each advance."""
 
         def _advanced(self, qp: QP, state: Vector, *taken: Any) -> Any:
             width = 7 if self.network.carries_x else state.size
@@ -177,7 +177,9 @@ class Paced(ExplicitEuler):
     fraction: float = 0.95
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
-        """Advance `state` (size,) in place, whatever the duration; returns the steps taken.
+        """Advance `state` (size,) in place by `substeps` steps; return their number.
+
+        The duration is ignored.
 
         Raises:
             InvalidInputError: No step is stable.
@@ -192,10 +194,10 @@ class Paced(ExplicitEuler):
 
 @dataclass(frozen=True)
 class CutOff(ImplicitEuler):
-    """Implicit Euler towards rest, cut off after `max_steps` linear solves."""
+    """Implicit Euler towards the equilibrium, cut off after `max_steps` linear solves."""
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
-        """Advance `state` (size,) in place; returns the linear solves."""
+        """Advance `state` (size,) in place; return the number of linear solves."""
         n, m, p = qp.sizes
         return self.solve(network, qp, state, np.empty(2 * n + m + p), 1e-12)[0]
 
@@ -204,11 +206,11 @@ class Entry(NamedTuple):
     """A network of the atlas.
 
     Attributes:
-        network: The network, or what is documented in its place.
-        make: Makes its solver from the evaluations a control period, the fraction of the linear
-            limit that is its gain, and the control period [s].
+        network: The network.
+        make: Makes its solver from the evaluations a control period, the gain as a fraction of the
+            linear limit, and the control period [s].
         work: Operations of a program's set-up and of an evaluation, from the sizes (n, m, p).
-        paced: Whether it has a gain.
+        paced: Whether the network has a gain to be chosen.
     """
 
     network: Any
@@ -218,7 +220,7 @@ class Entry(NamedTuple):
 
 
 def constant(network: Network) -> Entry:
-    """Return the entry of a network for a program that stands still."""
+    """Return the entry of a network that takes each program as constant, by explicit Euler."""
     return Entry(
         network,
         lambda count, fraction, dt: DNNSolver(
@@ -229,7 +231,7 @@ def constant(network: Network) -> Entry:
 
 
 def implicit(network: Network) -> Entry:
-    """Return the entry of a network that is integrated implicitly towards rest."""
+    """Return the entry of a network whose equilibrium implicit Euler steps approach."""
     return Entry(
         network,
         lambda count, fraction, dt: DNNSolver(network, advance_integrator=CutOff(max_steps=count)),
@@ -239,7 +241,7 @@ def implicit(network: Network) -> Entry:
 
 
 def iterated(network: Network) -> Entry:
-    """Return the entry of a method whose iteration is an explicit step of one rho."""
+    """Return the entry of an iterative method, each iteration an explicit Euler step of rho."""
 
     def make(count: int, fraction: float, dt: float) -> DNNSolver:
         return DNNSolver(
@@ -255,7 +257,7 @@ def zeroing(formula: Formula = EULER, **options: Any) -> Entry:
 
 
 def moving(network: Network, formula: Formula = EULER) -> Entry:
-    """Return the entry of a network that follows a program that moves."""
+    """Return the entry of a network that uses the program's rate of change (`TrackingSolver`)."""
 
     def make(count: int, fraction: float, dt: float) -> DNNSolver:
         rho = dt / count / (fraction * formula.limit)
@@ -309,7 +311,7 @@ MEASURES = ("residual", "rms_error_m")
 
 
 def entry_of(name: str) -> Entry:
-    """Return the entry of a network by its name, or of one from outside.
+    """Return the entry of a network of the atlas, or of a user's ``module:NAME``.
 
     Raises:
         InvalidInputError: The module cannot be imported, or it has no network of that name.
@@ -331,7 +333,7 @@ def entry_of(name: str) -> Entry:
 
 
 def _imported(name: str) -> ModuleType:
-    """Import the module of a network from outside, named as module:NAME or FILE.py:NAME."""
+    """Import the module of a user's network, named as module:NAME or FILE.py:NAME."""
     location = Path(name.rpartition(":")[0])
     is_file = location.suffix == ".py"
     folder = str(location.resolve().parent if is_file else Path.cwd())
@@ -353,7 +355,7 @@ class Cell:
         fraction: Fraction of the linear limit.
         seeds: Number of runs.
         dt: Control period [s].
-        source: Hash of the file of a network from outside: a changed one is computed anew.
+        source: Hash of the file of a user's network, so that a changed one is computed anew.
     """
 
     network: str
@@ -367,11 +369,11 @@ class Cell:
     source: str = field(default="", init=False)
 
     def __post_init__(self) -> None:
-        """Hash the file; undisturbed runs differ by their paths alone."""
+        """Limit undisturbed runs to one a path; hash the file of a user's network."""
         if self.disturbance == "none":
             object.__setattr__(self, "seeds", min(self.seeds, len(PATHS)))
         if ":" in self.network:
-            entry_of(self.network)  # refuses what is none
+            entry_of(self.network)  # raises an error if there is no such network
             file = Path(str(_imported(self.network).__file__))
             digest = hashlib.sha256(file.read_bytes()).hexdigest()
             object.__setattr__(self, "source", digest[:24])
@@ -396,7 +398,7 @@ class Size:
     seeds: int = 5
 
     def __post_init__(self) -> None:
-        """Check that all parts are there; undisturbed runs are, since gains are chosen by them.
+        """Check names and numbers, and add the undisturbed runs, by which gains are chosen.
 
         Raises:
             NotFoundError: There is no network of a name.
@@ -431,9 +433,10 @@ def gain_cells(size: Size) -> list[Cell]:
 def best_gains(
     cells: Iterable[Cell], results: Iterable[Mapping[str, Any]]
 ) -> dict[str, dict[str, Any]]:
-    """Choose each network's ``fraction`` and ``most``: those with the smallest residual.
+    """Choose each network's ``fraction`` and ``most`` with the smallest residual.
 
-    Of those that solve the program, and of equals, it is the largest fraction with all evaluations.
+    Residuals below `SOLVED` are equal. Among equals the largest fraction wins, then the one with
+    all evaluations.
     """
     ranked: dict[str, list[tuple[float, float, bool, Cell]]] = {}
     for cell, result in zip(cells, results, strict=True):
@@ -451,8 +454,8 @@ def best_gains(
 def cells(size: Size, gains: Mapping[str, Mapping[str, Any]]) -> list[Cell]:
     """List the cells of a league whose gains are known.
 
-    Every network with every disturbance; undisturbed with the schemes but the first; and the
-    control periods for the zeroing networks.
+    They are every network with every disturbance under the first scheme, undisturbed under the
+    other schemes, and every zeroing network at each of `PERIODS`.
     """
     found = []
     for network in size.networks:
@@ -492,7 +495,7 @@ def measure(cell: Cell) -> dict[str, Any]:
 
 
 def evaluations_within(entry: Entry, sizes: Sizes, work: float) -> int:
-    """Return the number of evaluations within a number of operations per control period.
+    """Return the number of evaluations that `work` operations a control period pay for.
 
     Raises:
         InvalidInputError: Not even one is possible.

@@ -100,7 +100,7 @@ def tabulate(cells: Sequence[Cell], results: Sequence[Row]) -> list[dict[str, An
 
 
 def find(rows: Sequence[Row], **wanted: Any) -> list[Row]:
-    """Find the rows with these settings; the first row's scheme, budget and period by default."""
+    """Return the rows with these settings; scheme, work and period default to the first row's."""
     wanted = {name: rows[0][name] for name in ("scheme", "work", "dt")} | wanted
     return [row for row in rows if wanted.items() <= row.items()]
 
@@ -114,7 +114,8 @@ def of_every_disturbance(rows: Sequence[Row], network: str) -> list[Row]:
 def scores(rows: Sequence[Row], network: str) -> Vector | None:
     """Return the mean decimal logarithm of a network's residual over the disturbances, (seeds,).
 
-    The undisturbed runs are those of the seed's path. None stands for a network with a failed run.
+    Undisturbed residuals are repeated for the seeds of the same path. None stands for a network
+    with a failed run.
     """
     found = of_every_disturbance(rows, network)
     if any(row["lost"] for row in found):
@@ -124,7 +125,7 @@ def scores(rows: Sequence[Row], network: str) -> Vector | None:
 
 
 def _logarithms(row: Row) -> Vector:
-    """Return the decimal logarithms of a row's residuals, of a solved program that of `SOLVED`."""
+    """Return the decimal logarithms of a row's residuals, none below that of `SOLVED`."""
     return np.asarray(np.log10(np.maximum(row["residual"], SOLVED)))
 
 
@@ -136,7 +137,7 @@ def compare(one: Vector, other: Vector) -> int:
 
 
 def ranks(rows: Sequence[Row]) -> dict[str, str]:
-    """Rank the networks, the best first: the first and the last place that each may have.
+    """Return the rank of each network, the best first, as the range of places that ties allow.
 
     Networks with failed runs come last, without a place.
     """
@@ -152,7 +153,7 @@ def ranks(rows: Sequence[Row]) -> dict[str, str]:
 
 
 def judge(rows: Sequence[Row], claim: Claim) -> list[str]:
-    """Judge a claim by pairs of runs with the first scheme.
+    """Judge a claim by the residuals of pairs of runs with the same seed.
 
     Returns:
         The claim, its disturbance, both networks with their means, and the verdict: ``holds`` or

@@ -51,7 +51,7 @@ TABLE2 = {
 
 
 def published(settings: Mapping[str, Any]) -> dict[str, float]:
-    """Return Table I's numbers of a run of these settings, by the names of `TABLE1`.
+    """Return the paper's numbers for a run of these settings, by the names of `TABLE1`.
 
     If the run does not draw the paper's heart with one of the paper's weights, or has noise or
     physics, there are none.

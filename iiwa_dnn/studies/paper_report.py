@@ -79,7 +79,7 @@ def report(tables: Mapping[str, Table], head: Mapping[str, str], figures: Iterab
 
 
 def summary(tables: Mapping[str, Table]) -> list[str]:
-    """Lay out the verdicts, a line for each row of the paper's tables, a column a way to run it."""
+    """Lay out the verdicts: a row for each row of the paper's tables, a column for each variant."""
     found: dict[str, dict[str, str]] = {}
     for name, variant in tables.get("table1", {"variants": {}})["variants"].items():
         for key, judged in variant["verdicts"].items():
@@ -103,6 +103,7 @@ def summary(tables: Mapping[str, Table]) -> list[str]:
 
 
 def _table1(table: Table) -> list[str]:
+    """Lay out Table I: the paper's rows, then each variant's."""
     head = ("", *(f"ξ = {weight:g}" for weight in table["weights"]))
     rows = [[_ROWS[key], *map(_short, values)] for key, values in table["paper"].items()]
     parts = ["## Table I: weights, without noise", "### The paper's", markdown_table(head, rows)]
@@ -118,6 +119,7 @@ def _table1(table: Table) -> list[str]:
 
 
 def _laps(table: Table) -> list[str]:
+    """Lay out the drift after each lap."""
     laps = range(1, 1 + max(map(len, table.values())))
     head = ("MAX |q − q(0)| [rad] after lap", *map(str, laps))
     rows = [[name, *map(_short, drifts)] for name, drifts in table.items()]
@@ -125,6 +127,7 @@ def _laps(table: Table) -> list[str]:
 
 
 def _table2(table: Table) -> list[str]:
+    """Lay out Table II for each mode and entry of the noise."""
     ours = ("ours", "ours / paper's")
     head = ("case", "MAX E [m], paper", *ours, "MSE [m²], paper", *ours)
     parts = ["## Table II: noise and filter"]
@@ -149,6 +152,7 @@ def _table2(table: Table) -> list[str]:
 
 
 def _ablation(table: Table) -> list[str]:
+    """Lay out a row for each ablation run."""
     head = ("orientation", "noise at", "sub-steps", *(_ROWS[key] for key in _ABLATION))
     rows = []
     for row in table["rows"]:

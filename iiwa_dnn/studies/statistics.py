@@ -136,7 +136,7 @@ def judge_row(
 
 
 def judge_change(paper: float, ours: Estimate) -> dict[str, Any]:
-    """Judge a relative change, such as that of the error by the filter; -0.1 is a tenth less.
+    """Judge a relative change beside the paper's, as of the error by the filter: -0.1 is -10 %.
 
     It is ``reproduced`` if the interval lies on the paper's side of zero and the mean is within a
     factor 2, ``same trend`` if only the former, else ``not reproduced``. Returned as by

@@ -20,7 +20,6 @@ from typing import Any
 import joblib
 from tqdm import tqdm
 
-from iiwa_dnn import checks
 from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.files import prepare_folder
 from iiwa_dnn.processes import end_with
@@ -51,7 +50,7 @@ def sweep(
     workers: int | None = None,
     quiet: bool = False,
 ) -> list[Any]:
-    """Compute the cells without stored results; return the results of all, in their order.
+    """Return the results of all cells, in their order; compute those that are not stored yet.
 
     Args:
         task: Function of a module, so that a worker can import it; its result must depend on
@@ -65,8 +64,6 @@ def sweep(
         IiwaDnnError: A cell has an error, which is named with the cell.
         FileError: A file cannot be written.
     """
-    if workers is not None:
-        checks.integer("workers", workers, 1)
     kept = joblib.Memory(prepare_folder(folder), verbose=0).cache(_compute, ignore=["task"])
     calls = (joblib.delayed(kept)(task, cell, fingerprint(task)) for cell in cells)
     backend: dict[str, Any] = {
@@ -86,7 +83,7 @@ def sweep(
 
 
 def _compute(task: Task, cell: Any, expected: str) -> Any:
-    """Compute a cell in a worker; one with other sources or versions refuses."""
+    """Compute a cell in a worker; raise an error if the worker has other sources or versions."""
     if fingerprint(task) != expected:
         raise IiwaDnnError("a worker runs another version of this package or of what it needs")
     try:

@@ -75,7 +75,7 @@ def test_an_active_limit_has_a_multiplier_and_no_slack() -> None:
 def test_too_quick_a_path_in_continuous_mode_names_the_limits_that_the_arm_is_at() -> None:
     path = heart(period=0.4)
     scheme = d.DoubleIndicator(home=PAPER_Q0)
-    options = {"mode": "continuous", "check": None, "dt": 1e-3, "duration": 0.4}
+    options = {"mode": "continuous", "dt": 1e-3, "duration": 0.4}
     record = d.simulate(paper_robot(), scheme, path, PAPER_Q0, **options)
     active = d.compute_metrics(record)["incidents"]["active"]
     assert record.q[:, 0].min() < -2.47  # beside its limit of -2.5, and no other joint is

@@ -75,13 +75,13 @@ class Observer:
         self.v = np.zeros_like(q)
 
     def correct(self, reading: Vector) -> None:
-        """Correct the state by measured joint positions (n,) [rad]."""
+        """Correct position and velocity by measured joint positions (n,) [rad]."""
         innovation = reading - self.q
         self.q = self.q + self._correct_q * innovation
         self.v = self.v + self._correct_v * innovation
 
     def predict(self, a: Vector) -> None:
-        """Advance the state to the next reading under an acceleration (n,) [rad/s^2]."""
+        """Advance position and velocity to the next reading at an acceleration (n,) [rad/s^2]."""
         h = self._timestep
         self.q = self.q + h * (self.v + 0.5 * h * a)
         self.v = self.v + h * a
