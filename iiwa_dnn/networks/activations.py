@@ -117,7 +117,9 @@ s = 1/r within 2 (1 + r) / (1 - r)."""
 
 @dataclass(frozen=True)
 class PredefinedTime(Activation):
-    r""":math:`\exp(|e|^p)\,|e|^{1-p}/(p\,T)`: settles in :math:`T(1 - e^{-|e_0|^p}) < T`.
+    r"""An exponential of a power, :math:`\exp(|e|^p)\,|e|^{1-p}/(p\,T)`.
+
+    From :math:`e_0` an error settles in :math:`T(1 - e^{-|e_0|^p}) < T`.
 
     Attributes:
         time: T [rho].
@@ -135,7 +137,7 @@ class PredefinedTime(Activation):
 
 @dataclass(frozen=True, kw_only=True)
 class ActivatedNetwork(Network):
-    """A network of the package or of one's own, with an activation of the norm of its rates.
+    """A network whose clock runs at a speed that an activation sets by the norm of the rates.
 
     Attributes:
         network: The network; its own time constant is not used.
@@ -155,13 +157,13 @@ class ActivatedNetwork(Network):
         return self.network.state_size(qp)
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
-        """Count the work of the network inside; sizes are (n, m, p)."""
+        """Count the operations of the network inside, for sizes (n, m, p); see `Network.work`."""
         return self.network.work(sizes)
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Scale the rates of the network inside.
+        """Set the network inside up for a program, and scale its rates.
 
-        The derivative is that at a constant speed: a long implicit step is then Newton's.
+        The derivative is that at a constant speed, with which a long implicit step is Newton's.
         """
         inner = checked_flow(self.network, qp, rate)
 
@@ -175,7 +177,7 @@ class ActivatedNetwork(Network):
         return Flow(rates, jacobian, inner.unknowns)
 
     def _speed(self, rates: Vector) -> float:
-        """Compute the speed at which the network inside, with rates (size,), is run through."""
+        """Compute Phi(|F|) / |F| of rates F (size,); 1 if their norm is 0 or not finite."""
         size = np.sqrt(rates @ rates)
         if not 0.0 < size < np.inf:
             return 1.0

@@ -40,12 +40,12 @@ class AdmmIteration(Network):
         return qp.q.size + 2 * sum(qp.sizes)
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
-        """Count OSQP's factorisation, and a substitution an iteration; sizes are (n, m, p)."""
+        """Count the operations of the factorisation and of one substitution; see `Network.work`."""
         size = sizes[0] + sum(sizes)
         return size**3 / 3.0, 2.0 * size**2
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program up; its rate of change has no effect."""
+        """Set the iteration up for a program, whose rate of change is ignored."""
         rows, lower, upper = two_sided(qp)
         weight = np.where(lower == upper, 100.0, 0.1)
         inverse = np.linalg.inv(qp.P + _SIGMA * np.eye(qp.q.size) + (rows.T * weight) @ rows)

@@ -18,9 +18,9 @@ from iiwa_dnn.qp.residuals import kkt_point
 
 @entry
 def enter_rates(address: int, qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
-    """Enter a network's function, which writes rho ds/dt into `rates` (size,), at an address.
+    """Call a network's function by its address, to write rho ds/dt at a state into `rates`.
 
-    The state is (size,), the network's constants are (k,).
+    State and rates are (size,), the network's constants are (k,).
     """
 
 
@@ -80,9 +80,9 @@ class Flow(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Network:
-    """A dynamic neural network for one quadratic program after another.
+    """Base of the dynamic neural networks, whose equilibria solve a quadratic program.
 
-    A subclass has a `flow` of its own, or `compiled_rates`.
+    A subclass defines `flow` or `compiled_rates`.
 
     Attributes:
         rho: Time constant [s].
@@ -100,7 +100,7 @@ class Network:
         checks.positive("rho", self.rho)
 
     def state_size(self, qp: QP) -> int:
-        """Count the states, all zero at first; by default n + m + p."""
+        """Count the states, which are zero at first; by default n + m + p."""
         return sum(qp.sizes)
 
     def constants(self, sizes: Sizes) -> Vector:
@@ -108,12 +108,12 @@ class Network:
         return np.empty(0)
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program up. By default the rates are those of `compiled_rates`.
+        """Set the network up for a program; by default with the rates of `compiled_rates`.
 
         Args:
             qp: The program.
-            rate: Its rate of change [1/rho], field by field, zero where a field is infinite; None
-                or without effect in a network for programs that stand still.
+            rate: Rate of change of the program's fields [1/rho], zero where a field is infinite;
+                None for a program that does not change. Most networks ignore the rate.
         """
         if self.compiled_rates is None:
             raise InvalidInputError(
@@ -139,15 +139,18 @@ class Network:
     def stable_step(self, qp: QP, state: Vector) -> float:
         """Bound the stable steps of explicit Euler around a state (state_size,), in units of rho.
 
-        It is 0 where none is known to be stable. By default it is `Flow.linear_limit`.
+        The bound is 0 if no step is known to be stable; by default it is `Flow.linear_limit`.
         """
         return checked_flow(self, qp).linear_limit(state)
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
         """Count the floating-point operations of one program's set-up and of one evaluation.
 
-        By default an evaluation is a product of a square matrix with n + m + p numbers. A subclass
-        counts its own; sizes are (n, m, p).
+        By default the set-up counts 0, and an evaluation as a product of a square matrix with
+        n + m + p numbers.
+
+        Args:
+            sizes: Sizes (n, m, p) of the program.
         """
         return 0.0, 2.0 * sum(sizes) ** 2
 
@@ -169,7 +172,7 @@ def kkt_product(sizes: Sizes) -> float:
 
 
 def settings_of(part: Any) -> dict[str, Any]:
-    """Name a network or an integrator, a dataclass, and its fields as values of JSON types."""
+    """Return the name and the fields of a network or an integrator, a dataclass, in JSON types."""
     values = {each.name: getattr(part, each.name) for each in fields(part)}
     return {
         "name": type(part).__name__,

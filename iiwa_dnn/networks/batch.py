@@ -79,7 +79,7 @@ def solve_batch(
 
 
 def _solve(qp: QP, tol: float) -> Solution:
-    """Solve a program; one with a wrong value becomes NaN, and is not found."""
+    """Solve a program; if a value is wrong, solve one of NaN, which has status NOT_FINITE."""
     try:
         qp.check_numbers()
     except InvalidInputError:

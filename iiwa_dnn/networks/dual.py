@@ -57,7 +57,7 @@ class DualNetwork(Network):
         return n + m + (0 if self.simplified else p)
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
-        """Count P's inverse, E M E^T and an evaluation's product; sizes are (n, m, p)."""
+        """Count the operations of P's inverse and E M E^T, and of a product; see `Network.work`."""
         n, m, p = sizes
         rows = m if self.simplified else m + p
         setup = 2.0 * n**3 + 2.0 * n * rows * (n + rows)
@@ -66,7 +66,7 @@ class DualNetwork(Network):
         return setup, 2.0 * (n + rows) ** 2
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program up; dependent equalities are solved in the least-squares sense."""
+        """Set the network up; dependent equalities are solved in the least-squares sense."""
         n, m, p = qp.sizes
         rows, lower, upper = two_sided(qp, p if self.simplified else 0)
         try:
@@ -106,7 +106,7 @@ class SimplifiedDualNetwork(DualNetwork):
 
 
 def two_sided(qp: QP, first: int = 0) -> tuple[Matrix, Vector, Vector]:
-    """Return the rows [A; G; I] from one on, (k, n), and their lower and upper limits, (k,)."""
+    """Return the rows [A; G; I] from row `first` on, (k, n), and their two limits, (k,) each."""
     n, m, _ = qp.sizes
     rows = np.vstack([qp.A, qp.G, np.eye(n)])
     lower = np.concatenate([qp.b, np.full(m, -np.inf), qp.lb])

@@ -23,14 +23,14 @@ from iiwa_dnn.qp.program import QP
 
 @dataclass(frozen=True, kw_only=True)
 class GradientNetwork(ZeroingNetwork):
-    """The gradient network; the zeroing network's activation and form, no integral, no growth."""
+    """The gradient network, by activation and form of `ZeroingNetwork`; its other gains stay 0."""
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
-        """Count, for each evaluation, the residual and a product with W^T; sizes are (n, m, p)."""
+        """Count the operations of a residual and a product with W^T; see `Network.work`."""
         return 0.0, 2.0 * kkt_product(sizes)
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program up; its rate of change has no effect."""
+        """Set the network up for a program, whose rate of change is ignored."""
 
         def rates(state: Vector) -> Vector:
             error, _, matrix = evaluate(qp, self.form, state)

@@ -53,7 +53,8 @@ class KktResidual(NamedTuple):
 def evaluate(qp: QP, form: Form, s: Vector, rate: QP | None = None) -> KktResidual:
     """Compute the residual at a point s (size,), its drift and its derivative.
 
-    The rate of change of a program that moves is zero where a field is infinite.
+    `rate` is the program's rate of change, zero where a field is infinite; None for one that does
+    not change.
     """
     if rate is None:
         rate = QP.from_data(np.zeros(qp.data.size), qp.sizes)
@@ -70,7 +71,7 @@ def evaluate(qp: QP, form: Form, s: Vector, rate: QP | None = None) -> KktResidu
 
 
 def _smooth(system: KktResidual, s: Vector, first: int) -> None:
-    """Put the complementarity in place of the rows of C x - d, from the `first` on."""
+    """Replace the rows of C x - d, from row `first` on, by the Fischer-Burmeister function."""
     error, drift, matrix = system
     rows = np.arange(first, s.size)
     limited = np.isfinite(error[rows])
@@ -85,7 +86,7 @@ def _smooth(system: KktResidual, s: Vector, first: int) -> None:
 
 
 def _project(system: KktResidual, s: Vector, qp: QP, rate: QP) -> None:
-    """Put projections in place of rows at a bound and of idle rows."""
+    """Replace rows of variables at a bound, and rows whose multiplier decays, by projections."""
     error, drift, matrix = system
     n, _, p = qp.sizes
     eye = np.eye(s.size)
@@ -107,7 +108,8 @@ def _project(system: KktResidual, s: Vector, qp: QP, rate: QP) -> None:
 def _linear_part(qp: QP, form: Form, unit: float) -> tuple[Matrix, Vector]:
     """Return matrix (size, size) and constant (size,) of the system without complementarity.
 
-    The rows of the smooth form's bounds are plus and minus the `unit` times the identity.
+    In the smooth form the rows of the bounds are plus and minus `unit` times the identity: 1 for a
+    program, 0 for its rate of change.
     """
     eye = unit * np.eye(qp.q.size)
     smooth = form == "smooth"

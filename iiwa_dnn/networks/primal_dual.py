@@ -94,11 +94,11 @@ class PrimalDualNetwork(Network):
     """The primal-dual network, with n + p + m states: 14 for seven joints and seven rows."""
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
-        """Count no set-up and two products with H; sizes are (n, m, p)."""
+        """Count the operations of two products with H, and no set-up; see `Network.work`."""
         return 0.0, 2.0 * kkt_product(sizes)
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program up."""
+        """Set the network up for a program, whose rate of change is ignored."""
         H, c, lower, upper = variational(qp)
         eye = np.eye(c.size)
         program = Clipped(eye - H, -c, lower, upper, eye + H.T)
@@ -116,12 +116,12 @@ class OneLayerNetwork(PrimalDualNetwork):
     corrected: bool = True
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
-        """Count no set-up and a product with H, two with the correction; sizes are (n, m, p)."""
+        """Count the operations of a product with H, or two if corrected; see `Network.work`."""
         setup, two = super().work(sizes)
         return setup, two if self.corrected else 0.5 * two
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program up."""
+        """Set the network up for a program, whose rate of change is ignored."""
         H, c, lower, upper = variational(qp)
         alpha = FRACTION / (float(np.linalg.norm(H, 2)) or 1.0)
         eye = np.eye(c.size)

@@ -64,7 +64,7 @@ def solve_problem(
 
 @lru_cache
 def default_solver(tol: float, eps_rel: float, max_iter: int) -> DNNSolver:
-    """Return the solver with these settings, the same one each time: making it takes time."""
+    """Return the solver with these settings, made once: checks of settings take time."""
     return DNNSolver(tol=tol, eps_rel=eps_rel, solve_integrator=ImplicitEuler(max_steps=max_iter))
 
 

@@ -112,14 +112,14 @@ def mark_active(qp: QPViews, s: Vector, rates: Vector, active: Vector) -> None:
 
 
 class ProjectionConstants(Record):
-    """Hold a projection network's constant: whether x goes through its bounds."""
+    """Constant of a projection network: whether x is projected on its bounds."""
 
     projects: bool
 
 
 @compiled
 def projection_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
-    """Write the rates (size,)."""
+    """Write the rates (size,) of `ProjectionNetwork` at a state (size,)."""
     field(qp, state, rates)
     if ProjectionConstants.of(constants).projects:
         for i in range(qp.q.size):
@@ -153,11 +153,11 @@ def stable_step(qp: QPViews, active: Vector) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class ProjectionNetwork(Network):
-    """The paper's network for one quadratic program after another.
+    """The paper's network, whose states are x and the multipliers of all rows and bounds.
 
     Attributes:
         rho: Time constant [s].
-        primal_projection: True if x goes through its bounds, as in the paper. Without it the
+        primal_projection: True if x is projected on its bounds, as in the paper. Without it the
             bounds act through their multipliers alone; the equilibria are the same, and a
             backward Euler step becomes a convex problem
             (`iiwa_dnn.networks.integrators.implicit_steps`).
@@ -176,7 +176,7 @@ class ProjectionNetwork(Network):
         return 3 * n + p + m
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
-        """Count no set-up and one product with the KKT matrix; sizes are (n, m, p)."""
+        """Count the operations of one product with the KKT matrix; see `Network.work`."""
         return 0.0, kkt_product(sizes)
 
     def stable_step(self, qp: QP, state: Vector) -> float:
@@ -203,7 +203,10 @@ class ProjectionNetwork(Network):
 
 
 def is_projection(network: Network) -> TypeGuard[ProjectionNetwork]:
-    """Check that the compiled loops for the projection network integrate exactly this network."""
+    """Check that a network has the states, flow and rates of `ProjectionNetwork`.
+
+    Its compiled loops then integrate this network.
+    """
     kind = type(network)
     if kind is ProjectionNetwork:  # quickly
         return True

@@ -100,7 +100,7 @@ class DNNSolver:
             state[: added.size] += check_size("noise", added, min(added.size, sizes[0]))
 
     def state_for(self, sizes: Sizes) -> Vector:
-        """Return the state itself, (size,), from which a program of sizes (n, m, p) starts."""
+        """Return the warm state, no copy, (size,), of programs of these sizes; zeros if none."""
         try:
             return self._warm[sizes]
         except KeyError:
@@ -113,8 +113,8 @@ class DNNSolver:
 
         Args:
             sizes: ``(n, m, p)`` of the programs.
-            duration: Time to advance [s]; 0: to the equilibrium, as `solve` without its second try
-                in scaled units.
+            duration: Time to advance [s]; 0 solves, as `solve` does without its attempts in scaled
+                units.
 
         Returns:
             The function's address and its arguments; None if network or integrator has none.
@@ -143,26 +143,26 @@ class DNNSolver:
     def solve(self, qp: QP) -> Solution:
         """Solve the program: advance the network to convergence, and judge the point.
 
-        If it does not converge and no certificate is found, it starts once more, from zero, on the
-        equilibrated program, with the cost at 1e3 and then at 1, and goes on in those of the
-        program. If the largest entry of the cost or of a row is below 1e-3 or above 1e3, it begins
-        in scaled units.
+        If the network does not converge and no certificate is found, further attempts follow: from
+        a state of zero on the program in scaled units, with a largest entry of the cost of 1e3, and
+        from there of 1, and in the program's units. If the largest entry of the cost or of a row is
+        below 1e-3 or above 1e3, the attempt in the program's units that comes first is left out.
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).
 
         Returns:
-            The solution; `found` only if P is convex and `QP.accepts` the point. Its iterations are
-            the linear solves of all attempts, at most those of `solve_integrator`.
+            The solution; `found` only if P is convex and `QP.accepts` the point. `iterations`
+            counts the linear solves of all attempts, at most `solve_integrator.max_steps`.
         """
         return self._solve(qp, self._take(qp), False)
 
     def solve_cold(self, qp: QP, sharpen: bool = False) -> Solution:
-        """Solve a program from the network's initial state; threads do not disturb each other.
+        """Solve a program from the network's initial state, whatever other threads solve.
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).
-            sharpen: Whether to take a few more steps down to rounding.
+            sharpen: Whether to take a few more steps, until the residuals are rounding.
         """
         self.reset()
         return self._solve(qp, self._fresh(qp), sharpen)
@@ -236,11 +236,12 @@ class DNNSolver:
         return Status.NOT_CONVERGED if is_convex(qp.P, np.empty_like(qp.P)) else Status.NOT_CONVEX
 
     def _sharpened(self, qp: QP, solution: Solution, state: Vector) -> Solution:
-        """Go on from the state (size,) of a solution for a few linear solves; it is advanced.
+        """Reduce the residuals of a solution by a few more linear solves from its state (size,).
 
-        If the cost has small eigenvalues, x is known to the residuals over these only. So a round
-        begins with those of a steeper cost (`iiwa_dnn.networks.integrators.scaling`). A solution
-        to rounding stays as it is.
+        If the cost has small eigenvalues, the error of x may be as large as the residuals over
+        these. So each round first solves with a steeper cost
+        (`iiwa_dnn.networks.integrators.scaling`), which converges sooner there. The state is
+        advanced where that has reduced the residuals.
 
         Returns:
             A solution with smaller residuals, or the same if no step had any.
@@ -270,8 +271,8 @@ class DNNSolver:
             duration: Time [s] on the network's own clock.
 
         Returns:
-            The point that the state stands for, with status ``ADVANCED`` and its residuals; or
-            ``DIVERGED``, from where the next call goes on, or ``NOT_FINITE``.
+            The point of the state and its residuals, with status ``ADVANCED``, ``DIVERGED`` or
+            ``NOT_FINITE``. The next call continues from the state unless that is not finite.
 
         Raises:
             InvalidInputError: The duration is no finite number above 0; or as
@@ -283,7 +284,7 @@ class DNNSolver:
         return self._advanced(qp, state, iterations, time)
 
     def _advanced(self, qp: QP, state: Vector, iterations: int, time: float) -> Solution:
-        """Judge the point of a state that was advanced by a time [rho]; keep it if it is finite."""
+        """Judge the point of a state that was advanced by a time [rho]; keep a finite state."""
         n, m, p = qp.sizes
         point = np.empty(2 * n + m + p)
         residuals = checked_flow(self.network, qp).read(qp, state, point)
@@ -297,14 +298,14 @@ class DNNSolver:
         return Solution(point, qp.sizes, status, iterations, time, *residuals)
 
     def _take(self, qp: QP) -> Vector:
-        """Take the warm state, or make one; nobody else has it until it is kept."""
+        """Take the warm state away, so that no other thread has it; make one if there is none."""
         state = self._warm.pop(checks.instance("qp", qp, QP).sizes, None)
         if state is None or not all_finite(state, 0, state.size):
             state = self._fresh(qp)
         return state
 
     def _fresh(self, qp: QP) -> Vector:
-        """Make the network's initial state (size,)."""
+        """Make the network's initial state of zeros (size,), and check the size of its rates."""
         state = np.zeros(checks.integer("state_size", self.network.state_size(qp), 0))
         if not is_projection(self.network):
             check_size(
@@ -315,6 +316,6 @@ class DNNSolver:
         return state
 
     def _keep(self, sizes: Sizes, state: Vector) -> None:
-        """Keep the state (size,) of programs of these sizes alone."""
+        """Keep the state (size,) as the only warm one, for programs of these sizes."""
         self._warm.clear()
         self._warm[sizes] = state

@@ -59,7 +59,7 @@ _BACKWARD = ((0.0,), (1.0, -1.0), (1.5, -2.0, 0.5), (11 / 6, -3.0, 1.5, -1 / 3))
 
 @dataclass(frozen=True)
 class TrackingSolver(DNNSolver):
-    """A network that is advanced by a formula, and gets its program's rate of change.
+    """A solver that advances a network by a discrete formula, with the program's rate of change.
 
     `advance` answers a program with the state that was computed from the programs before it. The
     rate comes from backward differences of the last programs. `solve` is that of `DNNSolver`.
@@ -110,7 +110,7 @@ class TrackingSolver(DNNSolver):
         return self._advanced(qp, state, steps, duration / self.network.rho)
 
     def _step(self, state: Vector, sizes: Sizes, step: float, i: int) -> None:
-        """Advance the state in place by the formula's step number i [s] from the last program."""
+        """Advance the state in place by the step number i, `step` [s] long, since the last program."""
         programs = np.array(self._past["programs"])
         weights = np.array(_BACKWARD[len(programs) - 1])
         rate = weights @ np.where(np.isfinite(programs), programs, 0.0) / (self.substeps * step)

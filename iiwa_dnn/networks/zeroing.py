@@ -66,14 +66,14 @@ class ZeroingNetwork(Network):
         return system_size(qp, self.form) * (1 + (self.integral > 0.0)) + (self.growth > 0.0)
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
-        """Count, for each evaluation, residual, drift and a solved system; sizes are (n, m, p)."""
+        """Count the operations of a residual, a drift and a solved system; see `Network.work`."""
         size = sum(sizes) + (2 * sizes[0] if self.form == "smooth" else 0)
         return 0.0, 2.0 * kkt_product(sizes) + 2.0 * size**3 / 3.0 + 2.0 * size**2
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program and its rate of change [1/rho] up.
+        """Set the network up for a program and its rate of change [1/rho].
 
-        Its rates raise NoSolutionError where the KKT conditions' derivative is singular.
+        The rates raise NoSolutionError where the derivative of the KKT conditions is singular.
         """
         size = system_size(qp, self.form)
         linear = isinstance(self.activation, Linear) and not (self.growth or self.integral)

@@ -73,7 +73,7 @@ class Agreement(NamedTuple):
         return np.asarray(np.maximum.reduce(self[:3]))
 
     def worst_of(self, group: int) -> Agreement:
-        """Take the worst of each `group` of consecutive programs, as for the stages of a step."""
+        """Return the worst agreement of each `group` of consecutive programs, a step's stages."""
         steps = len(self.judge) // group
         *gaps, judge = (array.reshape(steps, group, self.judge.shape[1]) for array in self)
         worst = np.where((judge < 0).any(axis=1), -1, judge.max(axis=1)).astype(np.int8)
@@ -88,9 +88,10 @@ def stacked(programs: Matrix, sizes: Sizes) -> QPViews:
 
 @np.errstate(divide="ignore", invalid="ignore")
 def units(coefficients: Matrix) -> Matrix:
-    """Return the unit of each row (..., n): its largest coefficient, and 1 of usual ones, (...).
+    """Return the unit of each row of coefficients (..., n), (...).
 
-    It is rounded down to a power of two, so that nothing is rounded by a division.
+    If the largest coefficient of a row is 0 or between 1 / `USUAL` and `USUAL`, the unit is 1, else
+    that coefficient, rounded down to a power of two so that a division by the unit is exact.
     """
     largest = np.abs(coefficients).max(axis=-1, initial=0.0)
     usual = (largest == 0.0) | ((largest >= 1.0 / USUAL) & (largest <= USUAL))
@@ -111,7 +112,10 @@ def normalised(programs: Matrix, sizes: Sizes) -> Matrix:
 
 @np.errstate(invalid="ignore")
 def feasibility_gaps(block: QPViews, x: Matrix) -> Vector:
-    """Compute the largest violation at N points (N, n), relative to its row's terms, (N,)."""
+    """Compute the largest violation of a row or bound at N points (N, n), (N,).
+
+    A violation is relative to the sum of the absolute terms of its row.
+    """
     eye = np.broadcast_to(np.eye(x.shape[1]), block.P.shape)
     rows = np.concatenate([block.A, -block.A, block.G, eye, -eye], axis=1)
     limits = np.concatenate([block.b, -block.b, block.h, block.ub, -block.lb], axis=1)
@@ -125,7 +129,7 @@ def feasibility_gaps(block: QPViews, x: Matrix) -> Vector:
 def objective_gaps(block: QPViews, x: Matrix, steps: Matrix) -> Matrix:
     """Compute the difference of the objectives at x (N, n) and at x - steps (N, k, n), (N, k).
 
-    It is relative to the objective's terms at x.
+    Each difference is relative to the largest sum of absolute terms of the objective at x.
     """
     size = np.abs(x)
     curved = 0.5 * np.einsum("ki,kij,kj->k", size, np.abs(block.P), size)
@@ -141,7 +145,7 @@ def objective_gaps(block: QPViews, x: Matrix, steps: Matrix) -> Matrix:
 def solution_gap(qp: QP, reference: Vector, x: Vector, tolerance: float) -> float:
     """Compute the largest entry of x - x_r, (n,), where x is unique.
 
-    If the difference is within the tolerance as it is, that is its largest entry.
+    A difference that is within the tolerance everywhere is not split: its largest entry counts.
 
     Args:
         qp: The program, normalised.

@@ -54,11 +54,11 @@ _SPLIT = 2.0**27 + 1.0
 
 
 def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
-    """Search for a certificate that there is no solution near, where a network has diverged.
+    """Search for a certificate that there is no solution near, at a point that has diverged.
 
-    Its multipliers grow along Farkas multipliers, or x along a direction of recession. Least
-    squares on the rows that take part removes what is left of the residuals, and where the entries
-    have simple ratios, they are whole numbers.
+    The multipliers of such a point approach Farkas multipliers, or x a direction of recession. What
+    they lack is removed by least squares on the rows that take part, and by rounding to whole
+    numbers, which is exact where the entries have simple ratios.
 
     Args:
         qp: The program.
@@ -90,9 +90,10 @@ def _best(
     polish: Callable[[QPViews, Vector], Vector],
     radius: Callable[[QPViews, Vector], float],
 ) -> tuple[float, Vector]:
-    """Return the largest radius, of a vector, the polished one, or that in whole numbers, and it.
+    """Return the largest radius of a vector, polished or not, and the vector that has it.
 
-    If the first one is a proof, no other is computed.
+    Three vectors are tried: the given one, the polished one, and that in whole numbers. If the
+    radius of the first is infinite, the others are not computed.
     """
     judged = [(radius(qp, vector), vector)]
     if judged[0][0] < np.inf:
@@ -102,7 +103,7 @@ def _best(
 
 
 def _status(radius: float, near: Status, outright: Status) -> Status:
-    """Return what a radius proves."""
+    """Return `outright` for an infinite radius, `near` from `RADIUS` on, else NOT_CONVERGED."""
     if radius < RADIUS:
         return Status.NOT_CONVERGED
     return outright if radius == np.inf else near
@@ -174,7 +175,11 @@ def unboundedness_radius(qp: QPViews, direction: Vector) -> float:
 
 
 def _radius(factors: Vector, weights: Vector, residual: float) -> float:
-    """Divide minus a sum of products, less its rounding, by the residual; 0 if it has none."""
+    """Divide minus the product of factors and weights (k,), less its rounding, by a residual.
+
+    Returns:
+        The radius: inf if the residual is 0; 0 if the product is not below 0 for certain.
+    """
     total, rounding = _products(factors[np.newaxis], weights)
     value = -float(total[0] + rounding[0])
     if not value > 0.0:
@@ -194,7 +199,8 @@ def _products(rows: Matrix, vector: Vector) -> tuple[Vector, Vector]:
 def dot_twice(rows: Matrix, vector: Vector, products: Vector, rounding: Vector) -> None:
     """Write the product of rows (k, n) and a vector (n,) in twice the precision, (k,).
 
-    The bound on its rounding (k,) is 0 where no digit was lost, NaN where a term overflows.
+    `rounding` (k,) becomes a bound on the error: 0 where no digit was lost, NaN where a term
+    overflows.
     """
     for j in range(rows.shape[0]):
         total = 0.0
@@ -221,22 +227,22 @@ def dot_twice(rows: Matrix, vector: Vector, products: Vector, rounding: Vector) 
 
 
 def _is_carried(qp: QPViews, w: Vector) -> NDArray[np.bool_]:
-    """Mark the entries of w (n,) that have the bound that they need, (n,)."""
+    """Mark entries of w (n,) that are 0, above 0 with a lower bound, or below with an upper one."""
     return np.asarray(np.where(w > 0.0, qp.lb > -np.inf, qp.ub < np.inf) | (w == 0.0))
 
 
 def _towards_bound(qp: QPViews, vector: Vector) -> NDArray[np.bool_]:
-    """Mark the entries of `vector` (n,) that point from the inside to a finite bound, (n,)."""
+    """Mark the entries of a direction (n,) that point towards a finite bound, (n,)."""
     return np.where(vector > 0.0, qp.ub < np.inf, (vector < 0.0) & (qp.lb > -np.inf))
 
 
 def _scaled(vector: Vector) -> Vector:
-    """Divide a vector by its largest entry."""
+    """Divide a vector by its largest absolute entry."""
     return vector / max(float(np.abs(vector).max(initial=0.0)), _EPS)
 
 
 def _whole(vector: Vector) -> Vector:
-    """Round a vector to whole numbers, of which the least is `_WHOLE`."""
+    """Scale a vector and round it to whole numbers, of which the least that counts is `_WHOLE`."""
     sizes = np.abs(vector)
     least = sizes.min(where=sizes > _SLIGHT * sizes.max(initial=0.0), initial=np.inf)
     return np.asarray(np.round(_WHOLE / least * vector))

@@ -120,7 +120,10 @@ class CrossCheck:
         return Agreement(solution, objective, feasibility, residual, judge)
 
     def _compare(self, name: str, programs: Matrix, sizes: Sizes, points: Matrix) -> _Verdicts:
-        """Compare x of points (N, 2 n + m + p) with a solver's, or with the second solver's."""
+        """Compare x of points (N, 2 n + m + p) with the answers of a solver.
+
+        Where the solver has no answer that is believed, the second one of `SECOND` is asked.
+        """
         n = sizes[0]
         qps = [QP.from_data(program, sizes) for program in programs]
         references = np.full_like(points, np.nan)
@@ -169,9 +172,9 @@ def references() -> list[str]:
 
 
 def _prove(programs: Matrix, sizes: Sizes, points: Matrix) -> _Verdicts:
-    """Prove points (N, 2 n + m + p).
+    """Bound the distances of points (N, 2 n + m + p) from their solutions, by `prove_point`.
 
-    Of all steps within a bound the one that changes the objective most is taken, to first order.
+    The steps returned are those within each bound that change the objective most, to first order.
     """
     qps = [QP.from_data(program, sizes) for program in programs]
     bounds = np.array([prove_point(*pair).bound for pair in zip(qps, points, strict=True)])

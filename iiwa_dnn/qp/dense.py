@@ -1,7 +1,7 @@
 """Compiled linear algebra on small dense matrices.
 
-Of a symmetric matrix the upper half is read and written, along its rows: their entries are
-neighbours, and sums that do not wait for each other need no particular order.
+Of a symmetric matrix the upper half is read and written, row by row, since the entries of a row lie
+next to each other in memory.
 """
 
 import numpy as np
@@ -179,7 +179,11 @@ def _rotate(K: Matrix, i: int, k: int) -> None:
 
 @compiled
 def is_symmetric(P: Matrix, largest: float) -> bool:
-    """Check that P (n, n), with a largest entry, is symmetric to `ASYMMETRY` and n `ROUNDING`."""
+    """Check that P (n, n) is symmetric, up to `ASYMMETRY` and rounding.
+
+    Each pair of entries may differ by `ASYMMETRY` sqrt(P_ii P_jj) plus n `ROUNDING` times the
+    largest absolute entry of P, which is given.
+    """
     rounding = ROUNDING * P.shape[0] * largest
     for i in range(P.shape[0]):
         for k in range(i):
@@ -193,7 +197,7 @@ def is_symmetric(P: Matrix, largest: float) -> bool:
 
 @compiled
 def symmetrize(P: Matrix) -> None:
-    """Replace P (n, n) by its symmetric part if it is symmetric to `ASYMMETRY` and `ROUNDING`."""
+    """Replace P (n, n) by its symmetric part if `is_symmetric`; leave any other P as it is."""
     if is_symmetric(P, largest_entry(P.reshape(P.size))):
         for i in range(P.shape[0]):
             for k in range(i):
@@ -204,9 +208,10 @@ def symmetrize(P: Matrix) -> None:
 
 @compiled
 def is_convex(P: Matrix, K: Matrix) -> bool:
-    """Check that P (n, n) is symmetric (`is_symmetric`), positive semidefinite to n `ROUNDING`.
+    """Check that P (n, n) `is_symmetric` and positive semidefinite, up to rounding.
 
-    The latter is asked of its symmetric part, relative to its largest entry. K (n, n) is scratch.
+    Eigenvalues of the symmetric part of P may be below zero by n `ROUNDING` times its largest
+    absolute entry. K (n, n) is scratch.
     """
     largest = largest_entry(P.reshape(P.size))
     for i in range(P.shape[0]):
@@ -219,7 +224,7 @@ def is_convex(P: Matrix, K: Matrix) -> bool:
 
 @compiled
 def all_finite(data: Vector, start: int, end: int) -> bool:
-    """Check that data[start:end] of (k,) is finite: NaN and infinity times zero are NaN."""
+    """Check that the entries data[start:end] of an array (k,) are finite."""
     total = 0.0
     for k in range(start, end):
         total += data[k] * 0.0

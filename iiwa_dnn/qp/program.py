@@ -291,7 +291,7 @@ def pack(fields: QPViews, data: Vector) -> bool:
 
 @compiled
 def has_numbers(data: Vector, n: int, m: int, p: int) -> bool:
-    """Check in one pass over the numbers that `QP.check_numbers` would find nothing."""
+    """Check that `QP.check_numbers` would find nothing, in one pass over the numbers."""
     _, _, at_A, at_lb = offsets(n, m, p)
     fits = all_finite(data, 0, at_A - m) and all_finite(data, at_A, at_lb)
     qp = qp_views(data, n, m, p)

@@ -245,9 +245,14 @@ def _enclose(
 
 
 def _bound(qp: QP, rows: _Rows, distance: float, missing: float, weak: bool) -> tuple[float, str]:
-    """Bound the distance from the program's solution, by that from an enclosure's; and the reason.
+    """Bound the distance of an answer from the program's solution; return also the reason.
 
-    Where a multiplier is `weak`, `missing` bounds the change of the cost vector that makes it none.
+    Args:
+        qp: The program.
+        rows: Its rows.
+        distance: Bound on the distance from the solution with the active set.
+        missing: Bound on the change of the cost vector that gives all multipliers the right sign.
+        weak: Whether a multiplier may be zero, so that `missing` counts.
     """
     unit = rows.unit
     curvature = _curvature(rows.S, qp.A, unit, _FRACTION if weak else 0.0)

@@ -113,7 +113,7 @@ def within(primal: float, dual: float, gap: float, tol: float) -> bool:
 
 @compiled
 def weight_of(largest: float) -> float:
-    """Return the weight of an absolute tolerance: 1, or the largest coefficient if it is slight."""
+    """Return the weight of an absolute tolerance: the largest coefficient, 1 from `SLIGHT` on."""
     return largest if largest < SLIGHT else 1.0
 
 
@@ -187,7 +187,10 @@ def fits(qp: QPViews, point: Vector, eps_abs: float, eps_rel: float) -> bool:
 def _cost_fits(
     qp: QPViews, point: Vector, eps_abs: float, relative: float, gap: float, size: float
 ) -> bool:
-    """Check the dual residual and the gap, of which the rows' part and its size are given."""
+    """Check the dual residual and the gap of a point by the rule of acceptance.
+
+    `gap` and `size` are what the rows contribute to the gap and to the sum of its absolute terms.
+    """
     n = qp.q.size
     at_z = n + qp.b.size
     at_box = at_z + qp.h.size

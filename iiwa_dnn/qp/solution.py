@@ -133,7 +133,7 @@ class Solution(NamedTuple):
 
     @property
     def found(self) -> bool:
-        """True if every residual is at most the tolerance that was asked for, else False."""
+        """True if the status is ``SOLVED``."""
         return self.status is Status.SOLVED
 
     def to_qpsolvers(self, problem: qpsolvers.Problem) -> qpsolvers.Solution:

@@ -1,4 +1,4 @@
-"""References: a path, an origin to start from, targets along it, and a start at rest."""
+"""Base of the references: a path of a frame, targets along it, and a soft start."""
 
 from __future__ import annotations
 
@@ -34,7 +34,10 @@ Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
 
 @entry
 def enter_path(address: int, t: float, constants: Array, target: TargetData) -> None:
-    """Call a path's function by its address; it moves the target to time t [s]."""
+    """Call a path's function by its address, to move a target at the origin to time t [s].
+
+    The path's constants are (c,).
+    """
 
 
 AT_REST = read_only(Target(np.zeros(3)).data)
@@ -46,12 +49,13 @@ Pose = FrameState | Target
 
 
 class Reference(Checked, ABC):
-    """Path of a frame: positions, and orientations if it turns.
+    """Base of the paths of a frame, with positions and orientations as functions of time.
 
     A subclass is a frozen dataclass of the path's parameters with a compiled function, `path`, or
-    with a method `move` in Python. Either takes a target in place from the path's origin, at rest,
-    to time t: adds the displacement, turns the rotation about the world's axes, sets the twist.
-    Until :meth:`anchored` the origin is at position 0 with orientation identity.
+    with a method `move` in Python. Both get a target at the path's origin, at rest, and move the
+    target in place to time t: they add the displacement to the position, turn the rotation about
+    the world's axes and set the twist. Until :meth:`anchored` is called, the origin is at position
+    0 with orientation identity.
 
     Attributes:
         path: Kernel or other function ``path(t, constants, target)``, on a `TargetData`.
@@ -63,7 +67,7 @@ class Reference(Checked, ABC):
 
     @cached_property
     def constants(self) -> Array:
-        """Constants of `path`, (c,); none by default."""
+        """Numbers that `path` reads, (c,); none by default."""
         return np.zeros(0)
 
     @property
@@ -87,7 +91,10 @@ class Reference(Checked, ABC):
         return self.period
 
     def anchored(self: Self, pose: Pose) -> Self:
-        """Return a copy that starts at a pose: displacements and turns stay about the same axes.
+        """Return a copy of the path that starts at a pose.
+
+        Displacements keep their directions in the world's frame, and turns their axes; a `Cone`
+        turns about the tool's axes at the pose.
 
         Args:
             pose: The pose, for example an ``iiwa_dnn.Configuration``.
@@ -101,11 +108,11 @@ class Reference(Checked, ABC):
         return clone
 
     def move(self, t: float, target: TargetData) -> None:
-        """Take a target at the path's origin, at rest, to time t [s] in place.
+        """Move a target in place from the path's origin, at rest, to time t [s].
 
         Args:
             t: Time [s].
-            target: The target; a copy of :attr:`base`, for example.
+            target: A target at the origin, such as a copy of :attr:`base`.
         """
         enter_path(enter_path.address(self.path), t, self.constants, target)
 
@@ -130,11 +137,11 @@ class Reference(Checked, ABC):
         return Target.from_data(targets)
 
     def feed_forward(self, dt: float) -> Reference:
-        """Return the path with feed-forward by the difference over one period of dt [s]."""
+        """Return the path with the mean twist over the coming period of dt [s] in its targets."""
         return FeedForward(self, positive("dt", dt))
 
     def settings(self) -> dict[str, Any]:
-        """Return name and parameters, in JSON types, to make the path again, not anchored."""
+        """Return the name and the parameters of the path, without its anchor, in JSON types."""
         own: Any = self
         names = [part.name for part in fields(own) if part.init] if is_dataclass(own) else []
         values = {name: getattr(self, name) for name in names}
@@ -146,7 +153,7 @@ class Reference(Checked, ABC):
 
 @compiled
 def soft_clock(t: float, begin: float) -> tuple[float, float]:
-    """Compute the time on a path's own clock [s] and its rate, see `SoftStart`."""
+    """Compute a path's clock [s] and the clock's rate [1] at time t [s], by `SoftStart`."""
     if begin == 0.0:
         return t, 1.0
     if t >= begin:
@@ -168,8 +175,8 @@ class SoftStart(Reference):
         s = begin\,(u^3 - u^4 / 2), \qquad \dot s = u^2 (3 - 2 u),
 
     then as t - begin / 2; before t = 0 the path rests. Velocity and acceleration are continuous,
-    and the clock's acceleration is at most 1.5 / begin. The path is the same curve; it comes back
-    to its start later by half of `begin`.
+    and the clock's acceleration is at most 1.5 / begin. The curve stays the same, and the path is
+    back at its start later by half of `begin`.
 
     Attributes:
         begin: Length of the soft start [s]; 0 begins at full speed.
@@ -191,10 +198,10 @@ class SoftStart(Reference):
 
 
 class FeedForward(Reference):
-    """A path whose targets have feed-forward by the difference over the coming period."""
+    """A path whose targets have the mean twist over the coming control period."""
 
     def __init__(self, reference: Reference, dt: float) -> None:
-        """Take a path and the period of dt [s]."""
+        """Wrap a path; the control period is dt [s]."""
         self.reference = reference
         self.dt = dt
         self.base = reference.base
@@ -205,12 +212,12 @@ class FeedForward(Reference):
         return self.reference.period
 
     def move(self, t: float, target: TargetData) -> None:
-        """Take a target to time t [s]; see `Reference.move`."""
+        """Move a target to time t [s], as `Reference.move` does."""
         then = target.copy()
         self.reference.move(t, target)
         self.reference.move(t + self.dt, then)
         set_mean_twist(target, then, self.dt)
 
     def settings(self) -> dict[str, Any]:
-        """Return those of the path."""
+        """Return the settings of the path that is wrapped."""
         return self.reference.settings()

@@ -16,13 +16,14 @@ ARRIVED = 1e-12
 
 
 class MovingTarget(Reference):
-    """A pose that may jump, approached at a limited speed.
+    """A desired pose that is set from outside and may jump, approached at a limited speed.
 
-    From the pose shown last when `set` was called the target moves to the new one, in a straight
-    line and about a fixed axis, as a function of the time in `at`: a controller never sees a jump,
-    and a policy's slowed clock slows the target. A time before that last one begins the motion
-    anew, from the same pose. `set` may be called in another thread than `at`. The speed of the
-    target jumps: limits on acceleration and jerk are those of the controller.
+    After `set` the target moves from the pose that was sampled last to the new one, along a
+    straight line and about a fixed axis, as a function of the time in `at`: a controller never sees
+    a jump, and a policy that slows the path's clock slows the target. If the time in `at` goes back
+    to before the motion began, the motion begins anew at that time, from the same pose. `set` may
+    be called in another thread than `at`. The speed of the target jumps: limits on acceleration and
+    jerk are those of the controller.
 
     Attributes:
         speed: Largest linear speed of the target [m/s].
@@ -33,7 +34,7 @@ class MovingTarget(Reference):
     period: float = np.inf
 
     def __init__(self, pose: Pose, speed: float = 0.25, rate: float = 1.0) -> None:
-        """Begin at rest at a pose, for example an ``iiwa_dnn.Configuration``.
+        """Start at rest at a pose, for example an ``iiwa_dnn.Configuration``.
 
         Raises:
             InvalidInputError: The pose is not finite, or a speed is not a number of at least 0.
@@ -72,7 +73,7 @@ class MovingTarget(Reference):
         self._shown = (t, target.copy())
 
     def settings(self) -> dict[str, Any]:
-        """Return name and speeds, in values that JSON knows."""
+        """Return name and speeds, in JSON types."""
         return {"name": self.name, "speed": self.speed, "rate": self.rate}
 
 
@@ -103,7 +104,13 @@ def approach(
 
 @compiled
 def _paced(path: Array, fastest: float, elapsed: float) -> float:
-    """Replace a displacement (3,) by a velocity; return the fraction covered in a time [s]."""
+    """Replace a displacement (3,) by the velocity along it; return the fraction that is covered.
+
+    Args:
+        path: The displacement; it becomes a velocity of the fastest speed, 0 where all is covered.
+        fastest: Largest speed [1/s].
+        elapsed: Time since the motion began [s].
+    """
     length = np.sqrt(dot(triple(path), triple(path)))
     arrived = length <= max(fastest * elapsed, ARRIVED)
     velocity = 0.0 if arrived else fastest / length

@@ -88,7 +88,8 @@ def turn_about(target: TargetData, axis: Vector3, angle: float, rate: float) -> 
 def rotation_log(R: Matrix, out: Array) -> None:
     """Write the rotation vector of R (3, 3), of length at most pi [rad], into `out` (3,).
 
-    Through the unit quaternion's largest component, so that it is accurate near 0 and near pi.
+    The unit quaternion is computed first, from a large component, so that the vector is accurate
+    near an angle of 0 and near one of pi.
     """
     trace = 0.0
     i = 0
@@ -121,7 +122,7 @@ def rotation_log(R: Matrix, out: Array) -> None:
 
 @compiled
 def set_mean_twist(now: TargetData, then: TargetData, dt: float) -> None:
-    """Set the twist of a target to the mean one towards another, a period dt [s] later."""
+    """Set the twist of a target `now` to the mean one over dt [s], to a target `then`."""
     relative = np.empty((3, 3))
     for i in range(3):
         for j in range(3):

@@ -77,7 +77,7 @@ class Heart(Reference):
 
 
 class LissajousConstants(Record):
-    """Soft start [s], and of each axis the angular rate [rad/s] and two amplitudes [m].
+    """Constants of a path that is a sine and a cosine on each axis.
 
     Attributes:
         begin: Length of the soft start [s].
@@ -122,7 +122,7 @@ class Circle(SoftStart):
     Attributes:
         radius: Radius [m].
         period: Time to go round once [s].
-        normal: Direction of the circle's axis; its length does not matter.
+        normal: Direction of the circle's axis, of any length but 0; kept at length 1.
         begin: Length of the soft start [s], see `SoftStart`.
 
     Raises:
@@ -239,7 +239,7 @@ class Lissajous(SoftStart):
 
 @compiled
 def fixed_path(t: float, constants: Array, target: TargetData) -> None:
-    """Leave the target as it is."""
+    """Leave the target at its origin, at rest."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -92,7 +92,7 @@ def spline_through(
 
 
 def _sizes(values: Array, jointly: bool) -> Array:
-    """Return the absolute values of k columns, (p, k), or in each of them the length of all."""
+    """Return the absolute values (p, k); jointly, the length of each row in all of its columns."""
     lengths = np.linalg.norm(values, axis=1, keepdims=True) * np.ones(values.shape[1])
     return lengths if jointly else np.abs(values)
 
@@ -104,6 +104,9 @@ def _slopes(lengths: Array, rows: Array, known: Array) -> Array:
         lengths: Lengths of the pieces [s], (p,).
         rows: The rows, (p + 1,), the last one being the first.
         known: Slopes that are given, (p,), NaN where the acceleration is to be continuous.
+
+    Returns:
+        All slopes, (p,).
     """
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import spsolve
@@ -122,7 +125,7 @@ def _slopes(lengths: Array, rows: Array, known: Array) -> Array:
 
 @np.errstate(all="ignore")
 def _excursions(pieces: Array, lengths: Array) -> Array:
-    """Compute the overshoot of cubics (4, p, k) beyond their ends, (p, k)."""
+    """Compute by how much cubics (4, p, k) of lengths (p,) leave the span of their ends, (p, k)."""
     a, b, slope = pieces[:3] * lengths[:, np.newaxis] ** np.array([3, 2, 1]).reshape(3, 1, 1)
     # The zeros of the derivative, without cancellation; a monotone cubic has none.
     root = -b - np.copysign(np.sqrt(np.maximum(b * b - 3.0 * a * slope, 0.0)), b)

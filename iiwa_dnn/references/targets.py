@@ -76,22 +76,22 @@ class Target:
 
     @property
     def position(self) -> NDArray[np.float64]:
-        """Desired position [m], shape (3,), a read-only view like the next three."""
+        """Desired position [m], (3,), of k targets (k, 3); a read-only view."""
         return checks.read_only(self.data[..., :3])
 
     @property
     def rotation(self) -> NDArray[np.float64]:
-        """Desired orientation, shape (3, 3)."""
+        """Desired orientation, (3, 3), of k targets (k, 3, 3); a read-only view."""
         return checks.read_only(self.data[..., 3:12].reshape(*self.data.shape[:-1], 3, 3))
 
     @property
     def linear_velocity(self) -> NDArray[np.float64]:
-        """Desired linear velocity [m/s], shape (3,)."""
+        """Desired linear velocity [m/s], (3,), of k targets (k, 3); a read-only view."""
         return checks.read_only(self.data[..., 12:15])
 
     @property
     def angular_velocity(self) -> NDArray[np.float64]:
-        """Desired angular velocity [rad/s], shape (3,)."""
+        """Desired angular velocity [rad/s], (3,), of k targets (k, 3); a read-only view."""
         return checks.read_only(self.data[..., 15:])
 
     def __repr__(self) -> str:

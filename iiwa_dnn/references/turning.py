@@ -80,7 +80,7 @@ class Cone(SoftStart):
 
 
 class Along(IntEnum):
-    """Paths that a tool can tilt along, by their functions."""
+    """Functions of the paths that a tool can tilt along."""
 
     FIXED = 0
     HEART = 1
@@ -89,7 +89,7 @@ class Along(IntEnum):
 
 
 _ALONG = (fixed_path, heart_path, lissajous_path, waypoints_path)
-"""Functions of these paths, in the order of `Along`."""
+"""The functions, in the order of `Along`."""
 
 
 def _compiled_path(argument: str, value: Any) -> Reference:
@@ -112,7 +112,7 @@ class TiltingConstants(Record):
 
 @compiled
 def tilting_path(t: float, constants: Array, target: TargetData) -> None:
-    """Move a target along `Tilting`; the constants of the path follow."""
+    """Move a target along `Tilting`; `TiltingConstants` come before the path's constants."""
     own = TiltingConstants.of(constants[: TiltingConstants.width()])
     along = constants[TiltingConstants.width() :]
     kind = int(own.along)
@@ -144,7 +144,7 @@ class Tilting(SoftStart):
     Attributes:
         along: The path: a `FixedPose`, `Heart`, `Circle`, `Line`, `Lissajous` or `Waypoints`.
         angle: Largest tilt to either side [rad].
-        axis: Axis in the world's frame; its length does not matter.
+        axis: Axis in the world's frame, of any length but 0; kept at length 1.
         turns: Whole number of tilts to both sides, in a round on the path.
         begin: Length of the soft start of path and tilt [s], in place of the path's own.
 

@@ -73,7 +73,7 @@ class Piece(Record):
 
 @compiled
 def _piece(pieces: Matrix, t: float) -> int:
-    """Find the piece at a time [s] by bisection."""
+    """Find the index of the piece that holds a time t [s], by bisection."""
     low = 0
     high = len(pieces) - 1
     while low < high:
@@ -115,11 +115,11 @@ class Waypoints(Reference):
     """A smooth path through points or poses, by cubic splines that stay near their rows.
 
     Positions follow `scipy.interpolate.CubicSpline`, orientations the direction of the same spline
-    through their quaternions: velocity and acceleration are continuous. Where they would leave the
-    rows, as about a pause, they have other slopes (`iiwa_dnn.references.splines`); the acceleration
-    jumps at these rows, and a warning says so. Time counts from the first row and displacement from
-    the first point. Before the start and after the end the path rests at its first and last point;
-    a closed path repeats instead.
+    through their quaternions: velocity and acceleration are continuous. Where this spline would
+    leave the rows, as at a pause, its slopes are exchanged (`iiwa_dnn.references.splines`); the
+    acceleration jumps at these rows, and a warning says so. Time counts from the first row, and
+    displacement from the first point. Before the start and after the end the path rests at its
+    first and last point; a closed path repeats instead.
 
     A path of points is relative: `anchored` moves its first point to a pose, whose orientation it
     keeps. A path of poses is absolute, in the robot's base frame; `anchored` moves it all the same,
@@ -262,10 +262,11 @@ class Waypoints(Reference):
 
         Args:
             path: The file.
-            ends: As for :class:`Waypoints`, as the last two.
+            ends: "clamped" or "closed", as for :class:`Waypoints`.
             stretch: Ratio of the path's times to those of the rows.
-            noise: Standard deviation of the points [m].
-            turn_noise: Standard deviation of the orientations [rad].
+            noise: Standard deviation of the noise in the points [m].
+            turn_noise: Standard deviation of the noise in the orientations [rad]; None takes the
+                number of `noise`.
 
         Raises:
             FileError: If the file cannot be read or is not as said above, naming the line.

@@ -17,7 +17,7 @@ since a control loop asks for it at every step.
 """
 
 Answered = tuple[float, float, float, float, float]
-"""What `Progress` holds, as compiled code returns it."""
+"""`Progress`, as compiled code returns it: all floats."""
 
 
 class SolveStats(Record):
@@ -60,17 +60,27 @@ class AnswerSettings(Record):
 def enter_answer(
     address: int, qp: QPViews, rates: int, settings: AnswerSettings, state: Vector, point: Vector
 ) -> Answered:
-    """Call a compiled answer by its address.
+    """Call the function of a `CompiledAnswer` by its address, to answer a program.
 
-    It advances the state (size,), by a time or until it has converged, writes the point
-    (2n + m + p,) that it stands for, and returns what `Answered` holds. `rates` is the address of
-    the network's function.
+    The state (size,) is advanced in place, by a time or until the network has converged, and its
+    point (2n + m + p,) is written.
+
+    Args:
+        address: Address of the function.
+        qp: The program.
+        rates: Address of the network's compiled function; 0 to solve.
+        settings: Tolerance, budget and time.
+        state: The state.
+        point: The point, overwritten.
+
+    Returns:
+        ``(iterations, network_time, primal, dual, gap)``, as `Progress`.
     """
     raise NotImplementedError
 
 
 class CompiledAnswer(NamedTuple):
-    """A compiled function that answers programs of one shape, and its arguments.
+    """A compiled function that solves programs of one shape or advances a network on them.
 
     Attributes:
         address: Address of a function of the type `enter_answer`.

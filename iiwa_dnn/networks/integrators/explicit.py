@@ -75,9 +75,9 @@ class ExplicitEuler(Integrator):
 def follow(
     qp: QPViews, rates: int, settings: AnswerSettings, state: Vector, point: Vector
 ) -> Answered:
-    """Advance the network by its time with explicit steps; a compiled answer (`enter_answer`).
+    """Advance a network by a time with explicit steps, as a function of type `enter_answer`.
 
-    It advances the state (size,) and writes the point (2n + m + p,).
+    The state (size,) is advanced in place, and its point (2n + m + p,) is written.
 
     Returns:
         Sub-steps, 0 if none are stable, or more than `MOST` needed; time [rho]; and the residuals

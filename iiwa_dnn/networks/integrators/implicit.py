@@ -77,7 +77,7 @@ class ImplicitEuler(Integrator):
         """Advance `state` in place by `duration` [rho] in equal steps no longer than `step`.
 
         Returns:
-            Linear solves; the state is NaN where one could not be.
+            Number of linear solves. If a matrix is singular, the state becomes NaN.
         """
         count = max(1, math.ceil(duration / self.step))
         check_size("state", state, network.state_size(qp))
@@ -109,7 +109,7 @@ def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -
     """Advance a state `s` (size,) in place by one backward Euler step of a program, `QP.data`.
 
     Returns:
-        Linear solves; none and a state of NaN if one could not be.
+        Number of linear solves; 0, with a state of NaN, if a matrix is not positive definite.
     """
     rows = s.size - n
     matrix = Condensed(
@@ -127,15 +127,16 @@ def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -
 
 @compiled
 def solve(qp: QPViews, rates: int, settings: AnswerSettings, s: Vector, point: Vector) -> Answered:
-    """Solve by `solve_within`: a compiled answer (`enter_answer`), of the projection network."""
+    """Solve by `solve_within`, as a function of type `enter_answer` for projection networks."""
     return solve_within(qp, settings.tolerance, int(settings.budget), s, point)
 
 
 @compiled
 def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector) -> Answered:
-    """Advance `s` (size,) in place until the residuals of `point` (size,) are at most `tol`.
+    """Advance a state `s` (size,) until the residuals of its point are at most `tol`.
 
-    It ends after a budget of linear solves too.
+    The state is advanced in place, the point (2n + m + p,) is overwritten. After `budget` linear
+    solves, or where the residuals stall, the last state is kept.
 
     Returns:
         ``(linear_solves, time, primal, dual, gap)``: linear solves, network time that passed
@@ -198,6 +199,6 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
 def solve_program(
     data: Vector, sizes: Sizes, s: Vector, point: Vector, tol: float, max_linear_solves: int
 ) -> Answered:
-    """Solve by the projection network from `s` (size,) for a program's flat array; see `solve`."""
+    """Solve by `solve_within` for a program's flat array, `QP.data`, of sizes (n, m, p)."""
     n, m, p = sizes
     return solve_within(qp_views(data, n, m, p), tol, max_linear_solves, s, point)

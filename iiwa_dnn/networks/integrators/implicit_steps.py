@@ -76,7 +76,10 @@ def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
 
 @compiled
 def _count_rows(matrix: Condensed, rows: Matrix, first: int) -> None:
-    """Add active rows (k, n) to `gram`, and take off others: few change between two steps."""
+    """Add the products of rows (k, n) that became active to `gram`; subtract those that left.
+
+    `first` is the index of the first row in `active`. Few rows change between two steps.
+    """
     for j in range(rows.shape[0]):
         change = matrix.active[first + j] - matrix.counted[first + j]
         if change != 0.0:
@@ -174,7 +177,7 @@ def backward_euler(
 def _multipliers(
     qp: QPViews, s: Vector, step: float, slacks: Vector, new: Vector, active: Vector
 ) -> None:
-    """Write the multipliers after a step to x with these slacks, and mark those that are active."""
+    """Write the multipliers after a step to an x with these slacks; mark the active rows."""
     n = qp.q.size
     p = qp.b.size
     keep = 1.0 / (1.0 + step)
@@ -188,7 +191,11 @@ def _multipliers(
 
 @compiled
 def _descent(qp: QPViews, s: Vector, step: float, new: Vector, descent: Vector) -> float:
-    """Write minus the gradient of the step's convex function; returns its largest entry."""
+    """Write minus the gradient (n,) of the function that a step minimizes at `new`.
+
+    Returns:
+        The largest absolute entry.
+    """
     size = 0.0
     times(qp.P, new, descent)
     for i in range(qp.q.size):
@@ -209,10 +216,14 @@ def _line_search(
     direction: Vector,
     descent: Vector,
 ) -> float:
-    """Minimize the step's convex function along the Newton `direction`, to `SLOPE`.
+    """Minimize the function of a step along the Newton `direction` (n,), to `SLOPE`.
 
-    Its derivative is continuous, increasing and piecewise linear, so a Newton iteration kept
-    inside a bracket ends at the root. `change` is [A; G; I; -I] direction.
+    The derivative along the direction is continuous, increasing and piecewise linear, so a Newton
+    iteration kept inside a bracket ends at the root. `change` is [A; G; I; -I] direction, and
+    `descent` minus the gradient at the start.
+
+    Returns:
+        The step length.
     """
     n = qp.q.size
     p = qp.b.size
@@ -248,7 +259,7 @@ def _line_search(
 def _slope(
     n: int, p: int, s: Vector, step: float, slacks: Vector, change: Vector, length: float
 ) -> tuple[float, float]:
-    """Sum slope and curvature of the inequalities' part of the step's function at a length."""
+    """Sum the inequalities' part of slope and curvature of a step's function at a step length."""
     keep = 1.0 / (1.0 + step)
     slope = 0.0
     second = 0.0

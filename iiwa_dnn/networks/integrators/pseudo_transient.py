@@ -24,7 +24,7 @@ SHORTEST = 1e-6
 def solve(
     network: Network, qp: QP, state: Vector, point: Vector, tol: float, max_linear_solves: int
 ) -> Progress:
-    """Advance `state` (size,) with growing implicit steps; arguments as `Integrator.solve`'s."""
+    """Advance `state` (size,) with growing implicit steps; arguments as `ImplicitEuler.solve`."""
     flow = checked_flow(network, qp)
     step = 1.0
     linear_solves = 0
@@ -55,9 +55,9 @@ def solve(
 
 
 def linear_change(flow: Flow, state: Vector, step: float, rates: Vector) -> Vector:
-    """Compute the change of a state (size,) with these rates by a linearly implicit step [rho].
+    """Compute the change of a state with these rates, (size,) each, by a linearly implicit step.
 
-    It is NaN if the step's matrix is singular.
+    The step is in units of rho. If its matrix is singular, the change is NaN.
     """
     matrix = np.eye(state.size) / step - flow.derivative(state)
     try:

@@ -81,7 +81,10 @@ class Scaling(NamedTuple):
         return self.of_state[: 2 * n + m + p]
 
     def find_certificate(self, given: QP, point: Vector) -> tuple[Status, Vector | None]:
-        """Look for a certificate of the program as it was given, and its point."""
+        """Search for a certificate in scaled units, and judge it on the program as it was given.
+
+        `point` is that of the given program, (2 n + m + p,).
+        """
         status, certificate = find_certificate(self.qp, point / self.of_point)
         if certificate is not None:
             x, multipliers = np.split(self.of_point, [given.q.size])
