@@ -51,8 +51,8 @@ def build(package: Path) -> Path:
     translator = Translator(package, is_checked)
     translator.all()
     text = extension(translator)
-    unmarked = re.sub(r"#line.*", "", text)  # which a comment changes
-    of_text = hashlib.sha256(f"{unmarked} {kind}".encode()).hexdigest()
+    bare = re.sub(r"#line[^\n]*|/\*.*?\*/", "", text, flags=re.DOTALL)
+    of_text = hashlib.sha256(f"{bare} {kind}".encode()).hexdigest()
     if of_text not in noted[1:2]:
         with tempfile.TemporaryDirectory(dir=package) as build:
             source = Path(build) / "_kernels.c"

@@ -9,7 +9,7 @@ from enum import IntEnum
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from .kinds import ARRAYS, BOOL, FLOAT, INT, Kind, Kinds
+from .kinds import ARRAYS, BOOL, FLOAT, INT, Kind, Kinds, commented
 from .sources import Module, Package, TranslationError, c_word, decoration, fail
 
 Rank = IntEnum("Rank", "CHOICE OR AND EQUALITY COMPARISON SUM PRODUCT UNARY PRIMARY")
@@ -171,7 +171,8 @@ class Translation:
         package: The package that they are in.
         kinds: Types of their variables.
         constants: Constants of modules and of the exported plan, by their names in C.
-        plan: Members of the exported plan that are constants, by its types and the members' names.
+        tables: Tables of the exported plan, by their names in C.
+        plan: Constants that members of the exported plan are, by its types and their names.
         parts: Functions that entries call by their numbers, from 1; None: by any address.
         is_checked: Whether indices are checked.
     """
@@ -183,13 +184,14 @@ class Translation:
         self.kinds = Kinds(self.package)
         self.parts: list[Any] | None = None
         self.constants: dict[str, str] = {}
+        self.tables: dict[str, str] = {}
         self.plan: dict[str, dict[str, Value]] = {}
 
     def function(self, module: Module, node: ast.FunctionDef) -> Expressions:
         """Return the translation of a function."""
         raise NotImplementedError
 
-    def constant(self, name: str, own: Any, shape: Sequence[int] = ()) -> Value:
+    def constant(self, name: str, own: Any, about: str) -> Value:
         """Write a constant, a number or a sequence of numbers; return its value in C.
 
         Raises:
@@ -200,12 +202,13 @@ class Translation:
         kind = numbers[0].kind
         items = ", ".join(each.text for each in numbers)
         text = f"{name}[] = {{{items}}}" if is_table else f"{name} = {items}"
-        if self.constants.setdefault(name, text := f"static const {kind.tag} {text};") != text:
+        text = commented(f"static const {kind.tag} {text}", about)
+        if self.constants.setdefault(name, text) != text:
             raise TranslationError(f"{name} is the name of two constants")
         if not is_table:
             return Value(kind, name)
         data = Value(kind, f"({kind.tag} *){name}", Rank.UNARY)
-        return array(kind, data, [number(size) for size in shape or [len(own)]])
+        return array(kind, data, [number(len(own))])
 
 
 class Expressions:
@@ -371,7 +374,8 @@ class Expressions:
         if not isinstance(node, ast.Name):
             return number(found)
         home, _ = self.translator.package.find(self.module, node.id)
-        return self.translator.constant(home.c_name(node.id), found)
+        about = home.about.get(node.id, "")
+        return self.translator.constant(home.c_name(node.id), found, about)
 
     def _attribute(self, node: ast.Attribute) -> Value:
         """Translate a member of a named tuple, record or enumeration, or an array's size."""

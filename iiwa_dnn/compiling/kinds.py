@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import math
+import re
+import textwrap
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -67,6 +69,10 @@ ARRAYS = {(own.element, own.axes): own for own in _KINDS.values() if own.axes}
 """Types of arrays by the type of their elements and the number of axes."""
 
 
+WIDTH = 120
+"""Largest length of a line of C that somebody reads."""
+
+
 class Kinds:
     """Types that annotations stand for, and the structs of C that they need."""
 
@@ -107,8 +113,8 @@ class Kinds:
         rows = [each for each in node.body if isinstance(each, ast.AnnAssign)]
         members = {ast.unparse(row.target): self.of(module, row.annotation) for row in rows}
         tag = module.c_name(node.name)
-        fields = "".join(f"\n    {kind.tag} {name};" for name, kind in members.items())
-        self.structs[tag] = f"/* {_about(node)} */\ntypedef struct {{{fields}\n}} {tag};"
+        fields = _fields({name: f"{kind.tag} {name}" for name, kind in members.items()}, node)
+        self.structs[tag] = f"/* {_about(node)} */\ntypedef struct {{\n{fields}\n}} {tag};"
         return Kind(tag, f"<{''.join(k.code for k in members.values())}>", members=members)
 
     def _enumeration(self, module: Module, node: ast.ClassDef) -> Kind:
@@ -131,15 +137,15 @@ class Kinds:
         for row in rows:
             if isinstance(row.value, ast.Call):
                 kind = members[ast.unparse(row.target)] = self.of(module, row.annotation)
-                place = f"numbers.data + {_counted(end)}"
+                place = " + ".join(["numbers.data", *_counted(end)])
                 given = [] if kind.sizes else map(module.value, row.value.args)
                 values.append(_part(kind, [*given], place, end))
-        inner = "\n".join(f"    double {c_word(name)};" for name in names)
+        inner = _fields({name: f"double {c_word(name)}" for name in names}, node)
         if names:
             self.structs[f"{tag}_numbers"] = f"typedef struct {{\n{inner}\n}} {tag}_numbers;"
-        pointer = [f"    {tag}_numbers *at;"] * bool(names)
-        parts = [f"    {k.tag} {c_word(own)};" for own, k in members.items() if own not in names]
-        inner = "\n".join([parts[0], *pointer, *parts[1:]])
+        pointer = {"at": f"{tag}_numbers *at"} if names else {}
+        parts = {k: f"{own.tag} {c_word(k)}" for k, own in members.items() if k not in names}
+        inner = _fields({"numbers": parts["numbers"], **pointer, **parts}, node)
         self.structs[tag] = f"/* {_about(node)} */\ntypedef struct {{\n{inner}\n}} {tag};"
         given = "".join(f", int64_t {size}" for size in end if size)
         inner = ",\n        ".join(values)
@@ -160,10 +166,33 @@ def _part(kind: Kind, shape: list[Any], place: str, end: dict[str, int]) -> str:
     return f"{kind.tag}_of((Vector){inner})" if kind.sizes else inner
 
 
-def _counted(sizes: dict[str, int]) -> str:
-    """Return the number of numbers as a sum of sizes in C."""
-    counts = [f"{count} * {size}" if size else str(count) for size, count in sizes.items()]
-    return " + ".join(counts)
+def _counted(sizes: dict[str, int]) -> list[str]:
+    """Return how many numbers there are as summands in C."""
+    fixed = [str(sizes[""])] * (sizes[""] > 0)
+    return fixed + [f"{n} * {size}" if n > 1 else size for size, n in sizes.items() if size and n]
+
+
+def attributes(docstring: str) -> dict[str, str]:
+    """Return the descriptions of a docstring's attributes or members, by their names."""
+    sections = re.split("^(?:Attributes|Members):\n", docstring, flags=re.MULTILINE)[1:]
+    rows = re.findall(r"^ {4}(\w+): (.+(?:\n {8}.+)*)", "".join(sections), re.MULTILINE)
+    return {name: " ".join(text.split()) for name, text in rows}
+
+
+def commented(declaration: str, about: str) -> str:
+    """Write a member of a struct of C and a comment on it, before it if the line is too long."""
+    whole = f"{declaration}; /* {about} */"
+    if about and ("\n" in declaration or len(whole) > WIDTH - 12):
+        above = textwrap.fill(f"/* {about} */", WIDTH - 12, subsequent_indent=" * ")
+        return f"{above}\n{declaration};"
+    return whole if about else f"{declaration};"
+
+
+def _fields(declarations: dict[str, str], node: ast.ClassDef) -> str:
+    """Write the members of a struct, with their descriptions in a docstring."""
+    about = attributes(ast.get_docstring(node) or "")
+    lines = [commented(text, about.get(name, "")) for name, text in declarations.items()]
+    return textwrap.indent("\n".join(lines), "    ")
 
 
 def _about(node: ast.ClassDef) -> str:

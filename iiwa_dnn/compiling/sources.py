@@ -87,6 +87,7 @@ class Module(dict[str, Any]):
         file: The file.
         path: Its path, from the folder that holds the package.
         names: For each name the statement that binds it.
+        about: Docstrings after the statements that bind constants.
     """
 
     def __init__(self, package: Package, name: str, file: Path) -> None:
@@ -96,9 +97,14 @@ class Module(dict[str, Any]):
         self.file = file
         self.path = f"{name.replace('.', '/')}.py"
         self.names: dict[str, Any] = {}
-        for node in ast.parse(file.read_text(encoding="utf-8")).body:
+        self.about: dict[str, str] = {}
+        body = ast.parse(file.read_text(encoding="utf-8")).body
+        for node, following in zip(body, [*body[1:], None], strict=True):
             for each in node.body if isinstance(node, ast.If) else [node]:
                 self.names |= dict.fromkeys(_bound(each), each)
+            match following:
+                case ast.Expr(value=ast.Constant(value=str(text))):
+                    self.about |= dict.fromkeys(_bound(node), " ".join(text.split()))
 
     def __missing__(self, name: str) -> Any:
         """Compute a constant by executing the one statement that binds it."""

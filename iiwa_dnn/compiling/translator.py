@@ -66,8 +66,10 @@ class Translator(Translation):
                 early |= {*re.findall(r"\w+(?=\()", body)} - defined
                 bodies.append(body)
         heads = [f"{own.head};" for own in functions if own.name in early]
-        parts = [*self.kinds.structs.values(), *self.constants.values(), *heads, *bodies]
-        return "\n".join(parts)
+        declared = [self.kinds.structs, self.constants, self.tables]
+        parts = ["\n\n".join(own.values()) for own in declared]
+        parts[2:2] = [f"\n/* ---- {TABLES} ---- */\n"] * bool(self.tables)
+        return "\n".join([*parts, *heads, *bodies])
 
     def function(
         self, module: Module, node: ast.FunctionDef, like: Function | None = None
@@ -81,6 +83,9 @@ class Translator(Translation):
             self.functions[key] = self.functions.pop(key)  # after those that it calls
         return self.functions[key]
 
+
+TABLES = "Tables: limits, gains, capsules and lengths"
+"""Title of the section of an exported plan's tables."""
 
 _LEFT = "return"
 """Mark of a block whose end is never reached, among the names of variables."""

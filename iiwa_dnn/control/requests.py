@@ -126,7 +126,7 @@ class RequestConstants(Record):
 
     frame: int
     is_twist: bool
-    velocity: Vector = part()
+    velocity: Vector = part("request")
 
 
 @compiled

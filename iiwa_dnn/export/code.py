@@ -6,7 +6,7 @@ import hashlib
 import inspect
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from enum import IntEnum
 from importlib.metadata import version
 from pathlib import Path
@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn.compiling.binding import prelude
-from iiwa_dnn.compiling.expressions import Value
+from iiwa_dnn.compiling.expressions import Rank, Value, array, number
+from iiwa_dnn.compiling.kinds import FLOAT, INT, WIDTH, Kind, commented
 from iiwa_dnn.compiling.library import Entry, source_of
 from iiwa_dnn.compiling.records import Record
 from iiwa_dnn.compiling.sources import Module, TranslationError, c_name
@@ -34,18 +35,30 @@ from iiwa_dnn.control.arms import (
 )
 from iiwa_dnn.control.command import RankLoss, log_of, rank_loss, rank_words
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.cycle import ControlPlan, PathColumn, sample_targets, take_step
+from iiwa_dnn.control.cycle import ControlPlan, PathColumn, Paths, sample_targets, take_step
+from iiwa_dnn.control.paths import by_frame
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.requests import REASONS, Reason, Request
 from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.control.state import count_as_sent
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.export.tables import (
+    Node,
+    about_members,
+    braced,
+    constant,
+    path_constants,
+    program_constants,
+    robot_labels,
+    rows_of,
+)
 from iiwa_dnn.naming import ACTIONS, active_limits, describe, limit_kinds
+from iiwa_dnn.references import Reference
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
-from iiwa_dnn.schemes.program import Column, program_views
+from iiwa_dnn.schemes.program import Column, ProgramArrays, program_views
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -54,9 +67,6 @@ TEMPLATES = _PACKAGE / "export" / "templates"
 
 PARTS = TEMPLATES / "parts"
 """Templates of what stands within files."""
-
-WIDTH = 120
-"""Largest length of a line of C."""
 
 _SECTIONS = {
     "compiling": "Sine and cosine",
@@ -90,9 +100,10 @@ def wrapped(line: str) -> list[str]:
         breaks = []
         for at, letter in enumerate(line[:WIDTH]):
             depth += (letter in "({[") - (letter in ")}]")
-            ends = line[at - 1 : at + 1] in (", ", "= ") or line[at - 1] == "("
+            is_value = line[at - 1 : at + 1] == "= " and depth == 0
+            ends = line[at - 1 : at + 1] == ", " or line[at - 1] == "("
             is_operator = re.match(r" (&&|\|\||[-+*/?:]) ", line[at : at + 4])
-            if at > WIDTH // 3 and (ends or is_operator):
+            if at > WIDTH // 3 and (ends or is_value or is_operator):
                 breaks.append((depth, -at))
         if not breaks:
             break
@@ -123,13 +134,15 @@ def controller_code(controller: Controller) -> dict[str, Any]:
             "controller", f"{name} answers in Python, as obstacles that move do", refused[0]
         )
     model = model_tables(robot, program.kinematics.frame_ids, program.needs_inertia)
-    inertia = "c->inertia" if program.needs_inertia else "NULL"
-    code = _Code("c->jacobian", "c->placements", inertia, "c->fallback")
+    places = {own: f"c->{own}" for own in ("jacobian", "placements", "fallback")}
+    places["inertia"] = "c->inertia" if program.needs_inertia else "NULL"
+    references = [*by_frame(controller.reference, robot.tip).values()]
+    code = _Code(program, references, places, folds=True)
     lengths = _lengths(controller)
     n, m, p = program.sizes
     texts: dict[str, Any] = {
-        "plan": code.initializer("plan", code.numbered(step.given)),
-        "model": code.initializer("model", model),
+        "plan": _nested(code.initializer("plan", code.numbered(step.given))),
+        "model": _nested(code.initializer("model", model)),
         **code.kernels(take_step, log_of, write_kinematics, program_views),
         **code.kernels(rank_loss, count_as_sent),
         "target_function": "",
@@ -158,6 +171,11 @@ def controller_code(controller: Controller) -> dict[str, Any]:
         "action_count": 1 + max(Action),
     }
     return _about("controller", controller, texts, code, rank_words(n, p), program)
+
+
+def _nested(initializer: str) -> str:
+    """Indent an initializer for its place in a function."""
+    return initializer.replace("\n", "\n    ")
 
 
 def _members(prefix: str, kind: type[IntEnum]) -> str:
@@ -224,9 +242,9 @@ def limit_words(program: ProgramLayout) -> list[str]:
 def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
     """Translate a shield, whose twists are those of one frame; returns what the controller's do."""
     plan, step, memory, _ = shield.layout(frame)
-    code = _Code("NULL", "NULL", "NULL", "NULL")
+    written = ("jacobian", "placements", "inertia", "fallback")
+    code = _Code(step.program, [], dict.fromkeys(written, "/* each arm's */ NULL"), folds=False)
     text = code.initializer("plan", plan._replace(step=code.numbered(plan.step)))
-    code.unfold()
     centers = ArmState.of(memory, *plan.sizes).obstacles.ravel().tolist()
     arrays = plan.step.arrays
     n, m, _ = arrays.sizes[:3]
@@ -235,7 +253,7 @@ def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
     avoidance = avoidance_of(shield)
     obstacles = avoidance.obstacles if avoidance else ()
     texts = {
-        "plan": text,
+        "plan": _nested(text),
         **code.kernels(arm_state, rest_arm, halt_arm, send_arm, step_arm),
         **code.kernels(place_arm, motion_of, margin_of, stopping_time_of),
         "frame": frame,
@@ -277,13 +295,28 @@ def _lengths(controller: Controller) -> dict[str, int]:
 class _Code:
     """Translation of the kernels that a controller reaches, and its tables."""
 
-    def __init__(self, jacobian: str, placements: str, inertia: str, relaxed: str) -> None:
-        """Take the places in C of what the kernels write."""
-        self._fields = {
-            "jacobian": jacobian,
-            "placements": placements,
-            "inertia": inertia,
-            "fallback": relaxed,
+    def __init__(
+        self,
+        program: ProgramLayout,
+        paths: Sequence[Reference],
+        memory: Mapping[str, str],
+        folds: bool,
+    ) -> None:
+        """Begin without tables.
+
+        Args:
+            program: The program.
+            paths: The paths of its frames.
+            memory: Places in C of arrays that are written, by their names in a plan.
+            folds: Whether kernels take the plan's numbers for constants, as none makes another
+                plan: the compiler leaves out what is never reached, a third of the code.
+        """
+        self._folds = folds
+        self._memory = memory
+        self._labels = robot_labels(program.robot, program.kinematics.frame_ids)
+        self._named = {
+            (ProgramArrays, "constants"): program_constants(program, self._labels),
+            (Paths, "constants"): path_constants(paths, self._labels),
         }
         self._translator = Translator(_PACKAGE)
         self._parts: list[Function] = []
@@ -292,15 +325,22 @@ class _Code:
 
     def numbered(self, plan: ControlPlan) -> ControlPlan:
         """Return a plan with the numbers of parts in place of their addresses."""
-        blocks = plan.arrays.table.copy()
-        blocks[:, Column.ADDRESS] = [*map(self._part, blocks[:, Column.ADDRESS].tolist())]
-        paths = plan.paths.table.copy()
-        paths[:, PathColumn.ADDRESS] = [*map(self._part, paths[:, PathColumn.ADDRESS].tolist())]
         network = plan.network._replace(
             rates=self._part(plan.network.rates), address=self._part(plan.network.address)
         )
-        arrays = plan.arrays._replace(table=blocks)
-        return plan._replace(arrays=arrays, network=network, paths=plan.paths._replace(table=paths))
+        arrays = self._renumbered(plan.arrays, Column.ADDRESS)
+        paths = self._renumbered(plan.paths, PathColumn.ADDRESS)
+        return plan._replace(arrays=arrays, network=network, paths=paths)
+
+    def _renumbered(self, own: Any, column: int) -> Any:
+        """Return blocks or paths with the numbers of parts in a column of their table."""
+        table = own.table.copy()
+        table[:, column] = [*map(self._part, table[:, column].tolist())]
+        made = own._replace(table=table)
+        names = [self._parts[number - 1].name for number in table[:, column].tolist()]
+        rows = Node.of(rows_of(made, "table"), {"table": names}, "table")
+        self._named[type(own), "table"] = rows
+        return made
 
     def _part(self, address: int) -> int:
         """Translate the function at an address, once; return its number."""
@@ -341,39 +381,48 @@ class _Code:
             problem = f"{function!r} cannot be exported: {error}"
             raise InvalidInputError("controller", problem) from error
 
-    def initializer(self, path: str, own: Any) -> str:
-        """Return the initializer of a named tuple, a number or an array, by its path in C."""
-        own = self._value(path, own)
-        return own.initializer if isinstance(own, Value) else own
-
-    def unfold(self) -> None:
-        """Take no member of the plan for a constant: a step of an arm makes such tuples anew."""
-        self._translator.plan.clear()
-
-    def _value(self, path: str, own: Any) -> Value | str:
-        """Write values outside of the struct as constants; return their address or initializer."""
-        if isinstance(own, np.ndarray):
-            if field := self._fields.get(path.rpartition(".")[2]):
-                return f"{{{', '.join([field, *map(str, own.shape)])}}}"
-            # In C no array is empty.
-            numbers = (own if own.size else np.zeros(1, own.dtype)).ravel().tolist()
-            table = self._translator.constant(path.replace(".", "_"), numbers, own.shape)
-            is_record = isinstance(own, Record)
-            sizes = map(str, getattr(own, "sizes", ()))
-            return f"{_tag(own)}_of({', '.join([table.text, *sizes])})" if is_record else table
-        if not isinstance(own, tuple):
-            return self._translator.constant(path.replace(".", "_"), own)
-        items: dict[str, Any] = own._asdict()  # type: ignore[attr-defined]
-        values = {each: self._value(f"{path}.{each}", item) for each, item in items.items()}
-        constants = {each: item for each, item in values.items() if isinstance(item, Value)}
+    def initializer(self, name: str, own: Any) -> str:
+        """Return the initializer of a named tuple, whose variables begin with a name."""
+        items: dict[str, Any] = own._asdict()
+        values = {field: self._value(f"{name}_{field}", own, field) for field in items}
+        known = {field: own for field, own in values.items() if isinstance(own, Value)}
         tag = _tag(own)
         plan = self._translator.plan
-        plan[tag] = {} if plan.get(tag, constants) != constants else constants
-        lines = [
-            f"    .{each} = {item.initializer if isinstance(item, Value) else item},"
-            for each, item in values.items()
-        ]
-        return "\n".join(["{", *lines, "}"]).replace("\n", "\n    ")
+        plan[tag] = known if self._folds and plan.get(tag, known) == known else {}
+        texts = [v.initializer if isinstance(v, Value) else v for v in values.values()]
+        return braced([f".{name} = {text}" for name, text in zip(items, texts, strict=True)])
+
+    def _value(self, name: str, owner: Any, field: str) -> Value | str:
+        """Return a number or a table of a named tuple as a constant; anything else as it begins."""
+        own = getattr(owner, field)
+        if isinstance(own, tuple):
+            return self.initializer(name, own)
+        if not isinstance(own, np.ndarray):
+            return self._translator.constant(name, own, "") if self._folds else constant(own)
+        shape = [*map(number, own.shape)]
+        if place := self._memory.get(field):
+            return f"{{{', '.join([place, *map(str, own.shape)])}}}"
+        table = array(*self._table(name, owner, field), shape)
+        if not isinstance(own, Record) or own.ndim > 1:
+            return table
+        return f"{_tag(own)}_of({', '.join([table.text, *map(str, own.sizes)])})"
+
+    def _table(self, name: str, owner: Any, field: str) -> tuple[Kind, Value]:
+        """Write an array as a variable; return the type of its numbers and a pointer to them."""
+        own = getattr(owner, field)
+        kind = FLOAT if own.dtype == np.float64 else INT
+        if not own.size:
+            name = f"no_{kind.word}s"
+            self._translator.tables[name] = f"static const {kind.tag} {name}[1] = {{0}};"
+            return kind, Value(kind, f"({kind.tag} *){name}", Rank.UNARY)
+        rows = rows_of(owner, field)
+        node = self._named.get((type(owner), field)) or Node.of(rows, self._labels, field)
+        text = f"static const {node.declaration(name, kind.tag)} = {node.initializer()}"
+        about = about_members(owner).get(field) or node.sentence
+        self._translator.tables[name] = commented(text, about)
+        # Elements of a matrix or a struct are no numbers.
+        address = "&" * (isinstance(node.value, dict) or own.ndim > 1)
+        return kind, Value(kind, f"({kind.tag} *){address}{name}", Rank.UNARY)
 
     def text(self) -> str:
         """Return structs, tables and functions, and before them those of C's own that they call."""

@@ -73,7 +73,7 @@ class Heart(Reference):
     @cached_property
     def constants(self) -> Array:
         """`HeartConstants`."""
-        return HeartConstants.make(scale=self.scale, rate=2.0 * np.pi / self.period).numbers
+        return HeartConstants.make(scale=self.scale, rate=2.0 * np.pi / self.period)
 
 
 class LissajousConstants(Record):
@@ -148,7 +148,7 @@ class Circle(SoftStart):
             rates=np.full(3, 2.0 * np.pi / self.period),
             sines=np.cross(normal, u),
             cosines=u,
-        ).numbers
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +180,7 @@ class Line(Reference):
             rates=np.full(3, 2.0 * np.pi / self.period),
             sines=np.zeros(3),
             cosines=-0.5 * np.array(self.offset),
-        ).numbers
+        )
 
 
 def _whole(argument: str, value: Any) -> Vector3:
@@ -234,7 +234,7 @@ class Lissajous(SoftStart):
             rates=2.0 * np.pi / self.period * np.array(self.turns),
             sines=amplitudes * np.cos(self.phases),
             cosines=amplitudes * np.sin(self.phases),
-        ).numbers
+        )
 
 
 @compiled

@@ -76,7 +76,7 @@ class Cone(SoftStart):
     def constants(self) -> Array:
         """`ConeConstants`."""
         rate = 2.0 * np.pi / self.period
-        return ConeConstants.make(begin=self.begin, angle=self.angle, rate=rate).numbers
+        return ConeConstants.make(begin=self.begin, angle=self.angle, rate=rate)
 
 
 class Along(IntEnum):

@@ -50,7 +50,7 @@ class WaypointsConstants(Record):
 
     period: float
     duration: float
-    pieces: Array = part()
+    pieces: Array = part("pieces")
 
 
 class PoseNumbers(Record):
@@ -187,7 +187,7 @@ class Waypoints(Reference):
         own = WaypointsConstants.make(
             period=self.period, duration=self.duration, pieces=pieces.ravel()
         )
-        self._set(constants=own.numbers, jumps=np.flatnonzero(jumps))
+        self._set(constants=own, jumps=np.flatnonzero(jumps))
         if jumped := len(self.jumps):
             first = ", ".join(f"{t:.4g}" for t in times[self.jumps][:5])
             remarks.append(

@@ -109,7 +109,14 @@ class JointLimits(Limit):
     gain: float = 20.0
 
     def constants(self, robot: Robot) -> Vector:
-        """Return gain, position and velocity limits, and position-dependent ones, (1 + 5 n,)."""
-        return np.concatenate(
-            [[self.gain], robot.limits[:3].ravel(), robot.position_dependent_velocity.ravel()]
+        """Return `PositionConstants`."""
+        lower, upper, velocity = robot.limits[:3]
+        offset, slope = robot.position_dependent_velocity
+        return PositionConstants.make(
+            gain=self.gain,
+            lower=lower,
+            upper=upper,
+            velocity=velocity,
+            offset=offset,
+            slope=slope,
         )

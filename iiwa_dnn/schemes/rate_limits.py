@@ -112,7 +112,13 @@ class MotionConstants(Record):
         lower: Lower position limits [rad], (n,): at one below which a position-dependent velocity
             limit is zero, that position.
         upper: Upper position limits [rad], (n,).
-        velocity: As in `Rates`, and so the others, (n,).
+        velocity: Largest velocities [rad/s], (n,); inf for none, as for all others.
+        acceleration: Largest accelerations [rad/s^2], (n,).
+        jerk: Largest jerks [rad/s^3], (n,).
+        deceleration: Decelerations with which the joints stop before their position limits
+            [rad/s^2], (n,).
+        slope: Deceleration D of each position-dependent velocity limit [rad/s^2], (n,).
+        lag: Offset o of each position-dependent velocity limit over D [s], (n,).
     """
 
     dt: float

@@ -109,5 +109,6 @@ class TipSpeedLimit(Limit):
     gain: float = 100.0
 
     def constants(self, robot: Robot) -> Vector:
-        """Return the index of the frame, the limit [m/s] and the gain [1/s], (3,)."""
-        return np.array([robot.frame_id(self.frame_name(robot)), self.limit, self.gain])
+        """Return `TipSpeedConstants`."""
+        frame = robot.frame_id(self.frame_name(robot))
+        return TipSpeedConstants.make(frame=frame, limit=self.limit, gain=self.gain)

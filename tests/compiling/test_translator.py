@@ -441,7 +441,7 @@ def g(views: Views) -> float:
     return views.rate
 """
     translator = Translator(_write(tmp_path, source))
-    translator.plan["own_Views"] = {"rate": translator.constant("plan_rate", 0.5)}
+    translator.plan["own_Views"] = {"rate": translator.constant("plan_rate", 0.5, "")}
     with pytest.raises(TranslationError, match="`own` is another one than the plan's"):
         translator.all()
 

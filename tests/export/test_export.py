@@ -5,7 +5,7 @@ import importlib
 import re
 import shutil
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 from unittest.mock import Mock
 
 import numpy as np
@@ -14,14 +14,13 @@ import pytest
 import iiwa_dnn
 from export_settings import SETTINGS, drawing, with_limits
 from helpers_export import QUICK, WARNINGS, needs, packaged, run
+from hostile_arms import START, make_shield
 from iiwa_dnn import DoubleIndicator
 from iiwa_dnn.compiling import build
-from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.export import ExportedController, c99, load
-from iiwa_dnn.export.code import _Code
 from iiwa_dnn.export.folder import run as run_controller, take_exported_kinematics
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.studies.runs import paper_robot
 
 pytestmark = needs("gcc")
 
@@ -138,7 +137,7 @@ def test_the_code_reads_as_c_by_hand(name: str, tmp_path: Path) -> None:
     text = (tmp_path / "controller.c").read_text(encoding="utf-8")
     assert max(map(len, text.splitlines())) <= 120
     kernels = text[text.index("/* ----") :]
-    assert not re.search(r"\(\*\w+\)[.[]|&\(\*|[=(] \(\(", kernels)
+    assert not re.search(r"\(\*\w+\)[.[]|&\(\*|[=(] \(\((?!\w+ \*\)&)", kernels)
     assert "        const double below = step->q.data[i] - limits.lower.data[i];\n" in kernels
     sections = [text.index(f"/* ---- {title}") for title in SECTIONS if title in text]
     assert sections == sorted(sections)
@@ -148,7 +147,7 @@ def test_the_code_reads_as_c_by_hand(name: str, tmp_path: Path) -> None:
     )
 
 
-SECTIONS = ("Kinematics", "Targets", "Program", "Network", "Control step", "Interface")
+SECTIONS = ("Tables", "Kinematics", "Targets", "Program", "Network", "Control step", "Interface")
 
 
 @needs("clang")
@@ -274,21 +273,61 @@ class Page(iiwa_dnn.Limit):
         return np.array([robot.frame_id("iiwa7_link_4"), 20.0, 0.1, 0.5, 0.5, 0.5])
 
 
-class _Limits(Record):
-    least: float
-    velocity: Vector = part()
+def numbers_of(folder: Path, kind: str, name: str, tmp_path: Path) -> list[float]:
+    """Print the numbers that a table holds in C."""
+    source = tmp_path / "table.c"
+    source.write_text(
+        f'''#include <stdio.h>
+#include "{kind}.c"
+int main(void)
+{{
+    const double *numbers = (const double *)&{name};
+    for (size_t k = 0; k < sizeof {name} / sizeof *numbers; k++) printf("%.17g\\n", numbers[k]);
+    return 0;
+}}'''
+    )
+    run("gcc", "-std=c99", "-O0", f"-I{folder}", source, "-o", tmp_path / "table", "-lm")
+    return [float(line) for line in run(tmp_path / "table").split()]
 
 
-class _Settings(NamedTuple):
-    limits: _Limits
-    dt: float
+@pytest.mark.parametrize("name", ["other tasks", "collisions with balls", "tilting poses"])
+def test_tables_have_pythons_numbers_by_their_names(name: str, tmp_path: Path) -> None:
+    controller, q0 = SETTINGS[name]()
+    folder = c99(controller, tmp_path, q0)
+    controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
+    plan = controller.control_layout.plan
+    for field, numbers in (
+        ("plan_arrays_constants", plan.arrays.constants),
+        ("plan_paths_constants", plan.paths.constants),
+        ("plan_yielding_limits", plan.yielding.limits),
+    ):
+        found = numbers_of(folder, "controller", field, tmp_path)
+        np.testing.assert_array_equal(found, numbers, field)
 
 
-def test_a_record_in_a_plan_is_a_view_of_a_table() -> None:
-    settings = _Settings(_Limits.of(np.array([0.5, 1.0, 2.0])), 0.1)
-    text = _Code("NULL", "NULL", "NULL", "NULL").initializer("plan", settings)
-    assert "_Limits_of((Vector){(double *)plan_limits, 3}, 2)," in text
-    assert ".dt = plan_dt," in text
+@pytest.mark.parametrize("kind", ["controller", "shield"])
+def test_a_reviewer_finds_limits_gains_and_capsules_by_name(kind: str, tmp_path: Path) -> None:
+    if kind == "shield":
+        c99(make_shield(), tmp_path, START)
+    else:
+        controller, q0 = SETTINGS["collisions with balls"]()
+        c99(controller, tmp_path, q0)
+    text = " ".join((tmp_path / f"{kind}.c").read_text(encoding="utf-8").split()).replace("{ ", "{")
+    limit = repr(float(paper_robot().dq_max[3]))
+    for words in (
+        "double velocity[7]; /* Velocity limits [rad/s], (n,). */",
+        ".velocity = {/* iiwa7_joint_1 */ 1.710422666954443, /* iiwa7_joint_2 */",
+        f"/* iiwa7_joint_4 */ {limit},",
+        "/* Sphere 1 */ {.frame = 0, .radius = 0.05, .speed = 0.0, .half = {0.0, 0.0, 0.0},",
+        "/* iiwa7_link_4 */ {.frame = 9, .radius = 0.080001, .speed = 0.0, .half = {0.0, 0.0, 0.07",
+        "/* Sphere 1 and iiwa7_link_4 */ {.second = 4, .first =",
+        ".kind = 3 /* LIMIT */",
+        "/* Least distance [m]. */",
+        "/* Bisection steps for a command that ends at a position limit. */",
+    ):
+        assert words in text
+    # No number of a table stands without a name but in matrices.
+    assert not re.search(r"static const double \w+\[\d{2,}\] =", text)
 
 
 class _Plain(iiwa_dnn.Heart):

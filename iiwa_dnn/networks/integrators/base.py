@@ -53,7 +53,7 @@ class AnswerSettings(Record):
     budget: float
     duration: float
     substeps: int
-    network: Vector = part()
+    network: Vector = part("constants")
 
 
 @entry

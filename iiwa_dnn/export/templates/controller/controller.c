@@ -3,8 +3,13 @@
  * C99 and libm's elementary functions alone. Every function states the file that it is translated
  * from. Programs have @n@ variables, @m@ inequality rows, @p@ equality rows. In this order stand:
  *
+ * - Types and constants of the functions
+ * - Tables: limits, gains, capsules and lengths
 @map@
  * - Interface: what the header declares
+ *
+ * A struct whose first member is `numbers` is a record, an array of numbers by their names: `at` has
+ * the first ones, the other members are arrays within it. `X_of` views an array as a record X.
  */
 #include "controller.h"
 

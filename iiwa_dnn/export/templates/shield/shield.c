@@ -3,8 +3,13 @@
  * C99 and the elementary functions of a freestanding libm alone. Every function states the file that
  * it is translated from. Programs have @n@ variables and @m@ inequality rows. In this order stand:
  *
+ * - Types and constants of the functions
+ * - Tables: limits, gains, capsules and lengths
 @map@
  * - Interface: what the header declares
+ *
+ * A struct whose first member is `numbers` is a record, an array of numbers by their names: `at` has
+ * the first ones, the other members are arrays within it. `X_of` views an array as a record X.
  *
  * Compile it with -ffp-contract=off, and every compiler gives the same commands, to the last bit.
  */

@@ -1,0 +1,220 @@
+"""Tables of an exported plan: variables of C, initialised by the names of their fields.
+
+A reviewer finds each limit, gain and capsule by its name, and beside it the joint or link.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from enum import IntEnum
+from inspect import cleandoc
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from iiwa_dnn.compiling.expressions import number
+from iiwa_dnn.compiling.kinds import attributes, commented
+from iiwa_dnn.compiling.records import Record
+from iiwa_dnn.control.cycle import PathColumn, Paths
+from iiwa_dnn.qp import Vector
+from iiwa_dnn.references import Reference
+from iiwa_dnn.references.targets import TargetData
+from iiwa_dnn.robot.kinematics import Placement
+from iiwa_dnn.robot.kinematics_kernel import ModelTables, PrincipalAxes
+from iiwa_dnn.robot.robot import Robot
+from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.layout import ProgramLayout
+from iiwa_dnn.schemes.parts import Part
+from iiwa_dnn.schemes.program import BlockKind, Column, ProgramArrays
+from iiwa_dnn.schemes.scene import Body, Pair, SceneViews, scene_views
+
+Labels = Mapping[str, Sequence[str]]
+"""Comments on the elements of an array, by its name in a named tuple or its size in a record."""
+
+SHORT = 100
+"""Longest initializer that stays on one line."""
+
+_ROWS: dict[tuple[type, str], type] = {
+    (ModelTables, "joints"): Placement,
+    (ModelTables, "offsets"): Placement,
+    (ModelTables, "bodies"): PrincipalAxes,
+    (ProgramArrays, "table"): Column,
+    (Paths, "table"): PathColumn,
+    (SceneViews, "bodies"): Body,
+    (SceneViews, "pairs"): Pair,
+}
+"""Records in the rows of the matrices of named tuples, or enumerations of their columns."""
+
+
+class Node(NamedTuple):
+    """Part of a table.
+
+    Attributes:
+        value: Members of a struct by their names, elements of an array, or a number.
+        labels: Comments on the elements, or none.
+        about: Comments on the members, by their names, and on the struct, by no name.
+    """
+
+    value: Any
+    labels: Sequence[str] = ()
+    about: Mapping[str, str] = MappingProxyType({})
+
+    @classmethod
+    def of(cls, own: Any, labels: Labels, key: str = "") -> Node:
+        """Read a record, a named tuple, a dictionary or list of such, an array or a number."""
+        if isinstance(own, cls):
+            return own
+        if isinstance(own, Record) and own.ndim == 1:
+            shapes = own.members.items()
+            keys = {name: str(shape[0]) if shape else "" for name, shape in shapes}
+            items = {name: getattr(own, name) for name in keys}
+            inner = {k: cls.of(item, labels, keys[k]) for k, item in items.items() if np.size(item)}
+            return cls(inner, about=about_members(own))
+        if isinstance(own, tuple):
+            fields: Sequence[str] = own._fields  # type: ignore[attr-defined]
+            rows = {name: rows_of(own, name) for name in fields}
+            return cls.of(rows, labels)._replace(about=about_members(own))
+        if isinstance(own, dict):
+            return cls({name: cls.of(item, labels, name) for name, item in own.items()})
+        if isinstance(own, np.ndarray | list):
+            elements: Any = own if isinstance(own, Record | list) else own.tolist()
+            return cls([cls.of(each, labels) for each in elements], labels.get(key, ()))
+        return cls(own)
+
+    def declaration(self, name: str, kind: str) -> str:
+        """Declare a variable or member of C whose numbers are of a type."""
+        if isinstance(self.value, list):
+            first: Node = self.value[0]
+            return first.declaration(f"{name}[{len(self.value)}]", kind)
+        if not isinstance(self.value, dict):
+            return f"{kind} {name}"
+        lines = [
+            commented(own.declaration(member, kind), self.about.get(member) or own.sentence)
+            for member, own in self.value.items()
+        ]
+        return f"struct {_block(lines)} {name}"
+
+    @property
+    def sentence(self) -> str:
+        """Comment on a struct, or on those of an array."""
+        if isinstance(self.value, list):
+            first: Node = self.value[0]
+            return first.sentence
+        return self.about.get("", "")
+
+    def initializer(self) -> str:
+        """Write the value; members that do not fit on a line, and labelled elements, have one."""
+        if isinstance(self.value, dict):
+            items = [f".{name} = {own.initializer()}" for name, own in self.value.items()]
+        elif isinstance(self.value, list):
+            items = [own.initializer() for own in self.value]
+        else:
+            return constant(self.value)
+        is_flat = isinstance(self.value, list) and not isinstance(self.value[0].value, list | dict)
+        if is_flat and not self.labels:
+            return f"{{{', '.join(items)}}}"
+        return braced(items, self.labels)
+
+
+def braced(items: Sequence[str], labels: Sequence[str] = ()) -> str:
+    """Write initializers between braces, on a line each if they are long or have comments."""
+    whole = f"{{{', '.join(items)}}}"
+    if not labels and "\n" not in whole and len(whole) < SHORT:
+        return whole
+    comments = [f"/* {label} */ " for label in labels] or [""] * len(items)
+    lines = [f"{comment}{item}," for comment, item in zip(comments, items, strict=True)]
+    return _block(lines)
+
+
+def _block(lines: Sequence[str]) -> str:
+    """Write lines between braces, indented."""
+    return "\n".join(["{", *lines]).replace("\n", "\n    ") + "\n}"
+
+
+def constant(own: float) -> str:
+    """Write a number, and for a member of an enumeration its name as a comment."""
+    return number(own).text + (f" /* {own.name} */" if isinstance(own, IntEnum) else "")
+
+
+def about_members(own: object) -> dict[str, str]:
+    """Read the comments on the members of a record or a named tuple from its docstring."""
+    text = cleandoc(type(own).__doc__ or "")
+    return {"": text.partition("\n")[0], **attributes(text)}
+
+
+def rows_of(own: Any, name: str) -> Any:
+    """Return a member of a named tuple, the rows of a matrix by the names of their numbers."""
+    rows = getattr(own, name)
+    kind = _ROWS.get((type(own), name))
+    if kind is None:
+        return rows
+    if issubclass(kind, IntEnum):
+        names = [column.name.lower() for column in kind]
+        made = [dict(zip(names, row, strict=True)) for row in rows.tolist()]
+        made = [row | {"kind": BlockKind(row["kind"])} if "kind" in row else row for row in made]
+        about = attributes(cleandoc(kind.__doc__ or ""))
+        return [
+            Node.of(row, {})._replace(about={k.lower(): own for k, own in about.items()})
+            for row in made
+        ]
+    return kind.of(rows)  # type: ignore[attr-defined]
+
+
+def robot_labels(robot: Robot, frames: Sequence[int]) -> Labels:
+    """Name joints and frames, those of the kinematics by Pinocchio's indices."""
+    names = [frame.name for frame in robot.model.frames]
+    of_joints = ("n", "parents", "joints", "slides", "armature", "lower", "upper", "dq_max")
+    of_frames = ("frames", "carriers", "offsets")
+    labels: dict[str, Sequence[str]] = dict.fromkeys(of_joints, robot.joint_names)
+    return labels | dict.fromkeys(of_frames, tuple(names[k] for k in frames)) | {"support": names}
+
+
+def part_constants(part: Part, robot: Robot, numbers: Vector, labels: Labels) -> Node:
+    """Read the constants of a part, (k,), by their names."""
+    if isinstance(part, CollisionAvoidance):
+        scene = scene_views(numbers, robot.dof)
+        frames = robot.model.frames
+        pairs = part.scene(robot).pairs
+        bodies = [frames[Body.of(body).frame].name for body in scene.bodies]
+        for row, both in zip(scene.pairs, pairs, strict=True):
+            pair = Pair.of(row)
+            bodies[pair.first], bodies[pair.second] = both
+        words = [" and ".join(both) for both in pairs]
+        return Node.of(scene, {**labels, "bodies": bodies, "pairs": words})
+    made = part.constants(robot)
+    return Node.of(
+        type(made).of(numbers, *made.sizes) if isinstance(made, Record) else numbers, labels
+    )
+
+
+def program_constants(program: ProgramLayout, labels: Labels) -> Node:
+    """Read the constants of all parts of a scheme, by the parts and their names."""
+    found: dict[str, Node] = {}
+    for k, part in enumerate(program.parts):
+        name = _member(part, found)
+        numbers = program.constants_of(k)
+        if numbers.size:
+            found[name] = part_constants(part, program.robot, numbers, labels)
+        if program.table[k, Column.KIND] == BlockKind.SOFT_TASK:
+            found[f"{name}_weight"] = Node(float(program.constants[program.table[k, Column.STOP]]))
+    return Node(found)
+
+
+def path_constants(paths: Sequence[Reference], labels: Labels) -> Node:
+    """Read base and constants of the paths of all frames, by their names."""
+    found: dict[str, Node] = {}
+    for path in paths:
+        name = _member(path, found)
+        found[f"{name}_base"] = Node.of(TargetData.of(path.base), labels)
+        if path.constants.size:
+            found[name] = Node.of(path.constants, labels)
+    return Node(found)
+
+
+def _member(part: object, others: Mapping[str, Any]) -> str:
+    """Name a member after a class, and by a number after others of the name."""
+    name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", type(part).__name__).lower().strip("_")
+    count = sum(re.fullmatch(rf"{name}(_\d+)?", other) is not None for other in others)
+    return f"{name}_{1 + count}" if count else name
