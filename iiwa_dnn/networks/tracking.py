@@ -110,7 +110,7 @@ class TrackingSolver(DNNSolver):
         return self._advanced(qp, state, steps, duration / self.network.rho)
 
     def _step(self, state: Vector, sizes: Sizes, step: float, i: int) -> None:
-        """Advance the state in place by the step number i, `step` [s] long, since the last program."""
+        """Advance the state in place by the step number i of `step` [s] since the last program."""
         programs = np.array(self._past["programs"])
         weights = np.array(_BACKWARD[len(programs) - 1])
         rate = weights @ np.where(np.isfinite(programs), programs, 0.0) / (self.substeps * step)
