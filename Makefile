@@ -11,7 +11,7 @@ FULL := $(VENV)/.full
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help force heart test setup lint docs figures notebooks ros cuda integrations clean
+.PHONY: help force heart test setup lint docs figures notebooks ros franka cuda integrations clean
 
 help:  ## list what can be made
 	@echo 'usage: make TARGET [PYTHON=python3.12] [EXTRAS=view] [ARGS="..."]'
@@ -48,8 +48,11 @@ cuda: $(FULL)  ## compile an exported shield for GPUs by NVRTC's wheel, build/cu
 	@test -d build/cuda/nvidia || $(VENV_PYTHON) -m pip install -q --disable-pip-version-check --target build/cuda -c constraints.txt nvidia-cuda-nvrtc
 	PYTHONPATH=build/cuda $(VENV_PYTHON) -m pytest tests/export/compile_cuda.py $(ARGS)
 
-integrations: ros  ## the same for LeRobot, 5 GB, Python >= 3.12 (PYTHON_OF_LEROBOT=), and for Franka
-	$(VENV_PYTHON) -m pytest integrations/lerobot_robot_shielded tests/scripts/test_franka.py $(ARGS)
+franka: $(FULL)  ## try the script for a Franka on franka-sim in an environment of its own, build/franka-sim
+	$(VENV_PYTHON) -m pytest tests/scripts/test_franka.py $(ARGS)
+
+integrations: ros franka  ## the same for LeRobot, 5 GB, Python >= 3.12 (PYTHON_OF_LEROBOT=)
+	$(VENV_PYTHON) -m pytest integrations/lerobot_robot_shielded $(ARGS)
 
 clean:  ## remove .venv, caches and what was built; runs/ stays
 	rm -rf $(VENV) iiwa_dnn/_kernels.* build integrations/*/build dist site jupyter_execute htmlcov .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache

@@ -74,14 +74,14 @@ def make_shield():
 
 
 class Requests:
-    """The newest request that came by UDP, at "127.0.0.1:5005" say."""
+    """The newest request that came by UDP, at "127.0.0.1:5005" say; "5005" is the same."""
 
     def __init__(self, address):
         """Listen at an address."""
         self.refused = 0
         place, _, port = address.rpartition(":")
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.bind((place, int(port)))
+        self._socket.bind((place or "127.0.0.1", int(port)))
         self._socket.setblocking(False)
 
     def newest(self):
@@ -98,7 +98,9 @@ class Requests:
             ((kind, numbers),) = json.loads(found).items()
             size = {"dq": 7, "twist": 6, "position": 7}[kind]
             return {kind: np.array(numbers, dtype=float).reshape(size)}
-        except (AttributeError, KeyError, TypeError, ValueError):
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
+            if not self.refused:
+                print(f"refused, later ones are counted: {found!r}: {error!r}", file=sys.stderr)
             self.refused += 1
             return {"dq": np.full(7, np.nan)}  # the arm brakes
 
@@ -154,7 +156,7 @@ def main(
             break
         state, elapsed = motion.readOnce()
         t += elapsed.to_sec()
-        if t >= duration and not ended:
+        if not (t < duration or ended):  # also where the duration is no number
             end()
         last = np.array(state.dq_d)
         if np.abs(last - command.dq).max() > ROUNDING:  # the arm went on without the command

@@ -6,6 +6,7 @@ docs/integrations.md has the lines to type.
 
 import importlib
 import logging
+import re
 import time
 from dataclasses import dataclass, field
 from typing import Any
@@ -30,11 +31,13 @@ class ShieldedConfig(RobotConfig):
         robot: Settings of the robot that is wrapped, with its type.
         shield: Name of the exported package, whose period is 1 / fps.
         joints: Names of the robot's motors in the order of the shield's joints; none: its own.
+        following_error: Distance of a motor from its goal [rad] beyond which the goal waits.
     """
 
     robot: dict[str, Any]  # a choice of RobotConfig would contain itself
     shield: str
     joints: list[str] = field(default_factory=list)
+    following_error: float = 0.3
 
 
 def wrapped(name: str) -> Any:
@@ -43,12 +46,7 @@ def wrapped(name: str) -> Any:
 
 
 class Shielded(Robot):
-    """A robot whose goal positions keep the limits of a shield; other keys go through.
-
-    Attributes:
-        robot: The robot that is wrapped.
-        shields: The shield, of one arm.
-    """
+    """A robot whose goal positions keep the limits of a shield; other keys go through."""
 
     config_class = ShieldedConfig
     name = "shielded"
@@ -63,24 +61,30 @@ class Shielded(Robot):
         """Make the robot and its shield.
 
         Raises:
-            ValueError: The robot takes no position of one of the shield's joints.
+            ValueError: The shield is none, or does not fit to the robot.
         """
         super().__init__(config)
         self.config = config
         self.robot = make_robot_from_config(draccus.decode(RobotConfig, config.robot))
-        package = importlib.import_module(config.shield)
-        # Of one arm: it brakes at joint positions that are not finite, where `Shield` raises.
-        self.shields = package.Shields(1)
+        try:
+            package = importlib.import_module(config.shield)
+            # Of one arm: it brakes at positions that are not finite, where `Shield` raises.
+            self._shields = package.Shields(1)
+        except (AttributeError, ImportError, TypeError, ValueError) as error:
+            raise ValueError(f"shield: {config.shield!r} is no such package: {error}") from error
+        if package.DELAY:
+            raise ValueError("shield: goal positions need one without a delay")
         self._dt = package.DT
-        self._keys = [f"{each}.pos" for each in config.joints or package.JOINT_NAMES]
-        missing = [each for each in self._keys if each not in self.robot.action_features]
-        if missing or len(self._keys) != len(package.JOINT_NAMES):
-            known = ", ".join(self.robot.action_features)
-            raise ValueError(f"joints: {missing or self._keys} do not fit to {known}")
+        self._motors = config.joints or list(package.JOINT_NAMES)
+        self._keys = [f"{each}.pos" for each in self._motors]
+        known = self.robot.action_features
+        count = len(package.JOINT_NAMES)
+        if len(self._keys) != count or len({*self._keys} & {*known}) != count:
+            raise ValueError(f"joints: {self._keys} are not {count} different ones of {[*known]}")
         self._restart()
 
     def _restart(self) -> None:
-        self.shields.reset()
+        self._shields.reset()
         self._measured: Any = None
         self._command: Any = None
         self._sent: dict[str, Any] = {}
@@ -101,8 +105,16 @@ class Shielded(Robot):
     def get_observation(self) -> dict[str, Any]:
         """Return the robot's observation, and keep its joint positions for the next action."""
         found = self.robot.get_observation()
-        self._measured = np.radians([[found[key] for key in self._keys]])
+        self._measured = self._radians(found)
         return found
+
+    def _radians(self, values: dict[str, Any]) -> Any:
+        """Return the positions (1, n) [rad] among values; None if one is no finite number."""
+        try:
+            found = np.radians([[float(values[key]) for key in self._keys]])
+        except (KeyError, TypeError, ValueError):
+            return None
+        return found if np.isfinite(found).all() else None
 
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
         """Send the goal positions closest to an action that keep every limit; return what is sent.
@@ -110,37 +122,44 @@ class Shielded(Robot):
         An action that comes sooner than the shield's period admits does not count.
         """
         now = time.perf_counter()
-        if now - self._time < EARLY * self._dt:
-            return self._sent
-        self._time = now
-        self._step(action)
-        words = "; ".join(self.shields.active_limits(0))
-        if words != self._said:
-            logging.info("shield: %s", words or "follows the actions")
-        self._said = words
+        if now - self._time >= EARLY * self._dt:
+            self._time = now
+            goal = self._radians(action)
+            self._step(action, goal, "" if goal is not None else "no number for each joint")
         return self._sent
 
-    def _step(self, action: dict[str, Any]) -> None:
-        """Take a step towards an action; it brakes without joint positions since the last one."""
+    def _step(self, action: dict[str, Any], goal: Any, reason: str) -> None:
+        """Take a step towards a goal (1, n) [rad], or brake for a reason."""
         if self._command is None:
             self.get_observation()
-            if not np.isfinite(self._measured).all():
+            if self._measured is None:
                 raise ValueError("the robot's joint positions are not finite")
-        goal = np.radians([[action.get(key, np.nan) for key in self._keys]])
-        q = np.full_like(goal, np.nan) if self._measured is None else self._measured
-        self._command = self.shields.step(q, position=goal, dt=self._dt)
-        self._measured = None
+        measured, self._measured = self._measured, None
+        if measured is None:
+            reason = reason or "no observation since the last action, or no number for each joint"
+        # Goals never jump: the shield is told its own, and a motor that does not follow is awaited.
+        q = measured if self._command is None else self._command.next_q
+        request = {"dq": np.zeros_like(q)}
+        if not reason:
+            away = q - measured
+            waits = (np.abs(away) > self.config.following_error) & ((goal - q) * away > 0.0)
+            request = {"position": np.where(waits, q, goal)}
+            reason = "; ".join(f"{self._motors[i]} does not follow" for i in waits[0].nonzero()[0])
+        self._command = self._shields.step(q, dt=self._dt, **request)
+        words = reason or [*self._shields.active_limits(0), "follows the actions"][0]
+        words = re.sub(r"\bjoint (\d+)", lambda found: self._motors[int(found[1]) - 1], words)
+        if words != self._said:
+            logging.info("shield: %s", words)
+        self._said = words
         goals = np.degrees(self._command.next_q[0]).tolist()
         self._sent = self.robot.send_action(action | dict(zip(self._keys, goals, strict=True)))
 
     def disconnect(self) -> None:
         """Bring the arm to rest, and disconnect the robot."""
-        self.shields.halt()
-        end = time.perf_counter() + 1.0 + 2.0 * self.shields.stopping_time(0)
+        end = time.perf_counter() + 1.0 + 2.0 * self._shields.stopping_time(0)
         while self._command is not None and np.abs(self._command.dq).max() > REST:
             if time.perf_counter() > end:
                 break
             time.sleep(self._dt)
-            self.get_observation()
-            self._step(self._sent)
+            self._step(self._sent, None, "disconnects")
         self.robot.disconnect()

@@ -151,6 +151,17 @@ def ask(place: tuple[str, int], ended: Event) -> None:
                 ended.wait(PERIOD)
 
 
+def test_a_port_alone_is_one_of_this_machine_and_a_refusal_is_said_at_once(capfd) -> None:
+    source = franka.Requests("0")
+    place = source._socket.getsockname()
+    assert place[0] == "127.0.0.1"
+    for _ in range(2):
+        source._socket.sendto(b'{"dq": [1]}', place)
+        assert np.isnan(source.newest()["dq"]).all()
+    assert capfd.readouterr().err.count("refused") == 1
+    assert source.refused == 2
+
+
 def test_hostile_requests_of_a_slow_policy_abort_no_motion(server, tmp_path: Path) -> None:
     folder = iiwa_dnn.export.python(franka.make_shield(), tmp_path / "fr3_shield", "fr3_shield")
     installed = tmp_path / "installed"

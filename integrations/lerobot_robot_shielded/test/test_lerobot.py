@@ -18,23 +18,20 @@ from judge_limits import breaches
 HERE = Path(__file__).resolve().parent
 PYTHON = os.environ.get("PYTHON_OF_LEROBOT", "python3.12")
 DT = 1.0 / 30.0
-ROBOT = iiwa_dnn.load_robot("iiwa7").with_limits(acceleration=10.0, jerk=200.0)
-WORDS = (
-    "--robot.type=shielded",
-    "--robot.shield=arm_shield",
-    "--robot.joints=[joint1,joint2,joint3,joint4,joint5,joint6,joint7]",
-    "--robot.robot={type: ideal, id: arm}",
-    "--teleop.type=chunks",
-)
-RECORD = (
-    "--dataset.repo_id=tests/seams",
-    "--dataset.single_task=none",
-    "--dataset.num_episodes=1",
-    "--dataset.episode_time_s=10",
-    "--dataset.video=false",
-    "--dataset.push_to_hub=false",
-    "--play_sounds=false",
-)
+ROBOT = iiwa_dnn.load_robot("so101").with_limits(acceleration=10.0, jerk=200.0)
+MOTORS = ",".join(ROBOT.joint_names)
+WORDS = {
+    "record": (
+        "--dataset.repo_id=tests/seams",
+        "--dataset.single_task=none",
+        "--dataset.num_episodes=1",
+        "--dataset.episode_time_s=10",
+        "--dataset.video=false",
+        "--dataset.push_to_hub=false",
+        "--play_sounds=false",
+    ),
+    "teleoperate": ("--fps=30", "--teleop_time_s=10", f"--robot.joints=[{MOTORS}]"),
+}
 
 
 @pytest.fixture(scope="module")
@@ -46,24 +43,37 @@ def commands() -> Path:
     return environment(folder, PYTHON, packages, shield, HERE.parent, HERE / "ideal").parent
 
 
-@pytest.mark.parametrize("command", ["record", "teleoperate"])
-def test_chunks_with_seams_break_no_limit(commands: Path, command: str, tmp_path: Path) -> None:
-    root = f"--dataset.root={tmp_path / 'data'}"
-    words = (*RECORD, root) if command == "record" else ("--fps=30", "--teleop_time_s=10")
-    files = {"GOALS_FILE": str(tmp_path / "goals.npy"), "HF_LEROBOT_HOME": str(tmp_path / "home")}
-    done = subprocess.run(
-        [commands / f"lerobot-{command}", *WORDS, *words],
-        env=os.environ | files | {"HF_HUB_OFFLINE": "1"},
-        capture_output=True,
+def run(commands: Path, command: str, folder: Path, *words: str) -> subprocess.CompletedProcess:
+    """Run a command of LeRobot with the shielded robot, which notes its goals in a folder."""
+    robot = ("--robot.type=shielded", "--robot.shield=arm_shield", "--robot.robot={type: ideal}")
+    own = {"GOALS_FILE": str(folder / "goals.npy"), "HF_LEROBOT_HOME": str(folder / "home")}
+    return subprocess.run(
+        [commands / f"lerobot-{command}", *robot, "--teleop.type=chunks", *words],
+        env=os.environ | own | {"HF_HUB_OFFLINE": "1"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
         text=True,
         timeout=300,
     )
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert "shield: joint" in done.stderr + done.stdout
-    goals = np.load(files["GOALS_FILE"])
+
+
+@pytest.mark.parametrize("command", ["record", "teleoperate"])
+def test_chunks_with_seams_break_no_limit(commands: Path, command: str, tmp_path: Path) -> None:
+    root = (f"--dataset.root={tmp_path / 'data'}",) if command == "record" else ()
+    done = run(commands, command, tmp_path, *WORDS[command], *root)
+    assert done.returncode == 0, done.stdout[-3000:]
+    for words in ("shoulder_pan lower", "shoulder_pan does not follow", "no number for each"):
+        assert f"shield: {words}" in done.stdout
+    goals = np.load(tmp_path / "goals.npy")
     assert len(goals) > 100
     assert len(set(goals[:, -1])) > 50  # the gripper goes through
     q = np.radians(goals[:, :-1])
     assert np.ptp(q, axis=0).min() > 0.1
     assert breaches(q, DT, *ROBOT.limits) == []
+    assert np.abs(q[50:100, 0] - q[50, 0]).max() < 0.5  # the motor that is stuck
     np.testing.assert_allclose(q[-1], q[-2], atol=1e-9)  # at rest before the motors are off
+
+
+def test_a_motor_is_one_joint(commands: Path, tmp_path: Path) -> None:
+    done = run(commands, "teleoperate", tmp_path, f"--robot.joints=[{','.join(5 * ['gripper'])}]")
+    assert "joints: ['gripper.pos'" in done.stdout

@@ -18,6 +18,8 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import TwistStamped
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+from rclpy.clock import Clock, ClockType
+from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
@@ -30,25 +32,25 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 NEWEST = QoSProfile(depth=1)
 """Reliable and volatile, as joint_state_broadcaster publishes; the last message alone counts."""
 
-LEAST = 1e-6
-"""Shortest period that a shield is told [s]."""
-
 REST = 1e-9
 """Velocity of a joint at rest [rad/s]: at a position limit it may back off by rounding."""
 
 REPORT = 0.1
 """Period of the diagnostics [s]."""
 
-PARAMETERS: dict[str, tuple[Any, str]] = {
-    "shield": ("", "name of the package that iiwa-dnn exported"),
-    "command": (("velocity", "position", "trajectory"), "what is sent"),
-    "pacing": (("joint_states", "timer"), "what begins a period"),
-    "base_frame": ("base_link", "frame of the twists that are accepted"),
-    "timeout": (0.1, "age up to which requests and joint states count [s]"),
-}
-"""Default, or choices of which the first is it, and meaning of each parameter."""
+COMMANDS = ("velocity", "position", "trajectory")
+"""Values of the parameter `command`."""
 
-TIMEOUTS = FloatingPointRange(from_value=1e-3, to_value=10.0)
+PARAMETERS = {
+    "shield": "",
+    "command": "velocity",
+    "base_frame": "base_link",
+    "timeout": 0.1,  # [s]
+    "following_error": 0.1,  # [rad]
+}
+"""Parameters and their defaults."""
+
+RANGE = FloatingPointRange(from_value=1e-3, to_value=10.0)
 
 
 class RefusedError(Exception):
@@ -56,196 +58,237 @@ class RefusedError(Exception):
 
 
 @dataclass
-class Cycle:
-    """Values that one period leaves for the next."""
+class Newest:
+    """The newest message of a kind.
 
-    time: float = 0.0  # of the last command [s]
-    command: Any = None  # the last one
-    measured: Any = np.nan  # joint positions (1, n) [rad]
-    seen: float = 0.0  # time of the last joint states [s]
-    fault: str = "no joint states"  # why measured positions do not count
-    request: dict[str, Any] = field(default_factory=dict)  # the last one
-    counts: tuple[float, float] = (0.0, 0.0)  # from when until when it counts [s]
-    refused: str = "no request"  # why it does not count
-    reason: str = ""  # why the arm brakes
-    longest: float = 0.0  # longest period since the last report [s]
+    Attributes:
+        kind: Words for the kind.
+        problem: Reason why the message does not count, or nothing.
+        value: Numbers of the last message without a problem, (1, k), by their name.
+        time: Time of its arrival, by the clock of the periods [s].
+        age: Age that it had then by its stamp [s].
+    """
 
+    kind: str
+    problem: str
+    value: dict[str, Any] = field(default_factory=dict)
+    time: float = 0.0
+    age: float = 0.0
 
-def seconds(stamp: Any) -> float:
-    """Return the time of a stamp [s]."""
-    return Time.from_msg(stamp).nanoseconds * 1e-9
+    def fault(self, now: float, timeout: float) -> str:
+        """Return why the message does not count at a time [s], or nothing."""
+        is_recent = 0.0 <= now - self.time <= timeout - self.age
+        return self.problem or ("" if is_recent else f"{self.kind} timed out")
 
 
 class ShieldNode(Node):
-    """Keep an arm within its limits whatever is requested."""
+    """Keep an arm within its limits whatever is requested.
 
-    def __init__(self, **options: Any) -> None:
+    Periods are those of a timer by a steady clock or, with `use_sim_time`, by /clock. `_step`
+    alone computes a command and decides whether to brake.
+    """
+
+    def __init__(self) -> None:
         """Read the parameters, load the shield, subscribe and advertise.
 
         Raises:
             RefusedError: A parameter has no such value, or the shield does not fit to it.
         """
-        super().__init__("shield", **options)
-        self._own = {name: self._parameter(name, *each) for name, each in PARAMETERS.items()}
+        super().__init__("shield")
+        self._set: dict[str, Any] = {}
+        for name, default in PARAMETERS.items():
+            about = ParameterDescriptor(read_only=True)
+            if isinstance(default, float):
+                about.floating_point_range = [RANGE]
+            self._set[name] = self.declare_parameter(name, default, about).value
+        if self._set["command"] not in COMMANDS:
+            raise RefusedError(f"parameter command: {self._set['command']!r} is none of {COMMANDS}")
+        name = self._set["shield"]
         try:
-            self._package = package = importlib.import_module(self._own["shield"])
-        except (ImportError, ValueError) as error:
-            raise RefusedError(f"parameter shield: {self._own['shield']!r}: {error}") from error
-        if self._own["command"] == "velocity" and package.LONGEST_PERIOD is None:
+            self._package = package = importlib.import_module(name)
+            # Of one arm: it brakes at joint positions that are not finite, where `Shield` raises.
+            self._shields = package.Shields(1)
+        except (AttributeError, ImportError, TypeError, ValueError) as error:
+            raise RefusedError(f"parameter shield: {name!r} is no such package: {error}") from error
+        self._takes_velocity = self._set["command"] == "velocity"
+        if self._takes_velocity and package.LONGEST_PERIOD is None:
             raise RefusedError("parameter command: velocity needs a shield with a longest_period")
-        self._longest = package.LONGEST_PERIOD or package.DT
-        # Of one arm: it brakes at joint positions that are not finite, where `Shield` raises.
-        self._shields = package.Shields(1)
-        self._cycle = Cycle()
-        takers = {
-            "~/delta_twist_cmds": (TwistStamped, "twist", self._twist),
-            "~/velocity_cmds": (Float64MultiArray, "dq", self._velocities),
-            "~/position_cmds": (JointTrajectory, "position", self._positions),
-        }
-        for topic, (message, kind, numbers) in takers.items():
-            self.create_subscription(message, topic, partial(self._take, kind, numbers), NEWEST)
-        self.create_subscription(JointState, "/joint_states", self._on_joint_states, NEWEST)
-        is_trajectory = self._own["command"] == "trajectory"
+        if not self._takes_velocity and package.DELAY:
+            raise RefusedError("parameter command: positions need a shield without a delay")
+        self._longest = package.LONGEST_PERIOD or self._set["timeout"]
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        is_simulated = self.get_parameter("use_sim_time").value
+        self._pace = self.get_clock() if is_simulated else steady
+        self._states = Newest("joint states", "no joint states")
+        self._request = Newest("request", "no request")
+        self._fault = "no joint states"  # why the arm brakes
+        self._began = (0.0, time.monotonic())  # the last period, by its clock and a steady one [s]
+        self._is_stalled = False  # whether /clock stands still
+        self._worst = 0.0  # longest period since the last report [s]
+        self._restart()
+        for topic, message, *taker in (
+            ("/joint_states", JointState, self._states, "q", self._measured),
+            ("~/delta_twist_cmds", TwistStamped, self._request, "twist", self._twist),
+            ("~/velocity_cmds", Float64MultiArray, self._request, "dq", self._velocities),
+            ("~/position_cmds", JointTrajectory, self._request, "position", self._positions),
+        ):
+            self.create_subscription(message, topic, partial(self._take, *taker), NEWEST)
+        is_trajectory = self._set["command"] == "trajectory"
         sent = JointTrajectory if is_trajectory else Float64MultiArray
         self._commands = self.create_publisher(sent, "~/commands", NEWEST)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self.create_service(Trigger, "~/halt", self._on_halt)
         self.create_service(Trigger, "~/reset", self._on_reset)
-        self.create_timer(package.DT, self._on_timer)
-        self.create_timer(REPORT, self._report)
+        self.create_timer(package.DT, self._on_timer, clock=self._pace)
+        self.create_timer(REPORT, self._report, clock=steady)
+        if is_simulated:
+            self.create_timer(package.DT, self._on_watch, clock=steady)
 
-    def _parameter(self, name: str, default: Any, text: str) -> Any:
-        """Declare a parameter that is set at the start alone; return its value."""
-        about = ParameterDescriptor(description=text, read_only=True)
-        if isinstance(default, float):
-            about.floating_point_range = [TIMEOUTS]
-        if not isinstance(default, tuple):
-            return self.declare_parameter(name, default, about).value
-        value = self.declare_parameter(name, default[0], about).value
-        if value not in default:
-            raise RefusedError(f"parameter {name}: {value!r} is none of {default}")
-        return value
+    def _restart(self) -> None:
+        """Forget commands, the request and why the arm is held."""
+        self._shields.reset()
+        self._request.problem = "no request"
+        self._held = ""  # why the arm brakes until ~/reset
+        self._command: Any = None  # the last one
+        self._seen: Any = None  # joint positions of the last period (1, n) [rad]
+        self._unseen: Any = 0.0  # commanded since each joint was last seen to move (1, n) [rad]
 
-    # ---- Requests
+    # ---- Messages
 
-    def _take(self, kind: str, numbers: Any, message: Any) -> None:
-        """Keep a request of a kind, or the reason why it is none."""
-        now = self._now()
-        stamp = seconds(message.header.stamp) if hasattr(message, "header") else 0.0
-        age = now - stamp if stamp else 0.0
-        timeout = self._own["timeout"]
+    def _take(self, newest: Newest, name: str, numbers: Any, message: Any) -> None:
+        """Keep the numbers of a message, or the reason why it does not count."""
         try:
-            if abs(age) > timeout:
-                raise RefusedError(f"request stamped {age:.3g} s ago")
-            self._cycle.request = {kind: np.array([numbers(message)])}
-            self._cycle.counts = (now, now + timeout - max(age, 0.0))
-            self._cycle.refused = ""
+            age = self._age(message)
+            value = np.array([numbers(message)], dtype=float)
+            if not np.isfinite(value).all():
+                raise RefusedError("not finite")
         except RefusedError as error:
-            self._cycle.refused = str(error)
+            newest.problem = f"{newest.kind} {error}"
+            return
+        newest.problem = ""
+        newest.value = {name: value}
+        newest.time, newest.age = self._now(), age
+
+    def _now(self) -> float:
+        return float(self._pace.now().nanoseconds * 1e-9)
+
+    def _age(self, message: Any) -> float:
+        """Return the age of a message by its stamp [s], 0 without one."""
+        stamp = Time.from_msg(message.header.stamp) if hasattr(message, "header") else Time()
+        if stamp.nanoseconds == 0:
+            return 0.0
+        age = float((self.get_clock().now() - stamp).nanoseconds * 1e-9)
+        if abs(age) > self._set["timeout"]:
+            raise RefusedError(f"stamped in the {'past' if age > 0.0 else 'future'}")
+        return max(age, 0.0)
 
     def _twist(self, message: TwistStamped) -> list[float]:
         frame = message.header.frame_id
-        if frame not in ("", self._own["base_frame"]):
-            raise RefusedError(f"request in frame {frame!r}, not {self._own['base_frame']!r}")
+        if frame not in ("", self._set["base_frame"]):
+            raise RefusedError(f"in frame {frame!r}, not {self._set['base_frame']!r}")
         linear, angular = message.twist.linear, message.twist.angular
         return [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
 
     def _velocities(self, message: Float64MultiArray) -> Any:
         count = len(self._package.JOINT_NAMES)
         if len(message.data) != count:
-            raise RefusedError(f"request of {len(message.data)} velocities, not {count}")
+            raise RefusedError(f"of {len(message.data)} velocities, not {count}")
         return message.data
 
     def _positions(self, message: JointTrajectory) -> list[float]:
         if len(message.points) != 1:
-            raise RefusedError(f"trajectory of {len(message.points)} points, not one")
+            raise RefusedError(f"of {len(message.points)} points, not one")
         return self._ordered(message.joint_names, message.points[0].positions)
 
+    def _measured(self, message: JointState) -> list[float]:
+        return self._ordered(message.name, message.position)
+
     def _ordered(self, names: Any, positions: Any) -> list[float]:
-        """Return positions in the order of the shield's joints, by their names."""
+        """Return positions [rad] in the order of the shield's joints, by their names."""
         found = dict(zip(names, positions, strict=False))
-        missing = [each for each in self._package.JOINT_NAMES if each not in found]
-        if missing:
-            raise RefusedError(f"joint {missing[0]!r} is missing")
+        if len(found) != len(names):
+            raise RefusedError("with a joint twice, or without positions")
+        for each in self._package.JOINT_NAMES:
+            if each not in found:
+                raise RefusedError(f"without joint {each!r}")
         return [found[each] for each in self._package.JOINT_NAMES]
 
     # ---- Periods
 
-    def _now(self) -> float:
-        return float(self.get_clock().now().nanoseconds * 1e-9)
-
-    def _on_joint_states(self, message: JointState) -> None:
-        cycle = self._cycle
-        cycle.seen = self._now()
-        cycle.fault = ""
-        try:
-            cycle.measured = np.array([self._ordered(message.name, message.position)])
-        except RefusedError as error:
-            cycle.fault = str(error)
-        if self._own["pacing"] == "joint_states":
-            self._step(seconds(message.header.stamp) or cycle.seen, cycle.measured)
-
     def _on_timer(self) -> None:
-        """Begin a period of the node's clock, or one that joint states fail to begin."""
-        cycle = self._cycle
-        now = self._now()
-        age = now - cycle.seen
-        is_paced = self._own["pacing"] == "timer"
-        dt = self._package.DT
-        patience = max(self._longest - dt, 1.5 * dt)
-        if age > (self._own["timeout"] if is_paced else patience):
-            cycle.fault = "joint states are silent"
-        elif not is_paced:
-            return
-        moved = 0.0 if cycle.command is None else age * cycle.command.dq
-        self._step(now, cycle.measured + moved)
+        """Begin a period of the clock, unless the timer makes up for one that was late."""
+        self._is_stalled = False
+        elapsed = self._now() - self._began[0]
+        if not 0.0 <= elapsed < 0.5 * self._package.DT:
+            self._step(elapsed)
 
-    def _step(self, now: float, q: Any) -> None:
-        """Send the command of a period that begins at a time [s], at positions q (1, n) [rad]."""
-        cycle = self._cycle
-        elapsed = now - cycle.time
-        if cycle.command is None:
+    def _on_watch(self) -> None:
+        """Begin a period while /clock stands still: the arm may not."""
+        age = time.monotonic() - self._began[1]
+        self._is_stalled = self._is_stalled or age > self._set["timeout"]
+        if self._is_stalled:
+            self._step(self._package.DT, "clock stands still")
+
+    def _step(self, elapsed: float, fault: str = "") -> None:
+        """Send the command of a period.
+
+        Args:
+            elapsed: Time since the last period began [s].
+            fault: Reason to brake.
+        """
+        now = self._now()
+        timeout = self._set["timeout"]
+        self._began = (now, time.monotonic())
+        is_first = self._command is None
+        if not is_first and not 0.0 < elapsed <= self._longest:
+            fault = fault or f"period not within {self._longest:g} s"
+        if is_first or not 0.0 < elapsed <= timeout:
             elapsed = self._package.DT
-            if cycle.fault or not np.isfinite(q).all():
-                return
-        if -self._longest < elapsed < LEAST:  # the timer has begun this period
-            return
-        cycle.time = now
-        cycle.longest = max(cycle.longest, elapsed)
-        said = cycle.reason
-        if not 0.0 < elapsed <= self._longest * (1.0 + 1e-6):
-            cycle.refused = f"period of {elapsed:.6g} s"
-            elapsed = self._package.DT  # of a clock that jumps; positions are measured anew
-        cycle.reason = self._why_none()
-        request = {"dq": np.zeros_like(q)} if cycle.reason else dict(cycle.request)
-        if self._own["command"] == "velocity":
-            request["elapsed"] = elapsed
-        else:
-            request["dt"] = self._package.DT
-        cycle.command = self._shields.step(np.nan * q if cycle.fault else q, **request)
-        code = cycle.command.reason[0]
-        if not cycle.reason and 0 < code <= self._package.Reason.Q_NOT_FINITE:
-            cycle.reason = self._shields.active_limits(0)[0]
-        self._send(cycle.command)
-        if cycle.reason != said:
+        self._worst = max(self._worst, elapsed)
+        blind = self._states.fault(now, timeout)
+        q = self._told(now, elapsed, blind)
+        before = self._fault
+        self._fault = self._held or fault or blind or self._request.fault(now, timeout)
+        if not (is_first and blind):
+            request = {"dq": np.zeros_like(q)} if self._fault else self._request.value
+            period = {"elapsed": elapsed} if self._takes_velocity else {"dt": self._package.DT}
+            self._command = self._shields.step(q, **request, **period)
+            self._send(self._command)
+        if self._fault != before:
             self._report()
 
-    def _why_none(self) -> str:
-        """Return why no request counts now, or nothing."""
-        cycle = self._cycle
-        begin, end = cycle.counts
-        if not cycle.refused and not begin <= self._now() <= end:
-            cycle.refused = "request timed out"
-        return cycle.fault or cycle.refused
+    def _told(self, now: float, elapsed: float, blind: str) -> Any:
+        """Return the joint positions (1, n) [rad] for the shield; hold an arm that does not follow.
+
+        Commanded positions never jump, so they are told as measured ones: the shield is then never
+        resynchronised.
+        """
+        measured = self._states.value.get("q")
+        command = self._command
+        if command is None:
+            self._seen = measured
+            return measured
+        q = measured + (now - self._states.time) * command.dq
+        unseen = self._unseen + elapsed * command.dq
+        if not blind and measured is not self._seen:
+            unseen = np.where(measured == self._seen, unseen, 0.0)
+            self._seen = measured
+            error = np.abs(unseen if self._takes_velocity else command.next_q - q)[0]
+            if error.max() > self._set["following_error"]:
+                name = self._package.JOINT_NAMES[error.argmax()]
+                self._held = self._held or f"joint {name!r} does not follow its commands"
+        self._unseen = unseen
+        if not self._takes_velocity:
+            return command.next_q
+        return np.nan * q if blind else q
 
     def _send(self, command: Any) -> None:
         """Publish a command in the form of the parameter."""
-        kind = self._own["command"]
-        if kind != "trajectory":
-            numbers = command.dq if kind == "velocity" else command.next_q
-            self._commands.publish(Float64MultiArray(data=numbers[0].tolist()))
+        numbers = (command.dq if self._takes_velocity else command.next_q)[0].tolist()
+        if self._set["command"] != "trajectory":
+            self._commands.publish(Float64MultiArray(data=numbers))
             return
-        point = JointTrajectoryPoint(positions=command.next_q[0].tolist())
+        point = JointTrajectoryPoint(positions=numbers)
         point.time_from_start.nanosec = round(1e9 * self._package.DT)
         message = JointTrajectory(joint_names=self._package.JOINT_NAMES, points=[point])
         self._commands.publish(message)
@@ -253,54 +296,52 @@ class ShieldNode(Node):
     # ---- Halt, reset, state
 
     def _on_halt(self, _: Any, response: Any) -> Any:
-        self._shields.halt()
+        self._held = "halted"
         response.success = True
         response.message = "brakes until ~/reset"
         return response
 
     def _on_reset(self, _: Any, response: Any) -> Any:
-        """Forget a halt and the request, if the arm is at rest."""
+        """Forget why the arm is held and the request, if it is at rest."""
         response.success = self._is_at_rest()
         response.message = "waits for requests" if response.success else "moves: ~/halt first"
         if response.success:
-            self._shields.reset()
-            self._cycle = Cycle()
+            self._restart()
         return response
 
     def _is_at_rest(self) -> bool:
         """Test whether the last command was one to rest, or there was none."""
-        command = self._cycle.command
-        return command is None or bool(np.abs(command.dq).max() <= REST)
+        return self._command is None or bool(np.abs(self._command.dq).max() <= REST)
 
     def come_to_rest(self, executor: Any) -> str:
         """Brake within the limits; return why that was not possible, or nothing."""
-        self._shields.halt()
-        end = time.monotonic() + 1.0 + 2.0 * self._shields.stopping_time(0)
+        self._held = "the node ends"
+        longest = 1.0 + self._set["timeout"] + 2.0 * self._shields.stopping_time(0)
+        end = time.monotonic() + longest
         while not self._is_at_rest() and time.monotonic() < end:
             executor.spin_once(timeout_sec=0.01)
-        return "" if self._is_at_rest() else f"velocities left: {self._cycle.command.dq.round(4)}"
+        return "" if self._is_at_rest() else f"velocities left: {self._command.dq.round(4)}"
 
     def _report(self) -> None:
-        cycle = self._cycle
-        status = DiagnosticStatus(name=f"{self.get_name()}: {self._own['shield']}")
-        if cycle.command is None:
-            status.level = DiagnosticStatus.STALE
-            status.message = cycle.fault
-        else:
+        """Publish whether and why the arm brakes, and how far it is from its limits."""
+        status = DiagnosticStatus(name=f"{self.get_name()}: {self._set['shield']}")
+        status.level = DiagnosticStatus.STALE
+        status.message = self._fault
+        if self._command is not None:
             limits = self._shields.active_limits(0)
             margin = self._shields.margin(0)
             status.level = DiagnosticStatus.WARN if limits else DiagnosticStatus.OK
-            status.level = DiagnosticStatus.ERROR if cycle.reason else status.level
-            status.message = cycle.reason or (limits[0] if limits else "follows the request")
+            status.level = DiagnosticStatus.ERROR if self._fault else status.level
+            status.message = self._fault or (limits[0] if limits else "follows the request")
             values = {
                 "active limits": "; ".join(limits),
                 "margin of joints [rad]": f"{margin.joint:.6g}",
                 "margin of distances [m]": f"{margin.distance:.6g}",
                 "stopping time [s]": f"{self._shields.stopping_time(0):.6g}",
-                "longest period [s]": f"{cycle.longest:.6g}",
+                "longest period [s]": f"{self._worst:.6g}",
             }
             status.values = [KeyValue(key=key, value=value) for key, value in values.items()]
-        cycle.longest = 0.0
+        self._worst = 0.0
         message = DiagnosticArray(status=[status])
         message.header.stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(message)
@@ -315,7 +356,7 @@ def main(args: list[str] | None = None) -> int:
         signal.signal(each, lambda number, _: signals.append(number))
     try:
         node = ShieldNode()
-    except RefusedError as error:
+    except (ParameterException, RefusedError) as error:
         print(error, file=sys.stderr)
         return 2
     executor = rclpy.executors.SingleThreadedExecutor()

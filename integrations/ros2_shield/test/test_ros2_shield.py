@@ -39,8 +39,7 @@ BALL = iiwa_dnn.Sphere(center=[0.36, 0.16, 0.64], radius=0.05)
 @pytest.fixture(scope="module")
 def python() -> Path:
     """Return the Python of the client library, the node and the exported shield."""
-    # A machine that stalls shows the arm late, and the test is not about that.
-    settings = {"longest_period": 0.02, "tracking_error": 0.5, "distance": DISTANCE}
+    settings = {"longest_period": 0.02, "tracking_error": 0.05, "distance": DISTANCE}
     shield = iiwa_dnn.Shield(ROBOT, dt=4e-3, obstacles=[BALL], **settings)
     folder = HERE.parents[2] / "build" / "ros2"
     return environment(folder, sys.executable, PACKAGES, shield, HERE.parent)
@@ -62,8 +61,8 @@ def node_with(python: Path, *settings: str, **options: Any) -> subprocess.Popen[
 @pytest.mark.parametrize(
     ("mode", "settings", "end"),
     [
-        ("waiting", ("use_sim_time:=true",), signal.SIGINT),
-        ("timed", ("pacing:=timer", "command:=trajectory"), signal.SIGTERM),
+        ("simulated", ("use_sim_time:=true", "timeout:=0.5"), signal.SIGINT),
+        ("timed", ("command:=trajectory", "following_error:=0.5"), signal.SIGTERM),
     ],
 )
 def test_no_limit_is_broken_and_the_node_says_why_it_brakes(

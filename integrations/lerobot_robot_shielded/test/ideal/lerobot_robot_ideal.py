@@ -1,4 +1,4 @@
-"""A robot without motors that notes its goals, and a teleoperator like a policy with bad seams."""
+"""An SO-101 without motors, and a teleoperator like a policy with bad seams."""
 
 import os
 from dataclasses import dataclass
@@ -7,26 +7,22 @@ import numpy as np
 from lerobot.robots import Robot, RobotConfig
 from lerobot.teleoperators import Teleoperator, TeleoperatorConfig
 
-NAMES = tuple(f"joint{k}" for k in range(1, 8))
-START = np.degrees([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
-FEATURES = {f"{name}.pos": float for name in (*NAMES, "gripper")}
+MOTORS = ("shoulder_pan", "shoulder_lift", "elbow_flex", "wrist_flex", "wrist_roll", "gripper")
+KEYS = [f"{each}.pos" for each in MOTORS]
 CHUNK = 15  # actions of a policy
 
 
 class Idle:
     """Parts of LeRobot's interfaces without motors."""
 
-    observation_features = action_features = feedback_features = FEATURES
+    observation_features = action_features = feedback_features = dict.fromkeys(KEYS, float)
     is_connected = is_calibrated = True
     cameras = ()
-
-    def connect(self, calibrate=True):
-        pass
 
     def nothing(self, *_):
         pass
 
-    calibrate = configure = send_feedback = disconnect = nothing
+    connect = calibrate = configure = send_feedback = disconnect = nothing
 
 
 @RobotConfig.register_subclass("ideal")
@@ -36,24 +32,27 @@ class IdealConfig(RobotConfig):
 
 
 class Ideal(Idle, Robot):
-    """A robot that is where it was told to be."""
+    """A robot that is where it was told to be; one motor is stuck for a while."""
 
     config_class = IdealConfig
     name = "ideal"
 
     def __init__(self, config):
         super().__init__(config)
-        self.goals = [[*START, 50.0]]
+        self.goals = [[0.0] * len(MOTORS)]
 
     def get_observation(self):
-        return dict(zip(FEATURES, self.goals[-1], strict=True))
+        shown = dict(zip(KEYS, self.goals[-1], strict=True))
+        if 50 < len(self.goals) < 100:
+            shown[KEYS[0]] = self.goals[50][0]
+        return shown
 
     def send_action(self, action):
-        self.goals.append([action[key] for key in FEATURES])
+        self.goals.append([action[key] for key in KEYS])
         return action
 
     def disconnect(self):
-        np.save(os.environ["GOALS_FILE"], self.goals)
+        np.save(os.environ.get("GOALS_FILE", "goals.npy"), self.goals)
 
 
 @TeleoperatorConfig.register_subclass("chunks")
@@ -75,10 +74,9 @@ class Chunks(Idle, Teleoperator):
 
     def get_action(self):
         if self.count % CHUNK == 0:
-            self.base = START + 60.0 * self.random.normal(size=len(NAMES))
-            self.slope = self.random.normal(size=len(NAMES))
+            self.base, self.slope = self.random.normal(size=(2, len(MOTORS)))
         self.count += 1
-        joints = self.base + self.slope * (self.count % CHUNK)
+        numbers = 60.0 * self.base + self.slope * (self.count % CHUNK)
         if self.count % 100 == 0:
-            joints = joints + np.nan
-        return dict(zip(FEATURES, [*joints, float(self.count % 100)], strict=True))
+            numbers[0] = np.nan
+        return dict(zip(KEYS, [*numbers[:-1], float(self.count % 100)], strict=True))
