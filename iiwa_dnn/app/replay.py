@@ -27,13 +27,6 @@ from iiwa_dnn.robot.shapes import visual_shapes
 PIECES = 300
 """Straight pieces of a drawn path, points of the curve, and parts of the time bar."""
 
-_STYLE = """<style>
-[style*="max-height: 60%"] { max-height: 40% !important }
-[style*="max-height: 60%"], [style*="max-height: 60%"] [style*="width: 20em"] {
-    width: 100% !important }
-</style>"""
-"""On a phone viser's controls would cover 60 % of the height, and leave a strip beside them."""
-
 
 def view(
     run: Positional[Path],
@@ -96,7 +89,6 @@ def serve(title: str, host: str, port: int) -> Any:
         raise InvalidInputError("--host, --port", problem, (host, port)) from error
     server = viser.ViserServer(host=host, port=port, label=title, verbose=False)
     server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
-    server.gui.add_html(_STYLE)
     server.scene.add_grid("/floor", width=3.0, height=3.0, cell_size=0.1, section_size=0.5)
     return server
 
@@ -113,18 +105,12 @@ def show_robot(server: Any, robot: Robot) -> Any:
 
 
 def aim(server: Any, point: Vector) -> None:
-    """Aim the cameras at the arm and a point before it (3,) [m]; on phones from farther off."""
+    """Aim the cameras at the arm and a point before it (3,) [m]."""
     middle = 0.6 * point + [0.0, 0.0, 0.2]
     # The first vector lies across the line from the base to the point.
     view = 1.6 * np.array([point[1], -point[0], 0.0]) + 0.4 * point + [0.0, 0.0, 0.4]
     server.initial_camera.look_at = tuple(middle)
     server.initial_camera.position = tuple(middle + view)
-
-    @server.on_client_connect  # type: ignore[untyped-decorator]
-    def step_back(client: Any) -> None:
-        if client.camera.aspect < 1.0:
-            client.camera.position = tuple(middle + 1.8 * view)
-            client.camera.look_at = tuple(middle - [0.0, 0.0, 0.4])
 
 
 def draw_path(server: Any, name: str, points: Matrix, color: tuple[int, int, int]) -> None:

@@ -67,8 +67,6 @@ class Disturbances:
             checks.integer(name, getattr(self, name), 0)
         if self.mass_error >= 1.0:
             raise InvalidInputError("mass_error", "must be below 1", self.mass_error)
-        if self.encoder_bits > 52:
-            raise InvalidInputError("encoder_bits", "is finer than a double", self.encoder_bits)
 
     @classmethod
     def typical(cls, push: Push | None = None) -> Disturbances:
@@ -99,7 +97,7 @@ class Encoder:
 
     def __init__(self, noise: float, bits: int, seed: int) -> None:
         self.noise = noise
-        self.step = 2.0 * math.pi / 2.0**bits if bits else 0.0
+        self.step = math.ldexp(2.0 * math.pi, -bits) if bits else 0.0
         self._rng = np.random.default_rng([seed, 1])
 
     def __call__(self, q: Vector) -> Vector:

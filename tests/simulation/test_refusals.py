@@ -60,7 +60,6 @@ REFUSED: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
     ),
     ("mass_error", Disturbances, {"mass_error": 1.0}),
     ("mass_error", Disturbances, {"mass_error": -0.1}),
-    ("encoder_bits", Disturbances, {"encoder_bits": 60}),
     ("delay_periods", Disturbances, {"delay_periods": -1}),
     ("push", Push, {"force": (1.0, 0.0)}),
     ("push", Push, {"force": (1.0, np.nan, 0.0)}),
