@@ -56,7 +56,7 @@ def view(
 
 
 def robot_of(record: Record, settings: Path, name: str | None = None) -> Robot:
-    """Load the robot of a record as a settings file describes it, else the record itself.
+    """Load the robot of a record by its settings file; without one, by the record's own settings.
 
     Raises:
         InvalidInputError: The robot's joints are not those of the record.
@@ -128,9 +128,9 @@ class Replay:
     Attributes:
         server: The page's ``viser.ViserServer``.
         record: The run.
-        playing: Checkbox: the time passes, and begins again at the end.
-        clock: Slider: the present time of the record [s].
-        marks: Bar below it, red where a policy acted.
+        playing: Checkbox: whether the time advances; after the end it begins again.
+        clock: Slider: time of the record that is shown [s].
+        marks: Bar below the slider, red at times at which a policy acted.
         speed: Menu: seconds of the record in a second.
         obstacles: Obstacles, and their meshes on the page.
     """

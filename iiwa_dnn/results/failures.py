@@ -20,10 +20,10 @@ the tip."""
 def failures(run: Record | Mapping[str, Any]) -> list[str]:
     """List the reasons why a run is not a success; its exit code is then 1.
 
-    A run fails if it did not complete its path, if a step was not solved, had no solution or broke
-    a limit, if it went beyond one of the robot's own that its scheme does not name (`unlimited`),
-    and, in converged mode, if a reference disagreed, gave no answer to be believed, or was not
-    asked.
+    A run fails if it did not complete its path, if a step broke a limit, or if joints exceeded a
+    limit of the robot that its scheme does not mention (`unlimited`). In converged mode it also
+    fails if a step was not solved or had no solution, or if a reference solver disagreed, was not
+    accurate enough to judge, or was not asked.
 
     Args:
         run: The record, or its metrics.

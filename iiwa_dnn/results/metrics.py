@@ -235,7 +235,7 @@ def _max(values: NDArray[Any]) -> Any:
 
 
 def _first(record: Record, acts: Any) -> dict[str, Any] | None:
-    """Count the steps that are true in `acts` (N,), and give the first; None if there is none."""
+    """Return number and first of the steps at which `acts` (N,) is true; None if at none."""
     steps = np.flatnonzero(acts)
     if not steps.size:
         return None

@@ -136,9 +136,9 @@ class Box(Obstacle):
     """A box.
 
     Attributes:
-        center: Its middle [m], (3,).
-        half_extents: Half of its edges [m], (3,), above 0.
-        rotation: Its axes in the world as columns, (3, 3); None: the world's.
+        center: Center [m], (3,).
+        half_extents: Halves of the edges [m], (3,), above 0.
+        rotation: Axes of the box in the world as columns, (3, 3); None: the world's.
     """
 
     _checks: ClassVar[checks.Checks] = {

@@ -61,7 +61,10 @@ def _jacobians(robot: Robot, postures: Array, reach: float) -> Array:
 
 
 def _count_collisions(robot: Robot, postures: Array) -> Array:
-    """Count the pairs of collision shapes that meet in some of the postures (k, n), (k,)."""
+    """Count the pairs of collision shapes that meet at each posture (k, n), (k,).
+
+    Pairs that meet at all postures are left out.
+    """
     geometry = pin.GeometryModel()
     with suppress(IiwaDnnError):  # no file, or a mesh is missing
         geometry = read_shapes(robot, pin.GeometryType.COLLISION)

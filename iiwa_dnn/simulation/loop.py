@@ -16,7 +16,7 @@ from iiwa_dnn.simulation.plants import Plant
 
 
 class Outcome(NamedTuple):
-    """What happened in one step of the loop.
+    """Outcome of one step of the loop.
 
     Attributes:
         commands: The controller's commands, one for each stage of the motion.
@@ -26,7 +26,7 @@ class Outcome(NamedTuple):
         placement: Placement of the first tracked frame before the step, of the true arm, (12,).
         action: Action in place of the network's answer.
         clipped: 1 for each joint whose command was clipped, (n,); None if no command may be.
-        sent: Command to a plant that moves in another way [rad/s], (n,); None for an exact one.
+        sent: Command to a plant that is not `Plant.exact` [rad/s], (n,); None for an exact one.
         torque: Largest joint torques of the step [N m], (n,); None for a plant without motors.
         ends: Whether the run ends before this step: a policy or the plant stopped it.
     """

@@ -388,7 +388,7 @@ class Size:
         schemes: Names of the schemes; the first is the league's, the others run undisturbed.
         disturbances: Names of the disturbances, ``none`` among them.
         work: Operations a control period.
-        seeds: Runs of each cell with chance in it, two or more: one has no interval.
+        seeds: Runs of each disturbed cell, two or more, so that there is an interval.
     """
 
     networks: Sequence[str] = tuple(NETWORKS)

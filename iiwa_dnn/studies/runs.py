@@ -185,9 +185,9 @@ def measure(run: HeartRun) -> dict[str, Any]:
 
 
 def total_variation(record: Record) -> float:
-    """Sum up the changes of a joint velocity from step to step [rad/s], of the joint with most.
+    """Return the largest total variation of a joint velocity over a run [rad/s].
 
-    A smooth run's is the sum of its ups and downs; chatter adds its height at every step.
+    It is the sum of the changes from step to step, so chatter adds its height at every step.
     """
     return float(np.abs(np.diff(record.dq, axis=0)).sum(axis=0).max())
 
