@@ -108,22 +108,19 @@ def physics(options: RunWords) -> int:
     return track(replace(options, plant=options.plant or "mujoco", out=options.out or usual))
 
 
-def _export_package(options: ExportWords, tables: Tables, arguments: Arguments) -> int:
-    """Write a shield with the robot, obstacles and period of the settings as a package."""
+def _shield(arguments: Arguments) -> Shield:
+    """Make a shield with the robot, obstacles, rate limits and period of the settings."""
     avoidance = avoidance_of(arguments.scheme)
-    shield = Shield(_limited(arguments), dt=arguments.settings.dt, obstacles=avoidance)
-    folder = options.out or Path(options.python)
-    check_folder(folder, tables, options.overwrite)
-    write_settings(folder, tables)
-    q0 = arguments.q0
-    platforms = options.platforms
-    exports.python(shield, folder, options.python, q0=q0, platforms=platforms, cuda=options.cuda)
-    if not np.isfinite(shield.robot.ddq_max).all():
-        line = "accelerations are not limited; for a real arm take --acceleration-limit"
-        print(line, file=sys.stderr)
-    if not options.quiet:
-        print(f"written to {folder}; to install it: pip install ./{folder}")
-    return 0
+    return Shield(_limited(arguments), dt=arguments.settings.dt, obstacles=avoidance)
+
+
+def _controller(arguments: Arguments) -> Controller:
+    """Make the controller of a run; raises InvalidInputError if its velocities are filtered."""
+    run = arguments.settings
+    if run.filter_window > 1:
+        raise InvalidInputError("filter_window", "is no part of a controller and is not exported")
+    kept = {name: getattr(run, name) for name in ("dt", "mode", "policy", "solver")}
+    return Controller(arguments.robot, arguments.scheme, arguments.reference, **kept)
 
 
 def _limited(arguments: Arguments) -> Robot:
@@ -139,28 +136,34 @@ def _limited(arguments: Arguments) -> Robot:
 def export(options: ExportWords) -> int:
     """Write the controller of a run as C99: one file without dependencies, and its tests.
 
-    With ``--python NAME`` a shield of its robot, among its obstacles, as a package of Python.
+    With ``--python NAME`` a shield of its robot, among its obstacles, as a package of Python; with
+    ``--controller`` the controller as one.
     """
     tables, arguments = _read(options)
-    if options.python:
-        return _export_package(options, tables, arguments)
-    run = arguments.settings
-    if run.filter_window > 1:
-        raise InvalidInputError("filter_window", "is no part of a controller and is not exported")
-    kept = {name: getattr(run, name) for name in ("dt", "mode", "policy", "solver")}
-    controller = Controller(arguments.robot, arguments.scheme, arguments.reference, **kept)
-    folder = options.out or Path("controller")
+    is_shield = options.python is not None and not options.controller
+    made = _shield(arguments) if is_shield else _controller(arguments)
+    folder = options.out or Path(options.python or "controller")
     check_folder(folder, tables, options.overwrite)
+    q0 = arguments.q0
+    if options.python is None:
+        exports.c99(made, folder, q0, overwrite=True)
+    else:
+        further: Any = {"platforms": options.platforms, "cuda": options.cuda}
+        exports.python(made, folder, options.python, q0=q0, overwrite=True, **further)
     write_settings(folder, tables)
-    exports.c99(controller, folder, arguments.q0)
-    robot = controller.robot
+    robot = made.robot
     lower, upper, _ = model_limits(robot.model)
-    if (robot.q_lower < lower).any() or (robot.q_upper > upper).any():
+    if not is_shield and ((robot.q_lower < lower).any() or (robot.q_upper > upper).any()):
         line = "position limits lie beyond the robot's own"
         print(f"{line}; for a real arm take --joint-limit datasheet", file=sys.stderr)
-    if tables["limits"].get("acceleration") == "none":
+    unlimited = tables["limits"].get("acceleration") == "none"
+    if is_shield:
+        unlimited = not np.isfinite(robot.ddq_max).all()
+    if unlimited:
         line = "accelerations are not limited; for a real arm take --acceleration-limit robot"
         print(line, file=sys.stderr)
     if not options.quiet:
-        print(f"written to {folder}; to test it: make -C {folder}")
+        place = folder if folder.is_absolute() else f"./{folder}"
+        ways = (f"install it: pip install {place}", f"test it: make -C {folder}")
+        print(f"written to {folder}; to {ways[options.python is None]}")
     return 0

@@ -193,6 +193,8 @@ class OfExports(Common):
 
     python: Annotated[str | None, shown("NAME")] = None
     """write a shield of the robot as a package of Python, in the folder NAME"""
+    controller: Flag = False
+    """write the run's controller as that package, in place of a shield"""
     platforms: Annotated[tuple[str, ...], shown("NAME ...")] = ()
     """machines that the package is compiled for here, by ziglang: linux_aarch64, ... or all"""
     cuda: Flag = False

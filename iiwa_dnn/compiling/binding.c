@@ -108,10 +108,5 @@ static inline bool keep(PyObject *object, PyObject **seen, const void *value, vo
     return true;
 }
 
-static inline PyObject *too_small(const char *name)
-{
-    PyErr_Format(PyExc_ValueError, "%s: an array is too small for the other arguments", name);
-    return NULL;
-}
 
 struct kernel { const char *name; void *address; const char *code; };

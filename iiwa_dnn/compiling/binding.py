@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from .kinds import FLOAT, VOID, Kind
-from .sizes import Reading, known_of
 from .sources import ENTRY
 from .translator import Function, Translator
 
@@ -78,8 +77,6 @@ def _wrapper(own: Function) -> str:
             place = f"given[{i}], &seen_{name}, &a_{name}, &kept_{name}, sizeof a_{name}"
             conditions = [f"(!is_seen({place}) && ({' || '.join(conditions)} || !keep({place})))"]
         read += conditions
-    known = {name: known_of(kind, f"a_{name}") for name, kind in kinds.items()}
-    needs = {} if own.translator.is_checked else Reading(own, known).needs
     if own.result is not VOID:
         call = f"result = {call}"
     if own.translator.is_checked:
@@ -92,7 +89,6 @@ def _wrapper(own: Function) -> str:
         *kept,
         *(f"    {kind.tag} a_{name};" for name, kind in kinds.items()),
         f"    if ({' || '.join(read)}) return NULL;",
-        *(f'    if (!({need})) return too_small("{own.name}");' for need in needs),
         f"    {own.result.tag} result;" * (own.result is not VOID),
         "    (void)self;",
         f"    {call}",

@@ -37,6 +37,9 @@ from iiwa_dnn.schemes.step import TARGET_SIZE
 STEPS = 500
 """Steps of the vectors."""
 
+VECTORS = "vectors.csv"
+"""File that every export holds: steps of a run."""
+
 PLATFORMS = {
     "linux_x86_64": "x86_64-linux-gnu.2.17",
     "linux_aarch64": "aarch64-linux-gnu.2.17",
@@ -55,15 +58,18 @@ def c99(
     made: Controller | Shield,
     folder: str | os.PathLike[str],
     q0: ArrayLike | None = None,
+    overwrite: bool = False,
 ) -> Path:
     """Write a controller or a shield as a folder of C99.
 
     Args:
         made: The controller or shield; it stays as it is. The twists of a shield are those of its
             robot's tip.
-        folder: The folder; files of an earlier export are overwritten.
+        folder: The folder, which is new, empty, or holds an earlier export, whose files are
+            overwritten.
         q0: Joint positions where the arm begins [rad], (n,): the home of a scheme without one, and
             the beginning of the vectors; None: where the controller is, or the start posture.
+        overwrite: Write into a folder that holds other files too.
 
     Returns:
         The folder.
@@ -71,14 +77,27 @@ def c99(
     Raises:
         InvalidInputError: A part of the controller is not compiled or cannot be translated; it is
             named.
-        FileError: The folder cannot be written.
+        FileError: The folder holds other files, or cannot be written.
     """
     texts = _texts(made, None, q0)
-    folder = prepare_folder(folder)
-    write_csv(folder / "vectors.csv", *texts["vectors"])
+    folder = _claimed(folder, VECTORS, overwrite)
+    write_csv(folder / VECTORS, *texts["vectors"])
     for path in _templates("c", texts["kind"]):
         write_text(folder / path.name, filled(path, texts))
     return folder
+
+
+def _claimed(folder: str | os.PathLike[str], mark: str, overwrite: bool) -> Path:
+    """Make the folder of an export, and return it.
+
+    Raises:
+        FileError: It holds files and none that matches the pattern `mark`, unless `overwrite`.
+    """
+    folder = Path(folder)
+    if not overwrite and any(folder.glob("[!.]*")) and not any(folder.glob(mark)):
+        problem = "holds other files than an export: choose another folder, or overwrite=True"
+        raise FileError(folder, problem)
+    return prepare_folder(folder)
 
 
 def _templates(*folders: str) -> list[Path]:
@@ -93,6 +112,7 @@ def python(
     q0: ArrayLike | None = None,
     platforms: Sequence[str] = (),
     cuda: bool = False,
+    overwrite: bool = False,
 ) -> Path:
     """Write a controller or a shield as a package of Python that needs numpy alone.
 
@@ -101,12 +121,13 @@ def python(
 
     Args:
         made: The controller or shield; it stays as it is.
-        folder: The folder of the project; files of an earlier export are overwritten.
+        folder: The folder of the project, as for `c99`.
         name: Name by which the package is imported.
         frame: Frame of a shield's twists; None stands for the tip.
         q0: As for `c99`.
         platforms: Machines of `PLATFORMS`, or ``"all"``.
         cuda: Write a shield's ``Shields(count, device="cuda")`` too, compiled where it is used.
+        overwrite: As for `c99`.
 
     Returns:
         The folder.
@@ -115,17 +136,20 @@ def python(
         InvalidInputError: The name is none of a package, or a part has no C; it is named.
         NotFoundError: There is no such frame or platform.
         MissingDependencyError: `platforms` are given, and ziglang is not installed.
-        FileError: The folder cannot be written.
+        FileError: The folder holds other files, or cannot be written.
     """
-    if not re.fullmatch("[a-z][a-z0-9_]*", name) or keyword.iskeyword(name):
+    if not re.fullmatch("[a-z][a-z0-9_]*", name):
         raise InvalidInputError("name", f"must be small letters, digits and _, not {name!r}", name)
+    if keyword.iskeyword(name):
+        problem = f"must be no keyword of Python, as {name!r} is: no module can be imported by it"
+        raise InvalidInputError("name", problem, name)
     texts = _texts(made, frame, q0) | {"name": name, "package_version": "0.1.0"}
     kind = texts["kind"]
     if cuda and kind != "shield":
         raise InvalidInputError("cuda", "is for a shield", made)
     texts["extras"] = filled(PARTS / "cuda.toml", {}) * cuda
-    package = prepare_folder(Path(folder) / name)
-    write_csv(package / "vectors.csv", *texts["vectors"])
+    package = prepare_folder(_claimed(folder, f"*/{VECTORS}", overwrite) / name)
+    write_csv(package / VECTORS, *texts["vectors"])
     sources = [TEMPLATES / kind / f"{kind}{end}" for end in (".c", ".h")]
     for path in (*sources, *_templates("python", f"python_{kind}")):
         is_outer = path.name in ("README.md", "hatch_build.py.in", "pyproject.toml.in")

@@ -50,5 +50,20 @@ def test_a_shield_of_the_settings_becomes_a_package(tmp_path, capsys, monkeypatc
     assert "accelerations are not limited" in capsys.readouterr().err
     assert call(*words[:2], "my-shield", "--overwrite") == 2
     assert "name: must be" in capsys.readouterr().err
+    assert call(*words[:2], "class", "--overwrite") == 2
+    assert "no keyword of Python, as 'class' is" in capsys.readouterr().err
+    assert not (tmp_path / "class").exists()
     assert call(*words, "--overwrite", "--platforms", "amiga") == 2
     assert "amiga" in capsys.readouterr().err
+
+
+def test_a_controller_of_the_settings_becomes_a_package(tmp_path, capsys, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = ("export", "--python", "drawing", "--controller", "--reference", "circle")
+    assert call(*words, "--dt", "2e-3", "--acceleration-limit", "none") == 0
+    captured = capsys.readouterr()
+    assert "pip install ./drawing" in captured.out
+    assert "accelerations are not limited" in captured.err
+    text = (tmp_path / "drawing" / "drawing" / "__init__.py").read_text(encoding="utf-8")
+    assert "class Controller" in text
+    assert "DT = 0.002" in text

@@ -16,9 +16,6 @@ from helpers_simulation import heart, paper_robot
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.export.folder import run
 from iiwa_dnn.networks.integrators.implicit import solve
-from iiwa_dnn.qp.dense import factor_solve, is_convex, row_dot, times
-from iiwa_dnn.qp.layout import copied
-from iiwa_dnn.qp.residuals import point_of_state, residuals_of
 from iiwa_dnn.references.base import enter_path
 from iiwa_dnn.references.shapes import heart_path
 from iiwa_dnn.schemes.parts import enter_limit
@@ -146,36 +143,3 @@ def test_whole_steps_have_the_same_bits_interpreted() -> None:
     assert results[0] == results[1]
     actions = {float(line.split()[-1]) for line in results[0]}
     assert actions == {Action.NONE, Action.SLOW, Action.RELAX, Action.STOP}
-
-
-_TOO_SMALL = "too small for the other arguments|is none of an axis|out of bounds"
-
-
-def test_arrays_that_are_too_small_for_a_kernel_are_refused() -> None:
-    """Each call would read or write beyond an array; with the least sizes it is answered.
-
-    What is left out has no array beside it that is larger, or is read behind a condition alone. A
-    checked build, and Python, refuse the index itself.
-    """
-    free = ((copied, 1), (times, 0), (is_convex, 0), (factor_solve, 0), (point_of_state, 4))
-    full = {
-        copied: (np.zeros(6), np.arange(6.0)),
-        times: (np.eye(3), np.ones(3), np.zeros(3)),
-        is_convex: (np.eye(3), np.empty((3, 3))),
-        factor_solve: (np.eye(3), np.ones(3), np.zeros(3)),
-        residuals_of: (np.zeros(25), 2, 2, 3, np.zeros(9)),
-        point_of_state: (np.zeros(25), 2, 2, 3, np.zeros(7), np.zeros(9)),
-    }
-    for kernel, arguments in full.items():
-        kernel(*arguments)
-        for i, argument in enumerate(arguments):
-            if not isinstance(argument, np.ndarray):
-                larger = [*arguments[:i], argument + 1, *arguments[i + 1 :]]
-                with pytest.raises((ValueError, IndexError), match=_TOO_SMALL):
-                    kernel(*larger)
-            elif (kernel, i) not in free:
-                smaller = [*arguments[:i], argument[:-1].copy(), *arguments[i + 1 :]]
-                with pytest.raises((ValueError, IndexError), match=_TOO_SMALL):
-                    kernel(*smaller)
-    with pytest.raises((ValueError, IndexError), match=_TOO_SMALL):
-        row_dot(np.eye(3), 3, np.zeros(3))

@@ -18,7 +18,7 @@ from hostile_arms import START, make_shield
 from iiwa_dnn import DoubleIndicator
 from iiwa_dnn.compiling import build
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.export import ExportedController, c99, load
+from iiwa_dnn.export import ExportedController, c99, load, python
 from iiwa_dnn.export.folder import run as run_controller, take_exported_kinematics
 from iiwa_dnn.studies.runs import paper_robot
 
@@ -354,6 +354,23 @@ def test_the_controller_that_is_exported_stays_as_it_is(tmp_path: Path) -> None:
     c99(controller, tmp_path)
     np.testing.assert_array_equal(controller._state.numbers, twin._state.numbers)
     np.testing.assert_array_equal(controller.step(q0, 0.0).dq, twin.step(q0, 0.0).dq)
+
+
+def test_the_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
+    controller, q0 = drawing()
+    (tmp_path / "Makefile").write_text("mine")
+    for write in (
+        lambda **own: c99(controller, tmp_path, q0, **own),
+        lambda **own: python(controller, tmp_path, "a_controller", q0=q0, **own),
+    ):
+        with pytest.raises(FileError, match="holds other files than an export"):
+            write()
+        assert [each.name for each in tmp_path.iterdir()] == ["Makefile"]
+    python(controller, tmp_path, "a_controller", q0=q0, overwrite=True)
+    python(controller, tmp_path, "a_controller", q0=q0)  # as an earlier export is there
+    c99(controller, tmp_path, q0, overwrite=True)
+    c99(controller, tmp_path, q0)
+    assert (tmp_path / "Makefile").read_text(encoding="utf-8") != "mine"
 
 
 def test_without_a_reference_the_vectors_follow_a_figure(tmp_path: Path) -> None:
