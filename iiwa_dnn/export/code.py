@@ -47,6 +47,7 @@ from iiwa_dnn.export.tables import (
     about_members,
     braced,
     constant,
+    function_table,
     path_constants,
     program_constants,
     robot_labels,
@@ -328,19 +329,18 @@ class _Code:
         network = plan.network._replace(
             rates=self._part(plan.network.rates), address=self._part(plan.network.address)
         )
-        arrays = self._renumbered(plan.arrays, Column.ADDRESS)
-        paths = self._renumbered(plan.paths, PathColumn.ADDRESS)
+        arrays = self._renumbered(plan.arrays, Column)
+        paths = self._renumbered(plan.paths, PathColumn)
         return plan._replace(arrays=arrays, network=network, paths=paths)
 
-    def _renumbered(self, own: Any, column: int) -> Any:
-        """Return blocks or paths with the numbers of parts in a column of their table."""
+    def _renumbered(self, own: Any, columns: type[IntEnum]) -> Any:
+        """Return parts or paths whose table holds numbers of functions in place of addresses."""
+        address = columns["ADDRESS"]
         table = own.table.copy()
-        table[:, column] = [*map(self._part, table[:, column].tolist())]
-        made = own._replace(table=table)
-        names = [self._parts[number - 1].name for number in table[:, column].tolist()]
-        rows = Node.of(rows_of(made, "table"), {"table": names}, "table")
-        self._named[type(own), "table"] = rows
-        return made
+        table[:, address] = [*map(self._part, table[:, address].tolist())]
+        names = [self._parts[k - 1].name for k in table[:, address].tolist()]
+        self._named[type(own), "table"] = function_table(table, columns, names)
+        return own._replace(table=table)
 
     def _part(self, address: int) -> int:
         """Translate the function at an address, once; return its number."""

@@ -17,8 +17,8 @@ import numpy as np
 from iiwa_dnn.compiling.expressions import number
 from iiwa_dnn.compiling.kinds import attributes, commented
 from iiwa_dnn.compiling.records import Record
-from iiwa_dnn.control.cycle import PathColumn, Paths
 from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp.layout import IntMatrix
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot.kinematics import Placement
@@ -27,7 +27,7 @@ from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.parts import Part
-from iiwa_dnn.schemes.program import BlockKind, Column, ProgramArrays
+from iiwa_dnn.schemes.program import BlockKind, Column
 from iiwa_dnn.schemes.scene import Body, Pair, SceneViews, scene_views
 
 Labels = Mapping[str, Sequence[str]]
@@ -36,16 +36,14 @@ Labels = Mapping[str, Sequence[str]]
 SHORT = 100
 """Longest initializer that stays on one line."""
 
-_ROWS: dict[tuple[type, str], type] = {
+_ROWS: dict[tuple[type, str], type[Record]] = {
     (ModelTables, "joints"): Placement,
     (ModelTables, "offsets"): Placement,
     (ModelTables, "bodies"): PrincipalAxes,
-    (ProgramArrays, "table"): Column,
-    (Paths, "table"): PathColumn,
     (SceneViews, "bodies"): Body,
     (SceneViews, "pairs"): Pair,
 }
-"""Records in the rows of the matrices of named tuples, or enumerations of their columns."""
+"""Records in the rows of the matrices of named tuples."""
 
 
 class Node(NamedTuple):
@@ -63,25 +61,32 @@ class Node(NamedTuple):
 
     @classmethod
     def of(cls, own: Any, labels: Labels, key: str = "") -> Node:
-        """Read a record, a named tuple, a dictionary or list of such, an array or a number."""
-        if isinstance(own, cls):
-            return own
-        if isinstance(own, Record) and own.ndim == 1:
-            shapes = own.members.items()
-            keys = {name: str(shape[0]) if shape else "" for name, shape in shapes}
-            items = {name: getattr(own, name) for name in keys}
-            inner = {k: cls.of(item, labels, keys[k]) for k, item in items.items() if np.size(item)}
-            return cls(inner, about=about_members(own))
-        if isinstance(own, tuple):
-            fields: Sequence[str] = own._fields  # type: ignore[attr-defined]
-            rows = {name: rows_of(own, name) for name in fields}
-            return cls.of(rows, labels)._replace(about=about_members(own))
-        if isinstance(own, dict):
-            return cls({name: cls.of(item, labels, name) for name, item in own.items()})
-        if isinstance(own, np.ndarray | list):
-            elements: Any = own if isinstance(own, Record | list) else own.tolist()
+        """Read a record, a named tuple, an array of numbers or of records, or a number.
+
+        Args:
+            own: What is read.
+            labels: Comments on the elements of arrays.
+            key: Name of its own labels.
+        """
+        if isinstance(own, tuple) or (isinstance(own, Record) and own.ndim == 1):
+            return cls.struct(own, labels)
+        if isinstance(own, np.ndarray):
+            elements: Any = own if isinstance(own, Record) else own.tolist()
             return cls([cls.of(each, labels) for each in elements], labels.get(key, ()))
+        if isinstance(own, list):
+            return cls([cls.of(each, labels) for each in own])
         return cls(own)
+
+    @classmethod
+    def struct(cls, own: Any, labels: Labels) -> Node:
+        """Read the members of a record or a named tuple that are not empty."""
+        if isinstance(own, Record):
+            keys = {name: str(shape[0]) if shape else "" for name, shape in own.members.items()}
+        else:
+            keys = {name: name for name in own._fields}
+        items = {name: rows_of(own, name) for name in keys}
+        inner = {k: cls.of(each, labels, keys[k]) for k, each in items.items() if np.size(each)}
+        return cls(inner, about=about_members(own))
 
     def declaration(self, name: str, kind: str) -> str:
         """Declare a variable or member of C whose numbers are of a type."""
@@ -145,21 +150,21 @@ def about_members(own: object) -> dict[str, str]:
 
 
 def rows_of(own: Any, name: str) -> Any:
-    """Return a member of a named tuple, the rows of a matrix by the names of their numbers."""
-    rows = getattr(own, name)
+    """Return a member; the rows of a matrix that holds records, as those."""
     kind = _ROWS.get((type(own), name))
-    if kind is None:
-        return rows
-    if issubclass(kind, IntEnum):
-        names = [column.name.lower() for column in kind]
-        made = [dict(zip(names, row, strict=True)) for row in rows.tolist()]
-        made = [row | {"kind": BlockKind(row["kind"])} if "kind" in row else row for row in made]
-        about = attributes(cleandoc(kind.__doc__ or ""))
-        return [
-            Node.of(row, {})._replace(about={k.lower(): own for k, own in about.items()})
-            for row in made
-        ]
-    return kind.of(rows)  # type: ignore[attr-defined]
+    return kind.of(getattr(own, name)) if kind else getattr(own, name)
+
+
+def function_table(table: IntMatrix, columns: type[IntEnum], functions: Sequence[str]) -> Node:
+    """Read a table of parts or paths by the names of its columns, each row beside its function."""
+    about = attributes(cleandoc(columns.__doc__ or ""))
+    rows = []
+    for row in table.tolist():
+        members = {own.name.lower(): Node(row[own]) for own in columns}
+        if columns is Column:
+            members["kind"] = Node(BlockKind(row[Column.KIND]))
+        rows.append(Node(members, about={name.lower(): text for name, text in about.items()}))
+    return Node(rows, functions)
 
 
 def robot_labels(robot: Robot, frames: Sequence[int]) -> Labels:
