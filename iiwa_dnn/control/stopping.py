@@ -327,7 +327,7 @@ def keeps_distances(
         ends = ends_of(scene, placed, pair.second)
         for at in range(2):
             end = ends[at]
-            if pair.still == at + 1:
+            if pair.unmoved_end == at + 1:
                 continue
             x, coefficient = _along(motion, arrays.jacobian, pair, end, contact.normal)
             displacement = end_displacement(motion, x, coefficient, dt)

@@ -1,21 +1,19 @@
 r"""Collision avoidance: two inequality rows for each pair of bodies that could meet.
 
 For a pair at distance :math:`d`, with the unit normal :math:`n` from the first body to the second,
-each end :math:`x` of the second body's segment gives one row. The end is :math:`\eta \ge 0` farther
-away along the normal than the nearest point. The row is a velocity damper,
+each end :math:`x` of the second body's segment has one row. Along the normal the end is
+:math:`\eta \ge 0` farther away than the nearest point. The row is a velocity damper,
 
 .. math::  n \cdot \dot x \;\ge\; v_o - \kappa\,(d + \eta - d_s - \mu - \varepsilon)
 
-with the obstacle's bound on its speed :math:`v_o`, `CLEARANCE` :math:`\mu`, and the part
-:math:`\varepsilon` of the distance that a step like the last one may take although its row holds,
-since points move on curves. The rows guide; a command is given only if the distance holds on the
-motion to rest from it (`iiwa_dnn.control.stopping`).
+with the speed :math:`v_o` of the obstacle, `CLEARANCE` :math:`\mu`, and a bound
+:math:`\varepsilon` on the distance that a step like the last one loses although its row holds, as
+points move on curves. The rows keep the distance to first order; what guarantees it is the stopping
+motion that is verified for each command (`iiwa_dnn.control.stopping`).
 
 Source: B. Faverjon, P. Tournassoud, "A local based approach for path planning of manipulators with
 a high number of degrees of freedom", ICRA 1987.
 """
-
-from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
@@ -56,22 +54,22 @@ ENDS = 2
 """Rows of a pair, one for each end of the segment of its second body."""
 
 CLEARANCE = 1e-6
-"""Distance beyond the least at which a pair comes to rest [m]. Paths along an obstacle are curved:
-an arm
-that rests at the least distance itself could not stop from any of them, and would stay there."""
+"""Distance beyond the least one at which a pair comes to rest [m]. Points move along an obstacle on
+curves: from the least distance itself, no stopping motion would keep it, and the arm could not
+leave."""
 
 MEET = np.inf
-"""Distance that marks a pair that meets without a normal: the arm is stopped."""
+"""Distance to keep that marks a pair which overlaps without a normal: the arm is stopped."""
 
 
 @compiled
 def collision_rows(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
-    """Write the rows of the ends that are nearest to being active.
+    """Write G (rows, n) and h (rows,) of the ends of pairs whose rows have the least slack.
 
-    They go into G (rows, n) and h (rows,); `constants` (k,) are `Scene.constants`, and the bounds
-    lb (n,) and ub (n,) stay.
+    `constants` are `Scene.constants`. Writes G, h and, by `kept_distance`, step.least; lb and ub
+    stay.
     """
     dof = step.q.size
     scene = scene_views(constants, dof)
@@ -107,9 +105,19 @@ def _write_ends(
     limits: Vector,
     slacks: Vector,
 ) -> None:
-    """Write gradients (c, n), right-hand sides (c,) and slacks (c,) of both ends of pair k.
+    """Write the candidate rows of both ends of pair k, the numbers 2 k and 2 k + 1 of c candidates.
 
-    A pair that is too far away for any velocity within the limits is left out.
+    They are not written for a pair so far away that no velocity within the limits breaks its rows.
+    Writes step.least at the pair, gradients, limits and slacks.
+
+    Args:
+        step: The instant.
+        scene: The scene, b bodies.
+        placed: Placements of the bodies, (b, 12).
+        k: Index of the pair in the scene.
+        gradients: Rows of G, (c, n).
+        limits: Right-hand sides h, (c,).
+        slacks: Least slack of each row within the velocity limits, (c,).
     """
     contact = contact_of(scene, k, placed)
     pair = Pair.of(scene.pairs[k])
@@ -129,7 +137,7 @@ def _write_ends(
     is_point = Body.of(scene.bodies[pair.second]).half[2] == 0.0
     eps = second_order(pair, travel)
     for at in range(1 if is_point else ENDS):
-        if pair.still == at + 1:
+        if pair.unmoved_end == at + 1:
             continue
         row = ENDS * k + at
         left = contact.distance + height_of(ends[at], contact) - least - CLEARANCE
@@ -150,16 +158,16 @@ def _write_ends(
 
 @compiled
 def kept_distance(scene: SceneViews, contact: Contact, kept: float) -> float:
-    """Compute the distance that a pair has to keep from now on [m], `MEET` if it has no normal.
+    """Compute the distance that a pair has to keep from now on [m]; `MEET` if it has no normal.
 
-    It is the scene's, but for a pair that begins nearer: until that is beyond, it is `CLEARANCE`
-    less than where it began. (Were it where the pair has been farthest, a pair could not come back
-    from the greatest distance that its link admits, and would hold the arm there.)
+    It is the least distance of the scene. A pair that begins nearer than that has to keep the
+    distance with which it began, less `CLEARANCE`, until it is beyond the scene's. (If it had to
+    keep the largest distance so far, a pair at the end of its link's range could not come back.)
 
     Args:
         scene: The scene.
         contact: The pair's contact.
-        kept: The distance that it has to keep so far [m]; 0 at the beginning.
+        kept: Distance that the pair had to keep so far [m]; 0 at the beginning.
     """
     if dot(contact.normal, contact.normal) == 0.0:
         return MEET
@@ -176,7 +184,7 @@ def kept_distance(scene: SceneViews, contact: Contact, kept: float) -> float:
 
 @compiled
 def _rank(slacks: Vector, k: int) -> int:
-    """Count the candidates (c,) that are nearer to being active than one of them."""
+    """Count the candidates whose slacks (c,) are less than that of candidate k."""
     rank = 0
     for i in range(slacks.size):
         rank += slacks[i] < slacks[k] or (slacks[i] == slacks[k] and i < k)
@@ -184,13 +192,13 @@ def _rank(slacks: Vector, k: int) -> int:
 
 
 def tuple_of_obstacles(argument: str, value: Any) -> tuple[Obstacle, ...]:
-    """Return obstacles, or the one that is given alone, as a tuple; refuse any other value."""
+    """Return one obstacle or several as a tuple; refuse any other value."""
     obstacles = value if isinstance(value, Iterable) else (value,)
     return tuple(checks.instance(argument, obstacle, Obstacle) for obstacle in obstacles)
 
 
 def pairs_of_names(argument: str, value: Any) -> tuple[tuple[str, str], ...]:
-    """Return pairs of names as tuples; refuse any other value."""
+    """Return a list of pairs of names as a tuple of tuples; refuse any other value."""
     pairs = value if isinstance(value, list | tuple) else [value]
     if not all(
         isinstance(pair, list | tuple) and [*map(type, pair)] == [str, str] for pair in pairs
@@ -203,19 +211,18 @@ def pairs_of_names(argument: str, value: Any) -> tuple[tuple[str, str], ...]:
 class CollisionAvoidance(Limit):
     """Rows that keep the links away from obstacles and from each other.
 
-    No pair comes nearer than `distance`, between steps neither, as long as the arm begins at rest
-    and follows the command, `JointLimits` are among the limits, obstacles stand still, and no more
-    than `nearest` rows matter at once. A pair that begins nearer comes no nearer than it began,
-    until it is beyond; it is not asked to retreat. One that no joint moves is left out.
+    No pair comes nearer than `distance`, not even between steps, if the arm begins at rest and
+    follows the commands, `JointLimits` are among the limits, obstacles stand still, and at most
+    `nearest` rows are active at once. A pair that begins nearer than `distance` comes no nearer
+    than it began, until it is beyond `distance`. A pair that no joint moves is left out.
 
     Attributes:
         obstacles: The obstacles.
         self_collision: Whether pairs of links are watched too.
         distance: Least distance [m], above 0.
         gain: Largest rate at which a distance shrinks towards `distance` [1/s], above 0.
-        nearest: Most rows; of more, those that are nearest to being active count.
-        left_out: Pairs that are not watched: the names of a link and of what it may meet, as in
-            `Scene.pairs`.
+        nearest: Largest number of rows; the program has those with the least slack.
+        left_out: Pairs that are not watched, each as two names of `Scene.pairs` in any order.
     """
 
     kernel = staticmethod(collision_rows)
@@ -235,7 +242,7 @@ class CollisionAvoidance(Limit):
     left_out: Sequence[tuple[str, str]] = ()
 
     @classmethod
-    def from_toml(cls, path: str | os.PathLike[str]) -> CollisionAvoidance:
+    def from_toml(cls, path: str | os.PathLike[str]) -> "CollisionAvoidance":
         """Read parameters, and a table ``[[obstacle]]`` for each obstacle, from a file.
 
         Raises:
@@ -251,12 +258,12 @@ class CollisionAvoidance(Limit):
 
     @lru_cache(maxsize=8)  # noqa: B019  few parts, few robots
     def scene(self, robot: Robot) -> Scene:
-        """Return bodies and pairs for a robot; raises what `make_scene` does."""
+        """Return the scene for a robot; raises the errors of `make_scene`."""
         distances = (self.distance, self.gain)
         return make_scene(robot, self.obstacles, self.self_collision, distances, self.left_out)
 
     def pairs(self, robot: Robot) -> list[tuple[str, float]]:
-        """Return the names in words and the least distance [m] of each watched pair."""
+        """Return for each watched pair its name in words and the least distance [m]."""
         return [(f"{b} and {a}", self.distance) for a, b in self.scene(robot).pairs]
 
     def row_count(self, robot: Robot) -> int:
@@ -264,16 +271,16 @@ class CollisionAvoidance(Limit):
         return min(self.nearest, ENDS * len(self.scene(robot).pairs))
 
     def row_names(self, robot: Robot) -> list[str]:
-        """Return the pair of each row; none where rows change their pair."""
+        """Return the pair of each row; none if there are more pairs than rows."""
         names = [name for name, _ in self.pairs(robot) for _ in range(ENDS)]
         return names if len(names) <= self.nearest else []
 
     def extra_frames(self, robot: Robot) -> tuple[str, ...]:
-        """Return the links whose placements the rows need."""
+        """Return the names of the links whose placements the kernel reads."""
         return self.scene(robot).frames
 
     def constants(self, robot: Robot) -> Vector:
-        """Return `Scene.constants`, (k,)."""
+        """Return the constants of the scene, (k,)."""
         return self.scene(robot).constants
 
     @property
@@ -282,17 +289,17 @@ class CollisionAvoidance(Limit):
         return any(obstacle.speed for obstacle in self.obstacles)
 
     def refresh(self, step: Step, constants: Vector) -> None:
-        """Update the moving obstacles among the constants, (k,), to the time of a step."""
+        """Write the centres of moving obstacles at the time of a step to the constants, (k,)."""
         self.scene(step.robot).move(constants, step.t)
 
     def settings(self) -> dict[str, Any]:
-        """Return name and parameters, as values that JSON can hold."""
+        """Return the class name and the parameters, as values that JSON can hold."""
         return super().settings() | {"obstacles": [each.settings() for each in self.obstacles]}
 
     def overview(self, robot: Robot) -> dict[str, Any]:
-        """Return a record's settings: least distance, obstacles, pairs, unwatched links.
+        """Return the settings of a record: least distance, obstacles, pairs, unwatched links.
 
-        ``left_out`` has the pairs that no row watches, each with the reason, as in
+        ``left_out`` has the pairs that no row watches, each with its reason: that of
         `CollisionModel`, ``"given"``, or ``"no joint moves it"``.
         """
         scene = self.scene(robot)
@@ -307,6 +314,6 @@ class CollisionAvoidance(Limit):
 
 
 def avoidance_of(scheme: object) -> CollisionAvoidance | None:
-    """Return the first `CollisionAvoidance` among the limits of a scheme."""
+    """Return the first `CollisionAvoidance` among the limits of a scheme; None if it has none."""
     limits = getattr(scheme, "limits", ())
     return next((part for part in limits if isinstance(part, CollisionAvoidance)), None)

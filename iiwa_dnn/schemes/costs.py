@@ -1,9 +1,4 @@
-r"""Costs: what a scheme minimises among the joint velocities that fulfil its tasks.
-
-With a weight :math:`w` each adds :math:`\tfrac12 w\,(\cdot)` to the program's cost.
-"""
-
-from __future__ import annotations
+r"""Costs: terms of the objective that a scheme minimises, each with a weight w."""
 
 from dataclasses import dataclass, replace
 from functools import partial
@@ -36,7 +31,7 @@ class WeightedCost(Cost):
 
 
 class KineticConstants(Record):
-    """Weight of `KineticEnergy`, and whether G is the inertia matrix."""
+    """Constants of `KineticEnergy`: its weight, and whether G is the inertia matrix."""
 
     weight: float
     is_inertia: bool
@@ -44,7 +39,7 @@ class KineticConstants(Record):
 
 @compiled
 def add_kinetic_energy(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
-    """Add w G(q) to P, for `KineticEnergy`."""
+    """Add w G(q) to P (n, n), for `KineticEnergy`. Writes P; q stays."""
     own = KineticConstants.of(constants)
     for i in range(step.q.size):
         if own.is_inertia:
@@ -56,7 +51,7 @@ def add_kinetic_energy(step: StepViews, constants: Vector, P: Matrix, q: Vector)
 
 @dataclass(frozen=True, kw_only=True)
 class KineticEnergy(WeightedCost):
-    r"""Minimum kinetic energy (MKE).
+    r"""Cost of the kinetic energy (MKE, minimum kinetic energy).
 
     .. math::  \tfrac12 w\,\dot q^T G(q)\,\dot q, \qquad P \mathrel{+}= w\,G(q)
 
@@ -80,7 +75,7 @@ class KineticEnergy(WeightedCost):
 
 
 class CyclicConstants(Record):
-    """Weight, gain m [1/s] and home [rad] of `CyclicMotion`."""
+    """Constants of `CyclicMotion`: its weight, gain m [1/s] and home [rad], (n,)."""
 
     weight: float
     gain: float
@@ -89,7 +84,7 @@ class CyclicConstants(Record):
 
 @compiled
 def add_cyclic_motion(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
-    """Add w I to P and w m (q - home) to the linear term, for `CyclicMotion`."""
+    """Add w I to P (n, n) and w m (q - home) to q (n,), for `CyclicMotion`. Writes P and q."""
     own = CyclicConstants.of(constants)
     for i in range(step.q.size):
         P[i, i] += own.weight
@@ -98,7 +93,7 @@ def add_cyclic_motion(step: StepViews, constants: Vector, P: Matrix, q: Vector) 
 
 @dataclass(frozen=True, kw_only=True)
 class CyclicMotion(WeightedCost):
-    r"""Cyclic motion generation (CMG): the posture is drawn back to where it began.
+    r"""Cost that draws the posture back to a home posture (CMG, cyclic motion generation).
 
     .. math::  \tfrac12 w\,\|\dot q + m\,(q - q_0)\|^2, \qquad
         P \mathrel{+}= w I, \quad q_{\text{QP}} \mathrel{+}= w\,m\,(q - q_0)
@@ -108,8 +103,8 @@ class CyclicMotion(WeightedCost):
     Attributes:
         weight: w, at least 0.
         gain: The paper's m [1/s], at least 0.
-        home: Posture q_0 to come back to [rad], (n,). None stands for wherever the robot is:
-            `Scheme.build_qp` anchors it there, `simulate` and `Controller` where they begin.
+        home: Posture q_0 [rad], (n,). None: in `Scheme.build_qp` the posture of its argument, in
+            `simulate` and `Controller` the one in which they begin.
     """
 
     kernel = staticmethod(add_cyclic_motion)
@@ -120,8 +115,8 @@ class CyclicMotion(WeightedCost):
     gain: float = 10.2
     home: tuple[float, ...] | None = None
 
-    def anchored(self, conf: Configuration) -> CyclicMotion:
-        """Return the cost with `conf` as home, unless it has a home already."""
+    def anchored(self, conf: Configuration) -> "CyclicMotion":
+        """Return the cost with the posture `conf` as `home`, or the cost itself if it has one."""
         return self if self.home is not None else replace(self, home=tuple(conf.q.tolist()))
 
     def constants(self, robot: Robot) -> Vector:
@@ -138,13 +133,13 @@ class CyclicMotion(WeightedCost):
 
 @dataclass(frozen=True, kw_only=True)
 class Manipulability(WeightedCost):
-    r"""Motion towards postures in which the tool moves with equal ease in all directions.
+    r"""Cost of the loss of manipulability: it moves the arm away from singular postures.
 
     .. math::  -w\,\nabla \mu(q)^T \dot q, \qquad \mu = \sqrt{\det J J^T}, \qquad
         \partial_i \mu = \mu\,\mathrm{tr}\bigl((J J^T)^{-1} \,\partial_i J\, J^T\bigr)
 
     for the Jacobian J of a frame at the end of a serial chain, whose derivative has a closed form.
-    The term alone has no minimum: another cost has to bound the velocity.
+    The term is linear, so that another cost has to bound the velocity.
 
     Source: T. Yoshikawa, "Manipulability of robotic mechanisms", Int. J. Robotics Research 4
     (1985).

@@ -17,15 +17,15 @@ from iiwa_dnn.schemes.step import StepViews
 
 
 class PositionConstants(Record):
-    """Constants of `JointLimits` for n joints.
+    """Constants of `JointLimits` for n joints, as its kernel reads them.
 
     Attributes:
         gain: kappa [1/s].
         lower: Lower position limits [rad], (n,).
         upper: Upper position limits [rad], (n,).
         velocity: Velocity limits [rad/s], (n,).
-        offset: Offsets of the position-dependent velocity limits [rad/s], (n,).
-        slope: Decelerations along them [rad/s^2], (n,); inf for none.
+        offset: Offsets o of the position-dependent velocity limits [rad/s], (n,).
+        slope: Decelerations D of these limits [rad/s^2], (n,); inf for a joint without one.
     """
 
     gain: float
@@ -40,7 +40,11 @@ class PositionConstants(Record):
 def joint_limits(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
-    """Tighten the bounds to those of `JointLimits`, whose constants these are."""
+    """Tighten the bounds lb and ub (n,) [rad/s] to those of `JointLimits`.
+
+    `constants` are a `PositionConstants`. Writes lb, ub, step.lower_kind and step.upper_kind; G and
+    h have no rows.
+    """
     dof = step.q.size
     limits = PositionConstants.of(constants)
     gain = min(limits.gain, step.rate)
@@ -60,7 +64,13 @@ def joint_limits(
 
 @compiled
 def _speed_kind(bound: float, speed: float, fastest: float) -> int:
-    """Return the kind of a bound, beside the velocity limits at the position and elsewhere."""
+    """Return the `LimitKind` of a bound, in the direction in which it is positive [rad/s].
+
+    Args:
+        bound: The bound.
+        speed: Velocity limit at the joint's position.
+        fastest: Velocity limit far from the position limits.
+    """
     if bound < speed:
         return LimitKind.POSITION
     return LimitKind.POSITION_DEPENDENT_VELOCITY if speed < fastest else LimitKind.VELOCITY
@@ -68,12 +78,15 @@ def _speed_kind(bound: float, speed: float, fastest: float) -> int:
 
 @compiled
 def position_dependent_speed(distance: float, offset: float, deceleration: float) -> float:
-    """Compute the position-dependent velocity limit at a distance from a position limit.
+    """Compute a joint's velocity limit [rad/s] at a distance from its position limit.
 
     Args:
-        distance: The distance [rad].
-        offset: Offset of the limit [rad/s].
-        deceleration: Deceleration along the limit [rad/s^2]; inf for a joint without one.
+        distance: The distance d [rad].
+        offset: Offset o [rad/s].
+        deceleration: Deceleration D [rad/s^2]; inf for a joint without such a limit.
+
+    Returns:
+        sqrt(2 D d) - o, at least 0; inf for a joint without such a limit.
     """
     if not deceleration < np.inf:
         return np.inf
@@ -109,7 +122,7 @@ class JointLimits(Limit):
     gain: float = 20.0
 
     def constants(self, robot: Robot) -> Vector:
-        """Return `PositionConstants`."""
+        """Return the `PositionConstants` of a robot."""
         lower, upper, velocity = robot.limits[:3]
         offset, slope = robot.position_dependent_velocity
         return PositionConstants.make(

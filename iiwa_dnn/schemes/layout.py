@@ -1,9 +1,7 @@
-"""Layout of a scheme for a robot: the rows, constants and kernels of its parts, and the targets.
+"""Layout of a scheme for a robot: rows, constants and kernels of its parts, and their targets.
 
-Constants that change along a run are brought up to date before a step (`ProgramLayout.refresh`).
+Constants that change from step to step are updated before each (`ProgramLayout.refresh`).
 """
-
-from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
@@ -36,10 +34,10 @@ class ProgramLayout:
         sizes: ``(n, m, p)`` of the programs.
         target_frames: Names of the frames that tasks track, in the order of the targets; the
             tip's if no task tracks one.
-        refreshed: Indices of the parts whose constants change along a run.
-        kinematics: The robot's, overwritten by each step.
+        refreshed: Indices of the parts whose constants change from step to step.
+        kinematics: Kinematics of the robot, overwritten by each step.
         table: A row for each part, (parts, 7), by `Column`.
-        constants: Numbers that compiled code reads, (k,).
+        constants: Constants of all parts, (k,).
         pairs: Names in words and least distance [m] of each watched pair.
         kinds: `LimitKind` of the lower and upper bounds in the last program of `qp_at`, (2, dof).
     """
@@ -104,7 +102,7 @@ class ProgramLayout:
         return first
 
     def _frames(self) -> list[str]:
-        """Return the names of the frames whose placements the kernels read."""
+        """Return the names of the frames whose placements the kernels read, some more than once."""
         robot = self.robot
         own = [part.frame_name(robot) for part in self.parts if not part.copies]
         further = [name for part in self.parts for name in part.extra_frames(robot)]
@@ -112,11 +110,11 @@ class ProgramLayout:
 
     @property
     def rate_limits(self) -> MotionLimits | None:
-        """Acceleration and jerk limits, if there are any."""
+        """All acceleration and jerk limits of the scheme; None if it has none."""
         return next((part for part in self.parts if isinstance(part, MotionLimits)), None)
 
     def constants_of(self, k: int) -> Vector:
-        """Return the constants of part k, a view."""
+        """Return the constants of part k, (size,), a view."""
         return self.constants[self.table[k, Column.START] : self.table[k, Column.STOP]]
 
     def places_of(self, kind: type[Part]) -> list[int]:
@@ -125,28 +123,28 @@ class ProgramLayout:
 
     @property
     def least(self) -> Vector:
-        """Least distance of each watched pair [m], (pairs,), a copy."""
+        """Least distance of each watched pair by the scheme [m], (pairs,)."""
         return np.array([distance for _, distance in self.pairs])
 
     @property
     def reads_targets(self) -> bool:
-        """Test whether `refresh` has to know the targets; obstacles that move do not."""
+        """Test whether a part that is refreshed may read the targets, as methods in numpy may."""
         return any(not isinstance(self.parts[k], CollisionAvoidance) for k in self.refreshed)
 
     @property
     def needs_inertia(self) -> bool:
-        """Test whether a cost takes the inertia matrix."""
+        """Test whether a cost needs the inertia matrix."""
         return any(getattr(part, "kinetic", "") == "inertia" for part in self.parts)
 
     @property
     def row_weights(self) -> Vector:
-        """Weight of each equality row where a policy lets the tasks yield, (p,)."""
+        """`Task.row_weight` of each equality row, (p,)."""
         counts = [task.row_count(self.robot) for task in self.tasks]
         return np.repeat([task.row_weight for task in self.tasks], counts)
 
     @property
     def arrays(self) -> ProgramArrays:
-        """The arrays with which compiled code writes programs."""
+        """Arrays from which `assemble` writes the programs."""
         return ProgramArrays(
             ProgramSizes(*self.sizes, self.robot.dof, len(self.pairs), len(self.target_frames)),
             self.table,
@@ -161,17 +159,17 @@ class ProgramLayout:
     def refresh(
         self, q: Vector, last: Vector, targets: Matrix, t: float, dt: float = np.inf
     ) -> None:
-        """Bring the constants that change along a run up to date, for one step.
+        """Update the constants that change from step to step, in place.
 
         Args:
-            q: Joint positions [rad], (dof,), at which the kinematics are.
+            q: Joint positions [rad], (dof,), at which `kinematics` was updated last.
             last: Last command [rad/s], (dof,).
             targets: Targets of the tracked frames, (k, 18).
             t: Time [s].
             dt: Control period [s]; inf outside of a loop.
 
         Raises:
-            InvalidInputError: The answer of a part written in numpy is wrong; the part is named.
+            InvalidInputError: A method in numpy returns something wrong; its part is named.
         """
         named = dict(zip(self.target_frames, map(Target.from_data, targets), strict=True))
         step = Step(self.robot, q, named, dt, t, last, self.kinematics)
@@ -202,11 +200,11 @@ class ProgramLayout:
             targets: Targets of the tracked frames, (k, 18).
             dt: Control period [s]; inf outside of a loop.
             t: Time [s].
-            least: Distance that each watched pair has to keep [m], (pairs,), brought up to date;
+            least: Distance that each watched pair has to keep [m], (pairs,), updated in place;
                 None: that of the scheme.
 
         Raises:
-            InvalidInputError: The answer of a part written in numpy is wrong; the part is named.
+            InvalidInputError: A method in numpy returns something wrong; its part is named.
         """
         data = np.empty(data_size(*self.sizes))
         self.kinematics.update(q)
@@ -221,7 +219,7 @@ class ProgramLayout:
 
 
 def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
-    """Return the names of the tracked frames, the tip first; the tip's if there are none."""
+    """Return the names of the frames that tasks track, the tip first; the tip alone if none is."""
     names = dict.fromkeys(task.frame_name(robot) for task in tasks if task.tracks)
     return tuple(sorted(names, key=lambda name: name != robot.tip)) or (robot.tip,)
 
@@ -229,10 +227,15 @@ def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
 def targets_of(
     tip: str, frames: Sequence[str], target: Target | Mapping[str, Target]
 ) -> list[Vector]:
-    """Return `Target.data`, (18,), of each of the frames; one target alone is the tip's.
+    """Return `Target.data`, (18,), of each of the frames.
+
+    Args:
+        tip: Name of the tip.
+        frames: Names of the frames.
+        target: Targets by frame name, or the target of the tip alone.
 
     Raises:
-        InvalidInputError: A frame has no target, or another object in its place.
+        InvalidInputError: A frame has no target, or an object of another type.
     """
     given = target if isinstance(target, Mapping) else {tip: target}
     for name in frames:

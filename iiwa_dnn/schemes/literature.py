@@ -1,24 +1,22 @@
-r"""Schemes of the literature: the paper's, and others that it is compared with.
+r"""Schemes of the literature: that of the paper, and others to compare it with.
 
-The paper's blends minimum kinetic energy and cyclic motion by one weight.
+The paper's scheme blends minimum kinetic energy and cyclic motion by one weight.
 
 .. math::
 
     \min_{\dot q} \; \tfrac12 \bigl(\xi\,\dot q^T G(q)\,\dot q
         + (1-\xi)\,\|\dot q + m\,(q - q_0)\|^2\bigr)
 
-subject to the position rows, the orientation rows and the velocity bounds. Expanded, and without
-its constant, that is a quadratic program with
+subject to the position rows, the orientation rows and the velocity bounds. Without its constant the
+cost is that of a quadratic program with
 
 .. math::
 
     P = \xi\,G(q) + (1-\xi)\,I, \qquad q_{\text{QP}} = (1-\xi)\,m\,(q - q_0).
 
-With G = I, as in the paper, P = I whatever the weight, which then acts through the linear term
-alone. Source: equations (6) and (7) of the paper.
+With G = I, as in the paper, P = I, and the weight acts through the linear term alone. Source:
+equations (6) and (7) of the paper.
 """
-
-from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, fields, replace
@@ -38,31 +36,30 @@ from iiwa_dnn.schemes.step import Step
 from iiwa_dnn.schemes.tasks import Orientation, OrientationTask, PositionTask
 
 SMALLEST = 1e-3
-"""Weight of the squared velocity norm beside the largest speed, which alone leaves joints free."""
+"""Least weight of the velocity norm in `bi_criteria`; the largest speed leaves joints free."""
 
 Sample = Literal["start", "end"]
 
 
 @dataclass(frozen=True)
 class DoubleIndicator(Scheme):
-    """Minimum kinetic energy blended with cyclic motion generation, tracking position and rotation.
+    """Scheme of the paper: minimum kinetic energy blended with cyclic motion generation.
 
     Attributes:
         weight: The paper's xi in [0, 1]; 1 is minimum kinetic energy, 0 cyclic motion.
-        drift_gain: The paper's m [1/s], how strongly the posture is drawn back.
+        drift_gain: The paper's m [1/s], the rate at which the posture is drawn back to `home`.
         position_gain: The paper's delta [1/s].
         orientation_gain: The paper's nu as a feedback gain [1/s].
         limit_gain: The paper's kappa [1/s], for the bounds near a joint limit.
         orientation: ``"so3"``, ``"block"`` (the paper's) or ``"none"``.
         kinetic: G(q): ``"identity"`` (the paper's) or ``"inertia"``, the joint-space inertia
             matrix, which makes the index twice the true kinetic energy [J].
-        home: Posture q_0 to come back to [rad], (n,). None stands for wherever the robot is;
-            `simulate` and `Controller` anchor it where they begin.
-        extra_limits: Limits beside the joints' positions and velocities, for example
-            `AccelerationLimits` and `JerkLimits`.
+        home: Posture q_0 [rad], (n,); None: the one in which `simulate` or `Controller` begins.
+        extra_limits: Limits beside `JointLimits`, for example `AccelerationLimits` and
+            `JerkLimits`.
         sample: Time of the target: ``"start"`` of the control period, as in the paper, or
             ``"end"``, with feed-forward over the period and 1 / dt in place of both gains
-            (`iiwa_dnn.schemes.tasks`). `Reference.feed_forward` goes with other gains.
+            (`iiwa_dnn.schemes.tasks`). `Reference.feed_forward` is feed-forward with other gains.
     """
 
     weight: float = 0.2
@@ -91,8 +88,8 @@ class DoubleIndicator(Scheme):
         limits = [JointLimits(gain=self.limit_gain), *self.extra_limits]
         self._compose([energy, cyclic], tasks, limits)
 
-    def anchored(self, conf: Configuration) -> DoubleIndicator:
-        """Return the scheme with `conf` as home, unless it has a home already."""
+    def anchored(self, conf: Configuration) -> "DoubleIndicator":
+        """Return the scheme with the posture `conf` as `home`, or itself if it has a home."""
         return self if self.home is not None else replace(self, home=tuple(conf.q.tolist()))
 
     def settings(self) -> dict[str, Any]:
@@ -104,11 +101,11 @@ class DoubleIndicator(Scheme):
 
 @dataclass(frozen=True)
 class PseudoInverse(Scheme):
-    r"""Least joint velocity that fulfils the task, the baseline that the paper argues against.
+    r"""Scheme of the pseudoinverse: the least joint velocity that fulfils the task.
 
     .. math::  \dot q = A^{+} b = \arg\min \tfrac12 \|\dot q\|^2 \;\; \text{s.t.} \;\; A \dot q = b
 
-    It knows no limits and does not draw the posture back, so it drifts on closed paths.
+    The paper's baseline: it has no limits, and drifts on closed paths.
 
     Source: D. E. Whitney, "Resolved motion rate control of manipulators and human prostheses", IEEE
     Transactions on Man-Machine Systems 10 (1969).
@@ -135,7 +132,7 @@ class PseudoInverse(Scheme):
 def tip_tasks(
     position_gain: float, orientation_gain: float, orientation: Orientation
 ) -> list[PositionTask | OrientationTask]:
-    """Return the tasks of the tip: its position, and its orientation unless that is ``"none"``."""
+    """Return a task of the tip's position, and one of its orientation unless that is ``"none"``."""
     checks.one_of("orientation", orientation, get_args(Orientation))
     position = PositionTask(gain=position_gain)
     if orientation == "none":
@@ -144,19 +141,19 @@ def tip_tasks(
 
 
 class LargestSpeed(WeightedCost):
-    r"""Square of the largest joint speed, the scheme's last (slack) variable s: w s^2 / 2."""
+    r"""Cost of the largest joint speed s, the only slack variable of a scheme: w s^2 / 2."""
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return P (n + 1, n + 1) and q (n + 1,) of a scheme with one slack variable."""
+        """Return P (n + 1, n + 1) and q (n + 1,), for n joints and the slack variable."""
         none = np.zeros(step.q.size + 1)
         return np.diag([*none[1:], self.weight]), none
 
 
 class SpeedsBelowSlack(Limit):
-    r"""Rows :math:`\pm \dot q_i - s \le 0` for the last (slack) variable s of an arm's scheme."""
+    r"""Rows :math:`\pm \dot q_i - s \le 0` for the only slack variable s of a scheme."""
 
     def __init__(self, robot: Robot) -> None:
-        """State the rows for a robot with n joints: 2 n."""
+        """Make the 2 n rows for a robot with n joints."""
         self.rows = 2 * robot.dof
         signs = [[1.0], [-1.0]]
         self._G = np.hstack([np.kron(signs, np.eye(robot.dof)), -np.ones((self.rows, 1))])
@@ -167,7 +164,7 @@ class SpeedsBelowSlack(Limit):
 
 
 def bi_criteria(robot: Robot, weight: float = 0.5, gain: float = 10.2) -> Scheme:
-    """Compose the scheme between least velocity norm (weight 1) and least largest speed (0).
+    """Compose a scheme between the least velocity norm (weight 1) and the least maximum speed (0).
 
     Source: Y. Zhang, J. Wang, Y. Xu, "A dual neural network for bi-criteria kinematic control of
     redundant manipulators", IEEE Trans. Robotics and Automation 18 (2002).

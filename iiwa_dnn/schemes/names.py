@@ -1,4 +1,4 @@
-"""Names in words of the limits of a program, and of its promises that wait."""
+"""Names in words of a program's limits, and of the conditions that a step does not keep yet."""
 
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.schemes.collisions import MEET
@@ -7,7 +7,7 @@ from iiwa_dnn.schemes.rate_limits import RateLimits
 from iiwa_dnn.schemes.tasks import JointCouplingTask
 
 OFF = 1e-6
-"""Error of a relation of joints from which on it is reported [rad]."""
+"""Error of a relation between joints above which it is reported [rad]."""
 
 
 class LimitNames:
@@ -15,12 +15,12 @@ class LimitNames:
 
     Attributes:
         settings: Settings that `naming.active_limits` reads: ``rows`` has for each inequality row
-            its part, its number in it from 1, and its name if any, ``bounding`` the limits in the
-            order of their codes (`LimitKind.OTHER`).
+            its part, its number in the part from 1, and its name if any; ``bounding`` has the class
+            names of the limits, whose kinds are `LimitKind.OTHER`, `LimitKind.OTHER` + 1, ....
     """
 
     def __init__(self, program: ProgramLayout) -> None:
-        """Take the limits of a program."""
+        """Name the limits of a program."""
         self._program = program
         rows: list[dict[str, object]] = []
         for limit in program.limits:
@@ -32,10 +32,15 @@ class LimitNames:
         self.settings = {"rows": rows, "bounding": [type(limit).__name__ for limit in others]}
 
     def conditions(self, q: Vector, least: Vector) -> tuple[str, ...]:
-        """State which promises wait for the arm to come nearer to them.
+        """Describe pairs that began too near, and relations between joints that are not fulfilled.
 
-        They are pairs that keep another distance than the scheme's, `least` (pairs,) [m], and
-        relations of joints that the positions q (n,) [rad] do not fulfil.
+        Args:
+            q: Joint positions [rad], (n,).
+            least: Distance that each watched pair has to keep [m], (pairs,); one that is not the
+                scheme's is described.
+
+        Returns:
+            A text for each.
         """
         near = [
             f"{names} meet, and no direction separates them"
@@ -45,13 +50,13 @@ class LimitNames:
             if kept != promised
         ]
         found = [
-            (task.coefficients, task.missing(self._program.robot, q))
+            (task.coefficients, task.error(self._program.robot, q))
             for task in self._program.tasks
             if isinstance(task, JointCouplingTask)
         ]
         off = [
-            f"{' and '.join(joints)}: {missing:.3g} rad off their JointCouplingTask"
-            for joints, missing in found
-            if abs(missing) > OFF
+            f"{' and '.join(joints)}: {error:.3g} rad off their JointCouplingTask"
+            for joints, error in found
+            if abs(error) > OFF
         ]
         return (*near, *off)

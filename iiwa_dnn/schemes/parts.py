@@ -1,18 +1,20 @@
-"""Parts of a program: costs, tasks and limits, each a block of rows.
+"""Parts of a program: costs, tasks and limits.
 
-A part names the compiled function that writes its rows, its `kernel`, and gives the constants which
-that function reads. All kernels of a kind have one signature:
+A part names its `kernel`, a compiled function that writes its rows of the program, and returns the
+constants that the kernel reads. All kernels of a kind have one signature:
 
     cost   kernel(step, constants, P, q)                adds to P (n, n) and q (n,)
     task   kernel(step, constants, target, A, b)        writes A (rows, n) and b (rows,)
     limit  kernel(step, constants, G, h, lb, ub)        writes G (rows, n) and h (rows,), and
                                                         tightens lb (n,) and ub (n,)
 
-`step` is a `StepViews`, `target` the `TargetData` of the frame that the task tracks. The
-rows come in as zeros, h as zeros, and n counts the joints and then the scheme's slack variables.
+`step` is a `StepViews`, and `target` the `TargetData` of the frame that the task tracks. A, b, G
+and h are zero before the call. The n variables are the joints, then the scheme's slack variables.
+A kernel writes no other array, but that a limit may write the kinds of its bounds
+(`StepViews.lower_kind`).
 
-A part may override a method in numpy instead. It is asked before each step, and its kernel, that
-of its kind, copies the answer out of the constants.
+A part of one's own may override a method in numpy instead. The method is called before each step,
+and the kernel copies its arrays out of the constants.
 """
 
 from dataclasses import fields
@@ -34,14 +36,14 @@ PartT = TypeVar("PartT", bound="Part")
 
 @entry
 def enter_cost(address: int, step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
-    """Call a cost's kernel, with constants (k,), P (n, n) and the cost vector q (n,)."""
+    """Call a cost's kernel by its address; it adds to P (n, n) and the cost vector q (n,)."""
 
 
 @entry
 def enter_task(
     address: int, step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
-    """Call a task's kernel, with constants (k,), target, A (rows, n), b (rows,)."""
+    """Call a task's kernel by its address; it writes A (rows, n) and b (rows,)."""
 
 
 @entry
@@ -54,28 +56,26 @@ def enter_limit(
     lb: Vector,
     ub: Vector,
 ) -> None:
-    """Call a limit's kernel, with constants (k,), G (rows, n), h (rows,), lb and ub (n,)."""
+    """Call a limit's kernel by its address; it writes G (rows, n), h (rows,), lb and ub (n,)."""
 
 
 _IDLE = {"h": np.inf, "lb": -np.inf, "ub": np.inf}
-"""Infinite values that an array of an answer may hold, by its name; omitted variables have them
-too,
-else zero."""
+"""Values without effect in an array of a part, by its name; 0 in the others."""
 
 COMPILED = "has no such method in numpy; Scheme.build_qp shows the rows of a compiled part"
 
 _ROUNDING = 1e-9
-"""Asymmetry and negative curvature of P that are forgiven, by its largest entry."""
+"""Asymmetry and negative curvature of P that count as rounding, in units of its largest entry."""
 
 
 class Part(Checked):
-    """A block of a program's rows; a cost, a task or a limit.
+    """Base of costs, tasks and limits.
 
     Attributes:
-        kernel: Compiled function that writes the rows; in a class with methods in numpy it copies
-            their answers.
-        rows: Number of rows; none for a cost.
-        entry: Entry of the kernels of this kind.
+        kernel: Compiled function that writes the rows; in a class with a method in numpy, the one
+            that copies its arrays.
+        rows: Number of rows; 0 for a cost.
+        entry: Function through which compiled code calls the kernels of this kind.
     """
 
     kernel: Any = None
@@ -85,18 +85,18 @@ class Part(Checked):
     _methods: ClassVar[dict[str, tuple[str, str]]] = {}
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Take the kernel that copies answers if the class has a method in numpy."""
+        """Set the kernel to the one that copies arrays, if the class has a method in numpy."""
         super().__init_subclass__(**options)
         if not cls._methods.keys().isdisjoint(vars(cls)):
             cls.kernel = staticmethod(cls._copy)
 
     @property
     def copies(self) -> bool:
-        """Test whether methods in numpy give the rows."""
+        """Test whether methods in numpy return the rows."""
         return self.kernel is self._copy
 
     def constants(self, robot: Robot) -> Vector:
-        """Return the numbers that the kernel reads, (k,), a `Record` for example.
+        """Return the constants that the kernel reads, (k,); they may be a `Record`.
 
         Raises:
             InvalidInputError: A parameter does not fit the robot.
@@ -104,41 +104,41 @@ class Part(Checked):
         return np.zeros(0)
 
     def refresh(self, step: Step, constants: Vector) -> None:
-        """Bring the constants of the kernel, (k,), up to date before a step."""
+        """Update the kernel's constants (k,) in place before a step; by default do nothing."""
 
     @property
     def refreshes(self) -> bool:
-        """Test whether constants of the kernel change along a run."""
+        """Test whether the constants of the kernel change from step to step."""
         return self.copies or type(self).refresh is not Part.refresh
 
     def _check(self, arrays: dict[str, Matrix]) -> None:
-        """Raise InvalidInputError unless the arrays of an answer go together."""
+        """Raise InvalidInputError if the arrays that numpy methods returned are inconsistent."""
 
     def frame_name(self, robot: Robot) -> str:
-        """Return the name of the frame that the part is about, the tip's by default."""
+        """Return the name of the part's frame: its attribute `frame`, or the robot's tip."""
         return getattr(self, "frame", None) or robot.tip
 
     def row_count(self, robot: Robot) -> int:
-        """Return the number of rows for a robot; `rows`, unless a part says otherwise."""
+        """Return the number of rows for a robot, by default `rows`."""
         return self.rows
 
     def extra_frames(self, robot: Robot) -> tuple[str, ...]:
-        """Return the names of further frames whose placements the kernel reads."""
+        """Return the names of the frames, beside the part's, whose placements the kernel reads."""
         return ()
 
     def anchored(self: PartT, conf: Configuration) -> PartT:
-        """Return the part with `conf` as the posture to come back to, where it lacks one."""
+        """Return the part with the posture `conf` in place of one that was left None."""
         return self
 
     def settings(self) -> dict[str, Any]:
-        """Return name and parameters, as values that JSON can hold."""
+        """Return the class name and the parameters, as values that JSON can hold."""
         parameters = fields(self) if "__dataclass_fields__" in dir(self) else ()  # type: ignore[arg-type]
         names = [field.name for field in parameters if field.init]
         return {"name": type(self).__name__} | {name: getattr(self, name) for name in names}
 
 
 def idle_arrays(part: Part, n: int, rows: int) -> dict[str, Matrix]:
-    """Return the arrays of a part in a program of n variables by their names, without effect."""
+    """Return arrays without effect, by name, in the shapes of a part with n variables."""
     shapes = {"P": (n, n), "A": (rows, n), "G": (rows, n), "b": (rows,), "h": (rows,)}
     return {
         name: np.full(shapes.get(name, (n,)), _IDLE.get(name, 0.0))
@@ -148,17 +148,17 @@ def idle_arrays(part: Part, n: int, rows: int) -> dict[str, Matrix]:
 
 
 def answer_of(part: Part, step: Step, n: int, rows: int) -> Vector:
-    """Return the answers of a part's methods in numpy, as the kernel `copy` reads them, (k,).
+    """Call a part's methods in numpy, check their arrays and return these one after another, (k,).
 
     Args:
         part: The part.
-        step: The instant that they are asked about.
-        n: Number of the scheme's variables; an answer may leave the slack variables out.
+        step: The instant.
+        n: Number of the scheme's variables; an array may leave the slack variables out.
         rows: Number of the part's rows.
 
     Raises:
-        InvalidInputError: An answer is no pair of arrays, has a wrong shape, is not finite
-            where it has to be, or is a P that is not convex.
+        InvalidInputError: A method returns no pair of arrays, or an array has a wrong shape, is not
+            finite where it has to be, or is a P that is not convex.
     """
     arrays = idle_arrays(part, n, rows)
     of_joints = idle_arrays(part, step.robot.dof, rows)
@@ -179,7 +179,7 @@ def answer_of(part: Part, step: Step, n: int, rows: int) -> Vector:
 
 
 def _named(part: Part, names: tuple[str, str], answer: Any) -> dict[str, Matrix]:
-    """Return both arrays of an answer by name; raises InvalidInputError if it is no such pair."""
+    """Return the two arrays of a method's answer by name; refuse any other answer."""
     try:
         named = zip(names, answer, strict=True)
         return {name: np.atleast_1d(real_array(name, array)) for name, array in named}
@@ -190,7 +190,7 @@ def _named(part: Part, names: tuple[str, str], answer: Any) -> dict[str, Matrix]
 
 @compiled
 def copy_cost(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
-    """Add P and q from the constants."""
+    """Add P (n, n) and q (n,) from the constants; for a cost in numpy. Writes P and q."""
     n = q.size
     for i in range(n):
         q[i] += constants[n * n + i]
@@ -200,13 +200,13 @@ def copy_cost(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
 
 @compiled
 def copy_task(step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector) -> None:
-    """Write A and b from the constants."""
+    """Write A (rows, n) and b (rows,) from the constants; for a task in numpy."""
     _copy_rows(constants, A, b)
 
 
 @compiled
 def _copy_rows(constants: Vector, A: Matrix, b: Vector) -> None:
-    """Write rows A and their right-hand sides b from the constants, which begin with them."""
+    """Write A (rows, n) and b (rows,) from the beginning of the constants."""
     n = A.shape[1]
     for j in range(b.size):
         b[j] = constants[n * b.size + j]
@@ -218,7 +218,10 @@ def _copy_rows(constants: Vector, A: Matrix, b: Vector) -> None:
 def copy_limit(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
-    """Write G and h, and tighten lb and ub, from the constants."""
+    """Write G (rows, n) and h (rows,), and tighten lb and ub (n,); for a limit in numpy.
+
+    The constants are the four arrays one after another.
+    """
     _copy_rows(constants, G, h)
     n = lb.size
     first = h.size * (n + 1)
@@ -228,17 +231,16 @@ def copy_limit(
 
 
 class Cost(Part):
-    """A term of the cost, 1/2 x^T P x + q^T x."""
+    """Base of costs: terms 1/2 x^T P x + q^T x of a program's objective."""
 
     entry = enter_cost
     _copy = staticmethod(copy_cost)
     _methods: ClassVar[dict[str, tuple[str, str]]] = {"quadratic": ("P", "q")}
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return P (n, n), symmetric positive semidefinite, and q (n,), to be added to the cost.
+        """Return P (n, n), symmetric positive semidefinite, and q (n,).
 
-        n counts the scheme's variables, the joints and then its slack variables, or the joints
-        alone: slack variables may be left out of any part.
+        n is the number of joints, or that of the joints and the slack variables.
         """
         raise NotImplementedError(f"{type(self).__name__} {COMPILED}")
 
@@ -253,12 +255,14 @@ class Cost(Part):
 
 
 class Task(Part):
-    r"""Equality rows A x = b, or with a `weight` w the cost :math:`\tfrac12 w\,\|A x - b\|^2`.
+    r"""Base of tasks: equality rows A x = b, or soft ones.
+
+    With a `weight` w the rows are the cost :math:`\tfrac12 w\,\|A x - b\|^2`.
 
     Attributes:
-        tracks: Whether the task asks for a target of its frame.
-        row_weight: Weight of a missing unit of its rows beside a missing 1 m/s where a policy lets
-            the task yield (`iiwa_dnn.control.policies`); 0: they are a limit and hold.
+        tracks: Whether the task needs a target of its frame.
+        row_weight: Weight of the error of a row where a policy relaxes the task
+            (`iiwa_dnn.control.policies`), 1 for an error in [m/s]. With 0 they are not relaxed.
         weight: None for hard rows, else the weight of the soft task.
     """
 
@@ -275,9 +279,10 @@ class Task(Part):
 
 
 class Limit(Part):
-    """Bounds lb <= x <= ub, inequality rows G x <= h, or both.
+    """Base of limits: bounds lb <= x <= ub, inequality rows G x <= h, or both.
 
-    The number of inequality rows, `rows`, is the same at every step: an idle row has h = inf.
+    The number of inequality rows, `rows`, is the same at every step; a row that is not needed has
+    h = inf.
     """
 
     entry = enter_limit
@@ -288,17 +293,17 @@ class Limit(Part):
     }
 
     def row_names(self, robot: Robot) -> list[str]:
-        """Return names of the inequality rows, in words; none where their numbers will do."""
+        """Return a name in words for each inequality row; by default none: rows are numbered."""
         return []
 
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return G (rows, n) and h (rows,), by default none."""
+        """Return G (rows, n) and h (rows,); by default no rows."""
         if self.rows or not self.copies:
             raise NotImplementedError(f"{type(self).__name__} {COMPILED}")
         return np.zeros((0, step.q.size)), np.zeros(0)
 
     def bounds(self, step: Step) -> tuple[Vector, Vector]:
-        """Return lb (n,) and ub (n,), infinite by default; those of all limits are intersected."""
+        """Return lb (n,) and ub (n,), by default infinite; the program has the tightest of all."""
         if not self.copies:
             raise NotImplementedError(f"{type(self).__name__} {COMPILED}")
         return np.full(step.q.size, -np.inf), np.full(step.q.size, np.inf)

@@ -1,8 +1,9 @@
-r"""Periods of a control step, which may vary up to T.
+r"""Control periods of a step: constant, or different from step to step and at most T.
 
-A velocity that may be held for h is within the distance d of a limit if :math:`v h + v^2 / (2 A)
-\le d`, and with a jerk limit if h v and the continuous stopping path after it are. That is kept
-whatever period comes next (docs/theory_limits.md).
+Where a velocity v may be held for the time h before the joint brakes at A, the joint stays within
+the distance d of a limit if :math:`v h + v^2 / (2 A) \le d`; with a jerk limit, if h v plus the
+stopping path of continuous time is at most d. The next step can keep both conditions whatever its
+period is (docs/theory_limits.md).
 """
 
 from typing import NamedTuple
@@ -12,21 +13,21 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 
 SLACK = 1e-9
-"""Relative excess of a period that is rounding."""
+"""Relative excess over the longest period that counts as rounding."""
 
 
 class Periods(NamedTuple):
-    """Periods with which the bounds of a step count.
+    """Periods for which the bounds of a step are computed.
 
     Attributes:
-        dt: Period over which changes of the command are measured [s].
+        dt: Period by which a change of the command is divided for its acceleration [s].
         expected: Time for which the command is expected to be held [s].
         hold: Longest time for which it may be held [s].
-        longest: Longest period that may come [s].
-        fraction: Part of a distance that is gone in the stated periods at least: 1, or dt / T where
-            nobody states them and they may last T.
-        vary: Whether periods differ.
-        exceeded: Whether the stated one is above the longest.
+        longest: Longest period of a later step [s].
+        fraction: Factor for distances to position limits: dt / T where periods are not stated but
+            may last T, else 1.
+        vary: Whether periods differ from step to step.
+        exceeded: Whether the stated period is above the longest.
     """
 
     dt: float
@@ -46,7 +47,10 @@ def constant_periods(dt: float) -> Periods:
 
 @compiled
 def periods_of(nominal: float, longest: float, dt: float, elapsed: float) -> Periods:
-    """Return `stated_periods`, where 0 is a period that is not stated, or no longest one."""
+    """Return the periods of a step, all in [s], as `stated_periods` without its checks.
+
+    `longest` is 0 where periods are constant; of `dt` and `elapsed`, 0 is one that is not stated.
+    """
     hold = dt if dt > 0.0 else nominal
     if longest == 0.0:
         return constant_periods(hold)
@@ -59,7 +63,7 @@ def periods_of(nominal: float, longest: float, dt: float, elapsed: float) -> Per
 
 
 def checked_longest(longest: float | None, dt: float) -> float | None:
-    """Return a longest period [s], or None; refuse one that is below the control period [s]."""
+    """Return a longest period [s], or None; refuse one that is below the control period dt [s]."""
     if longest is not None and checks.positive("longest_period", longest) < dt:
         raise InvalidInputError("longest_period", f"must be at least dt, {dt:g} s", longest)
     return longest
@@ -68,7 +72,7 @@ def checked_longest(longest: float | None, dt: float) -> float | None:
 def stated_periods(
     nominal: float, longest: float | None, dt: float | None, elapsed: float | None
 ) -> Periods:
-    """Return the periods of a step, as a loop states them.
+    """Return the periods of a step from the periods that a loop states, after checking these.
 
     Args:
         nominal: Control period where none is stated [s].
@@ -77,7 +81,8 @@ def stated_periods(
         elapsed: Time since the last step [s], if that is stated.
 
     Raises:
-        InvalidInputError: A period is not above 0; or both are stated.
+        InvalidInputError: A period is not above 0, `elapsed` is stated without a longest period, or
+            both periods are stated.
     """
     if dt is not None and elapsed is not None:
         raise InvalidInputError(

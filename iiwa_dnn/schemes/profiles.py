@@ -1,15 +1,19 @@
-r"""Velocity profiles of one joint that brakes or arrives, within acceleration and jerk limits.
+r"""Velocity profiles of one joint that brakes, or arrives at a position, within its rate limits.
 
-**Samples.** With a jerk limit the positions are the control points of a cubic B-spline whose third
-derivative is the jerk, constant in each step:
+With a jerk limit the sampled positions are the control points of a cubic B-spline, whose third
+derivative is the jerk, constant in each step. After the command v_k with the acceleration a_k the
+spline has the position and velocity
+
 
 .. math::
 
     \tilde q_k = q_k + \tfrac16 dt^2 a_k, \qquad \tilde v_k = \tfrac12 (v_k + v_{k-1})
 
-It comes to rest at :math:`\tilde q_k + \Delta(\tilde v_k, a_k)` where the jerk is -J, the
-acceleration held at -A', and the jerk J (`stopping_distance`; mirrored where the joint is about to
-turn round), and its highest point on the way there is `highest`.
+A joint that brakes with the jerk -J up to the deceleration A', holds that, and ends with the jerk J
+comes to rest at :math:`\tilde q_k + \Delta(\tilde v_k, a_k)`, where Delta is
+`stopping_distance`. `highest` is the largest position on the way.
+
+The kernels of this file return numbers and write no array.
 """
 
 import math
@@ -21,29 +25,28 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.schemes.periods import Periods
 
 ROUNDING = 2e-14
-"""Rounding of positions while a joint brakes at constant deceleration [rad]."""
+"""Distance that counts as rounding of a position while a joint brakes [rad]."""
 
 AT_REST = 1e-100
-"""Velocity that counts as none [rad/s]: a smaller one may vanish in units of a step of jerk."""
+"""Velocity up to which a joint is at rest [rad/s]; in units of J dt^2 a smaller one may be 0."""
 
 EASE = 0.5
-"""Fraction of the distance to a position limit that a joint all but at rest may cover in a
-period."""
+"""Fraction of the remaining distance that a joint almost at rest covers in a period."""
 
 JERK_PERIODS = 8.0
-"""Least number of periods of jerk in which braking reaches its full deceleration."""
+"""Least number of periods in which the usable jerk builds up the full deceleration."""
 
 
 class Rates(NamedTuple):
-    """Limits of a joint on the derivatives of its position; inf for none.
+    """Limits of one joint on the derivatives of its position; inf for none.
 
     Attributes:
         velocity: Largest velocity [rad/s].
         acceleration: Largest acceleration [rad/s^2].
         jerk: Largest jerk [rad/s^3].
-        deceleration: Deceleration with which it stops before its position limits [rad/s^2].
-        slope: Deceleration D of its position-dependent velocity limit [rad/s^2].
-        lag: Offset o of that limit over D [s].
+        deceleration: Deceleration with which the joint brakes before its position limits [rad/s^2].
+        slope: Deceleration D of the position-dependent velocity limit [rad/s^2].
+        lag: Offset o of that limit, divided by D [s]; 0 for a joint without such a limit.
     """
 
     velocity: float
@@ -56,16 +59,26 @@ class Rates(NamedTuple):
 
 @compiled
 def usable_jerk(rates: Rates, period: float) -> float:
-    """Compute J' [rad/s^3], with which braking reaches a deceleration in `JERK_PERIODS` or more."""
+    """Compute the jerk J' [rad/s^3] of stopping paths, for a control period [s].
+
+    It is at most the jerk limit, and so small that the deceleration takes `JERK_PERIODS` periods to
+    build up.
+    """
     steepest = min(rates.deceleration / period, rates.velocity / (period * period))
     return min(rates.jerk, steepest / JERK_PERIODS)
 
 
 @compiled
 def approach(distance: float, vary: bool) -> float:
-    """Compute the largest x for which x + (x - 1) + (x - 2) + ... down to 0 is within `distance`.
+    """Compute the largest speed from which a joint can brake within a distance.
 
-    Where periods vary, for which x + x^2 / 2 is: that holds for any sum whose steps are shorter.
+    Units make the deceleration and the period 1: the speed falls by 1 a period, and the joint
+    travels x + (x - 1) + (x - 2) + ... > 0 from the speed x. Where periods vary, the law is
+    x + x^2 / 2, which is at least that sum for periods of any length up to 1.
+
+    Args:
+        distance: The distance; below 0 it is returned itself.
+        vary: Whether periods vary.
     """
     if not distance > 0.0 or distance == np.inf:
         return distance
@@ -77,9 +90,13 @@ def approach(distance: float, vary: bool) -> float:
 
 @compiled
 def stopping_distance(v: float, a: float, J: float, A: float) -> float:
-    """Compute the stopping distance of a spline from velocity v and acceleration a.
+    """Compute the distance [rad] in which a spline comes to rest.
 
-    The joint does not turn round: v >= -a |a| / (2 J). It brakes at A, or at -a where that is more.
+    Args:
+        v: Velocity [rad/s], at least -a |a| / (2 J), so that the joint does not turn round.
+        a: Acceleration [rad/s^2].
+        J: Jerk [rad/s^3].
+        A: Deceleration at which it brakes [rad/s^2]; -a where that is more.
     """
     deepest = max(A, -a)
     square = max(J * v + 0.5 * a * a, 0.0)
@@ -95,14 +112,14 @@ def stopping_distance(v: float, a: float, J: float, A: float) -> float:
 
 @compiled
 def highest(v: float, last: float, periods: Periods, profile: tuple[float, float, float]) -> float:
-    """Compute the highest position of the stopping path after command v, relative to that of now.
+    """Compute how far the stopping path after command v goes beyond the present position [rad].
 
     Args:
         v: Command [rad/s].
         last: The command before it [rad/s].
         periods: Periods of the step.
-        profile: Jerk [rad/s^3], deceleration and largest present deceleration [rad/s^2]: a joint
-            that brakes by more counts as one that brakes by that.
+        profile: Jerk J [rad/s^3]; deceleration A [rad/s^2]; and the largest deceleration that the
+            joint is taken to have at present [rad/s^2], inf for the one that it has.
     """
     J, A, most = profile
     last = min(last, v + most * periods.dt)
@@ -127,7 +144,17 @@ def highest(v: float, last: float, periods: Periods, profile: tuple[float, float
 
 @compiled
 def braking(last: float, lb: float, ub: float, jerk: float, periods: Periods) -> float:
-    """Compute the command in [lb, ub] that comes to rest quickest, without turning round."""
+    """Compute the command in [lb, ub] [rad/s] with which a joint comes to rest soonest.
+
+    The joint does not turn round, unless the bounds make it.
+
+    Args:
+        last: Last command [rad/s].
+        lb: Lower bound [rad/s].
+        ub: Upper bound [rad/s].
+        jerk: Jerk limit [rad/s^3]; inf for none.
+        periods: Periods of the step.
+    """
     wanted = 0.0
     unit = jerk * periods.dt * periods.dt
     if jerk < np.inf and abs(last) > AT_REST:
@@ -139,10 +166,18 @@ def braking(last: float, lb: float, ub: float, jerk: float, periods: Periods) ->
 def arriving(
     last: float, before: float, left: float, wanted: float, rates: Rates, periods: Periods
 ) -> float:
-    """Compute the velocity with which a joint comes to rest exactly at a position.
+    """Compute the command [rad/s] with which a joint comes to rest exactly at a position.
 
-    A joint that is all but at rest halves what is left in each period, if its jerk limit allows
-    this period's change and the next one's; else the velocity is the wanted one.
+    Near the position that is `easing`, if the jerk and acceleration limits admit it in this period
+    and in the next one; else it is the wanted velocity.
+
+    Args:
+        last: Last command [rad/s].
+        before: Command before it [rad/s].
+        left: Position less the present one [rad].
+        wanted: Velocity towards the position, within all limits [rad/s].
+        rates: Limits of the joint.
+        periods: Periods of the step.
     """
     accel = rates.acceleration
     jerk = rates.jerk
@@ -157,7 +192,10 @@ def arriving(
 
 @compiled
 def easing(distance: float, hold: float) -> float:
-    """Compute the velocity [rad/s] over a distance [rad] that is left; 0 if it is rounding."""
+    """Compute the velocity [rad/s] that covers `EASE` of a distance [rad] in the time `hold` [s].
+
+    It is 0 where the distance is rounding.
+    """
     if abs(distance) <= ROUNDING:
         return 0.0
     return EASE * distance / hold

@@ -1,7 +1,7 @@
-"""Program of a control step: the kernel that writes the rows of all parts into it.
+"""Program of a control step: the kernel that assembles it from the kernels of its parts.
 
-`assemble` writes them in one compiled call, each part by its own kernel. Where the rows and the
-constants of a part lie is in a table, which `iiwa_dnn.schemes.layout` makes.
+A table, which `iiwa_dnn.schemes.layout` makes, has for each part the address of its kernel, and
+where its rows and its constants lie.
 """
 
 from enum import IntEnum
@@ -19,7 +19,7 @@ from iiwa_dnn.schemes.step import StepViews
 
 
 class ProgramSizes(NamedTuple):
-    """Sizes of a scheme's programs, and of what they are built for.
+    """Sizes of a scheme's programs, of the robot and of its targets.
 
     Attributes:
         n: Number of variables.
@@ -39,7 +39,7 @@ class ProgramSizes(NamedTuple):
 
 
 class BlockKind(IntEnum):
-    """Kinds of blocks, in the order in which they stand."""
+    """Kinds of parts, in the order of the rows of the table."""
 
     COST = 0
     TASK = 1
@@ -70,12 +70,12 @@ class Column(IntEnum):
 
 
 class ProgramArrays(NamedTuple):
-    """Arrays with which compiled code writes programs.
+    """Arrays from which `assemble` writes programs; it changes none of them.
 
     Attributes:
         sizes: Sizes of the programs.
-        table: Rows of the parts, (parts, 7), by `Column`.
-        constants: Constants of the parts, (k,).
+        table: A row for each part, (parts, 7), by `Column`.
+        constants: Constants of all parts, (k,).
         jacobian: `Kinematics.jacobian`, (dof, 6).
         placements: `Kinematics.placements`, (frames, 12).
         support: `Robot.support`, (frames, dof).
@@ -95,26 +95,28 @@ class ProgramArrays(NamedTuple):
 
 @compiled
 def program_views(data: Vector, sizes: ProgramSizes) -> QPViews:
-    """Make the views of a program, `QP.data` (size,)."""
+    """Return views of the matrices and vectors in a program's `QP.data` (size,)."""
     return qp_views(data, sizes.n, sizes.m, sizes.p)
 
 
 @compiled
 def block_constants(arrays: ProgramArrays, k: int) -> Vector:
-    """Return the constants of block k, (k,)."""
+    """Return the constants of part k, a view."""
     start = arrays.table[k, Column.START]
     return arrays.constants[start : arrays.table[k, Column.STOP]]
 
 
 @compiled
 def assemble(data: Vector, arrays: ProgramArrays, step: StepViews) -> None:
-    """Write the rows of all parts into a program.
+    """Assemble the program of one instant.
+
+    Writes data, step.least, step.lower_kind and step.upper_kind.
 
     Args:
         data: The program, `QP.data`, (size,), overwritten.
         arrays: `ProgramLayout.arrays`.
-        step: The instant; the distances that pairs keep and the kinds of the bounds are brought up
-            to date.
+        step: The instant. `least` is updated to the distances that pairs have to keep from now on,
+            and the kinds of the bounds are overwritten.
     """
     code = int(LimitKind.OTHER)
     qp = program_views(data, arrays.sizes)
@@ -155,7 +157,16 @@ def assemble(data: Vector, arrays: ProgramArrays, step: StepViews) -> None:
 
 @compiled
 def _keep_kinds(bounds: Vector, before: Vector, kinds: Vector, others: Vector) -> None:
-    """Keep the kinds (joints,) of those bounds (n,) that a limit has not changed."""
+    """Set the kinds of those bounds that a limit has left as they were back to the earlier ones.
+
+    Writes kinds.
+
+    Args:
+        bounds: Bounds after the limit's kernel, (n,).
+        before: Bounds before it, (n,).
+        kinds: `LimitKind` of each bound after it, (joints,).
+        others: `LimitKind` of each bound before it, (joints,).
+    """
     for i in range(kinds.size):
         if bounds[i] == before[i]:
             kinds[i] = others[i]
@@ -163,7 +174,7 @@ def _keep_kinds(bounds: Vector, before: Vector, kinds: Vector, others: Vector) -
 
 @compiled
 def add_soft(P: Matrix, q: Vector, A: Matrix, b: Vector, weight: float) -> None:
-    """Add weight A^T A to P and -weight A^T b to q, for rows A (rows, n) and b (rows,)."""
+    """Add the cost weight / 2 |A x - b|^2 to P (n, n) and q (n,), for A (rows, n) and b (rows,)."""
     for k in range(b.size):
         for i in range(q.size):
             scaled = weight * A[k, i]

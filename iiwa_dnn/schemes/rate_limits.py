@@ -1,4 +1,4 @@
-"""Acceleration and jerk limits of the joints, and the one block of a program that keeps them."""
+"""Acceleration and jerk limits of the joints, and the one part of a program that keeps them all."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ from iiwa_dnn.schemes.viability import joint_bounds
 
 
 def positive_rates(argument: str, value: ArrayLike) -> float | tuple[float, ...]:
-    """Return one number above 0, or several as a tuple; refuse any other value but inf."""
+    """Return a number above 0 (or inf), or several as a tuple; refuse any other value."""
     given = np.ravel(value).tolist()
     rates = [rate if rate == np.inf else checks.positive(argument, rate) for rate in given]
     return tuple(rates) if np.ndim(value) else rates[0]
@@ -30,11 +30,13 @@ def positive_rates(argument: str, value: ArrayLike) -> float | tuple[float, ...]
 
 @dataclass(frozen=True)
 class RateLimits(Limit):
-    """A limit of each joint on a derivative of its velocity.
+    """Base of the limits on a derivative of the joint velocities.
 
     Attributes:
         limit: The limit, one number or one a joint, above 0; None takes the robot's, inf states
             that there is none.
+        quantity: Name of the quantity, an argument of `Robot.with_limits`.
+        row: Row of `Robot.limits` that has it.
     """
 
     _checks: ClassVar[checks.Checks] = {"limit": positive_rates}
@@ -46,8 +48,8 @@ class RateLimits(Limit):
         """Return the limit of each joint, (n,).
 
         Raises:
-            InvalidInputError: It is not one number or n, not above 0, or None and the robot has
-                none.
+            InvalidInputError: `limit` has neither one number nor n, or is None and the robot has no
+                such limit.
         """
         given: dict[str, Any] = {self.quantity: self.limit}
         values: Vector = robot.with_limits(**given).limits[self.row]
@@ -61,8 +63,8 @@ class RateLimits(Limit):
 class AccelerationLimits(RateLimits):
     """Bounds on the change of the joint velocities from one command to the next.
 
-    A joint can always stop before its position limit. Where a row of a task or another limit
-    conflicts with the bounds, the task yields (`iiwa_dnn.control.policies`), the bounds never do.
+    Within them a joint can always stop before its position limit. If a task conflicts with them,
+    the task yields (`iiwa_dnn.control.policies`); the bounds never do.
 
     Attributes:
         limit: Largest acceleration [rad/s^2], one number or (n,); None takes `Robot.ddq_max`, inf
@@ -87,9 +89,9 @@ class JerkLimits(RateLimits):
 
 
 def own_rate_limits(robot: Robot) -> tuple[RateLimits, ...]:
-    """Return the robot's acceleration and jerk limits, the default where none are given.
+    """Return the robot's acceleration and jerk limits, an empty tuple if it has none.
 
-    They are those of `Shield` and of ``iiwa-dnn track``.
+    `Shield` and ``iiwa-dnn track`` keep them where no rate limits are given.
     """
     return tuple(
         limit
@@ -99,23 +101,23 @@ def own_rate_limits(robot: Robot) -> tuple[RateLimits, ...]:
 
 
 class MotionConstants(Record):
-    """Limits of n joints on their motion, as `MotionLimits` gives them.
+    """Constants of `MotionLimits` for n joints, as its kernel reads them.
 
-    The first numbers are those of `Periods` that a step states; they are 0 where periods are
-    constant.
+    `dt`, `hold`, `longest` and `fraction` are those of the step's `Periods`; all four are 0 where
+    periods are constant.
 
     Attributes:
-        dt: Period over which changes of the command are measured [s].
+        dt: Period by which a change of the command is divided for its acceleration [s].
         hold: Longest time for which the command may be held [s].
-        longest: Longest period that may come [s].
-        fraction: Part of a distance that is gone in the stated periods at least.
-        lower: Lower position limits [rad], (n,): at one below which a position-dependent velocity
-            limit is zero, that position.
-        upper: Upper position limits [rad], (n,).
+        longest: Longest period of a later step [s].
+        fraction: Factor for distances to position limits.
+        lower: Lower position limits [rad], (n,); of a joint with a position-dependent velocity
+            limit, the position at which that is zero.
+        upper: Upper position limits [rad], (n,), in the same way.
         velocity: Largest velocities [rad/s], (n,); inf for none, as for all others.
         acceleration: Largest accelerations [rad/s^2], (n,).
         jerk: Largest jerks [rad/s^3], (n,).
-        deceleration: Decelerations with which the joints stop before their position limits
+        deceleration: Decelerations with which the joints brake before position limits
             [rad/s^2], (n,).
         slope: Deceleration D of each position-dependent velocity limit [rad/s^2], (n,).
         lag: Offset o of each position-dependent velocity limit over D [s], (n,).
@@ -137,7 +139,7 @@ class MotionConstants(Record):
 
 @compiled
 def joint_rates(limits: MotionConstants, i: int) -> Rates:
-    """Return the rates of joint i."""
+    """Return the rate limits of joint i."""
     return Rates(
         limits.velocity[i],
         limits.acceleration[i],
@@ -150,7 +152,7 @@ def joint_rates(limits: MotionConstants, i: int) -> Rates:
 
 @compiled
 def state_periods(limits: MotionConstants, periods: Periods) -> None:
-    """Write the periods of a step among the constants of `MotionLimits`."""
+    """Write the periods of a step to the first four numbers of `limits`."""
     limits.dt = periods.dt
     limits.hold = periods.hold
     limits.longest = periods.longest
@@ -161,10 +163,11 @@ def state_periods(limits: MotionConstants, periods: Periods) -> None:
 def motion_limits(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
-    """Clip the bounds of the joints to those of `MotionLimits`, whose constants these are.
+    """Clip the bounds lb and ub (n,) [rad/s] to those of `MotionLimits`.
 
-    Bounds of other limits give way where they contradict: the position and velocity limits are
-    kept by these bounds too. Without a control period there are none.
+    A bound of another limit that is outside of them is moved to the nearer one; they keep position
+    and velocity limits too. Without a control period there are no bounds. `constants` are a
+    `MotionConstants`. Writes lb, ub, step.lower_kind and step.upper_kind; G and h have no rows.
     """
     if not step.rate < np.inf:
         return
@@ -188,12 +191,12 @@ def motion_limits(
 
 @dataclass(frozen=True)
 class MotionLimits(Limit):
-    """All acceleration and jerk limits of a scheme, as the one block that is compiled.
+    """All acceleration and jerk limits of a scheme, as one part of its program.
 
     Attributes:
-        limits: The scheme's `AccelerationLimits` and `JerkLimits`; the tightest of each counts.
-        couplings: Its tasks that hold joints together. A joint is no quicker than the others of
-            its relation let it be: else one could brake where another cannot follow.
+        limits: The scheme's `AccelerationLimits` and `JerkLimits`; of several, the tightest holds.
+        couplings: The scheme's hard `JointCouplingTask`. The rates of a joint are lowered to those
+            at which the other joints of its relation can follow.
     """
 
     kernel = staticmethod(motion_limits)
@@ -201,11 +204,11 @@ class MotionLimits(Limit):
     couplings: tuple[JointCouplingTask, ...] = ()
 
     def constants(self, robot: Robot) -> MotionConstants:
-        """Return `MotionConstants`, whose stated periods are 0.
+        """Return the `MotionConstants` of a robot; their periods are 0.
 
         Raises:
             InvalidInputError: A limit does not fit the robot, or a joint's range is too short to
-                turn round in.
+                reverse in.
         """
         rates = np.full((3, robot.dof), np.inf)
         lower, upper, rates[0] = robot.limits[:3]
@@ -238,7 +241,7 @@ def check_ranges(limits: MotionConstants, rate: float) -> None:
 
     Args:
         limits: The limits of the joints.
-        rate: Control periods a second [1/s]; inf for a jerk limit that braking may use in full.
+        rate: Control rate, 1 / dt [1/s]; inf if braking may use the jerk limits in full.
     """
     lag = limits.lag
     braking = limits.deceleration
@@ -257,14 +260,14 @@ def check_ranges(limits: MotionConstants, rate: float) -> None:
 
 
 def largest_gain(limits: MotionConstants, rate: float) -> float:
-    """Compute the feedback gain up to which a loop with these limits is stable [1/s].
+    """Compute the largest feedback gain [1/s] with which a loop within rate limits is stable.
 
-    It is one over the loop's delay: a period, and the mean time that an acceleration takes to turn
-    from one limit to the other (docs/limits.md).
+    It is one over the loop's delay: a control period plus the mean time in which an acceleration
+    changes from one limit to the other (docs/limits.md).
 
     Args:
         limits: The limits of the joints.
-        rate: Control periods a second [1/s].
+        rate: Control rate, 1 / dt [1/s].
     """
     with np.errstate(invalid="ignore"):  # a joint without limits
         turn = np.sqrt(limits.velocity / limits.jerk)
@@ -273,9 +276,9 @@ def largest_gain(limits: MotionConstants, rate: float) -> float:
 
 
 def merged(limits: Sequence[Limit], tasks: Sequence[Task]) -> list[Limit]:
-    """Merge the limits on acceleration and jerk into one block, the last.
+    """Merge the acceleration and jerk limits of a list into one `MotionLimits`, the last.
 
-    Of the tasks those count that hold joints together.
+    Rate limits that are inf for all joints are left out. `tasks` are those of the scheme.
     """
     rates = tuple(
         limit

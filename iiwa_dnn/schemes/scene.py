@@ -1,21 +1,21 @@
-r"""Bodies and pairs of a scene: their layout, bounds on their motion, and their distances.
+r"""Scene of a robot among obstacles: bodies, pairs of bodies that may meet, and their distances.
 
-Of a pair the second body is a segment and the first a box, both rounded by a radius. A point is a
-tuple (x, y, z) [m], which compiled code keeps in registers. The segment is a + s u, s in [0, 1];
-the box has half-extents h about the origin, along the axes. It may be flat: without extents it is a
-point, with one a segment.
+A body is a box that is grown by a radius; a box may be flat, a segment or a point. In each pair the
+second body is a segment, a + s u with s in [0, 1], and the distance is computed in the coordinates
+of the first one, a box with half-extents h about the origin. Points are tuples (x, y, z) [m].
 
-Along the joints :math:`1 \dots n` between a body at rest and the link, which travel by
-:math:`\delta_k`, and with a point at most :math:`r_k` from the axis of joint k, the point's
-displacement, and twice its remainder of second order in the joints', are at most
+Let the joints :math:`1 \dots n` between two bodies move by :math:`\delta_k`, and a point of the
+second body be at most :math:`r_k` away from the axis of joint k. The displacement of the point is
+at most V, and twice its difference from the linear one, by the Jacobian, is at most B:
 
 .. math::
 
     V = \sum_k \delta_k r_k, \qquad
     B = \sum_k r_k \delta_k \Bigl(\delta_k + 2 \sum_{j<k} \delta_j\Bigr)
 
-(docs/theory_braking.md). A prismatic joint counts with :math:`r_k = 1`, turns nothing and has no
-:math:`\delta_k^2`. With velocities in place of displacements they bound velocity and acceleration.
+(docs/theory_braking.md). A prismatic joint has :math:`r_k = 1`, and neither turns other joints nor
+has the term :math:`\delta_k^2`. With velocities in place of displacements V and B bound the point's
+velocity and acceleration.
 """
 
 import itertools
@@ -40,19 +40,19 @@ from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox, box_around
 from iiwa_dnn.schemes.step import axis_at, rate_along, seen_from
 
 ROUNDS = 60
-"""Most steps of the search along the segment; it needs about six."""
+"""Largest number of steps of the search along a segment; about six are needed."""
 
 POSTURES = 64
 UNMOVED = 1e-9
-"""Random postures in which no joint moves an end of a pair, and the rate below which none does
-[m/rad]."""
+"""A joint does not move an end of a pair if its rate is at most `UNMOVED` [m/rad] in `POSTURES`
+random postures."""
 
 _MET = 1e-9
-"""Distance of two cores below which they count as one [m]."""
+"""Distance of two boxes, without their radii, below which they touch [m]."""
 
 
 class SceneHead(Record):
-    """Settings of a scene, and the sizes of the tables that follow them.
+    """First constants of a scene: its settings, and the sizes of the tables that follow.
 
     Attributes:
         least: Least distance [m].
@@ -60,7 +60,7 @@ class SceneHead(Record):
         bodies: Number of bodies.
         pairs: Number of pairs.
         pair_size: Length of a `Pair`.
-        first: Number of pairs of the scenes before this one.
+        first: Index of the first pair of this scene among those of all scenes of a scheme.
     """
 
     least: float
@@ -97,8 +97,7 @@ class Pair(Record):
     Attributes:
         second: Index of the second body, a segment.
         first: Index of the first body, any box.
-        still: 1 or 2 for the end of the segment that no joint moves towards or away from the first
-            body, else 0.
+        unmoved_end: 1 or 2 for the end of the segment that no joint moves along the normal, else 0.
         support: For each joint 1 if it moves the second body alone, -1 if it moves the first alone,
             else 0, (n,).
         radii: For each joint the largest distance of the second body from its axis [m], -1 for a
@@ -107,7 +106,7 @@ class Pair(Record):
 
     second: int
     first: int
-    still: int
+    unmoved_end: int
     support: Vector = part()
     radii: Vector = part()
 
@@ -129,12 +128,13 @@ class SceneViews(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """Nearest points of a pair's cores, as far as rows need them.
+    """Nearest points of a pair.
 
     Attributes:
-        second: Point of the second body [m], (3,).
-        normal: Unit normal from the first to the second, (3,); zero where segments or points meet.
-        distance: Distance of the bodies [m], negative where they meet.
+        second: Nearest point on the segment of the second body, without its radius [m], (3,).
+        normal: Unit normal from the first to the second body, (3,); zero where the first one is a
+            segment or a point and touches the segment.
+        distance: Distance of the bodies with their radii [m], negative where they overlap.
     """
 
     second: Vector3
@@ -147,11 +147,11 @@ class Scene(NamedTuple):
 
     Attributes:
         robot: The robot, n joints.
-        pairs: Names of the bodies of each pair: a link or an obstacle, and a link beside it.
-        frames: Links whose placements are needed.
+        pairs: Names of the two bodies of each watched pair; the second is a link.
+        frames: Names of the links whose placements the kernels read.
         moving: Obstacles that move, each with the index of its body.
-        constants: Numbers that compiled code sees through `scene_views`, (k,).
-        left_out: Names of the bodies of each pair that is not watched, and the reason.
+        constants: Numbers that compiled code reads through `scene_views`, (k,).
+        left_out: Names of the two bodies of each pair that is not watched, and the reason.
     """
 
     robot: Robot
@@ -162,14 +162,22 @@ class Scene(NamedTuple):
     left_out: tuple[tuple[str, str, str], ...]
 
     def move(self, constants: Vector, t: float) -> None:
-        """Write the obstacles' places at a time [s] into a copy of `constants`, (k,)."""
+        """Write the centres of moving obstacles at time t [s] to a copy of the constants, (k,)."""
         begun = scene_views(self.constants, self.robot.dof).bodies
         moved = scene_views(constants, self.robot.dof).bodies
         for obstacle, k in self.moving:
             Body.of(moved[k]).center = Body.of(begun[k]).center + obstacle.shift(t)
 
     def distances(self, q: Matrix, t: Vector) -> Matrix:
-        """Compute the distances of all pairs [m], (k, pairs), at q (k, n) [rad] and t (k,) [s]."""
+        """Compute the distances of all pairs at each of k postures and times.
+
+        Args:
+            q: Joint positions [rad], (k, n).
+            t: Times [s], (k,).
+
+        Returns:
+            The distances [m], (k, pairs).
+        """
         constants = self.constants.copy()
         kinematics = Kinematics(self.robot, self.frames)
         found = np.empty((len(q), len(self.pairs)))
@@ -180,9 +188,14 @@ class Scene(NamedTuple):
         return found
 
     def nearest(self, q: Matrix, t: Vector) -> tuple[Vector, NDArray[np.int64]]:
-        """Compute the least distance [m] of all pairs, (k,), and the index of its pair, (k,).
+        """Compute the least distance over all pairs at each of k postures and times.
 
-        The joints are at q (k, n) [rad] at times t (k,) [s].
+        Args:
+            q: Joint positions [rad], (k, n).
+            t: Times [s], (k,).
+
+        Returns:
+            The distances [m], (k,), and the index of the pair of each, (k,).
         """
         found = self.distances(q, t)
         return found.min(axis=1), found.argmin(axis=1)
@@ -195,19 +208,20 @@ def make_scene(
     distances: tuple[float, float],
     left_out: Sequence[tuple[str, str]] = (),
 ) -> Scene:
-    """Lay out the capsules of a robot, obstacles, and the pairs of both that are watched.
+    """Lay out the capsules of a robot's links, the obstacles, and the pairs that are watched.
 
     Args:
         robot: The robot.
         obstacles: The obstacles.
         self_collision: Whether pairs of links are watched.
         distances: Least distance [m], and the largest rate at which a distance shrinks to it [1/s].
-        left_out: Names of the bodies of pairs that are not watched. Nor are those that no joint
-            moves.
+        left_out: Names of the two bodies of each pair that is not watched. Pairs that no joint
+            moves are left out too.
 
     Raises:
-        NotFoundError: There is no body of a name in `left_out`.
-        InvalidInputError: There is no URDF file, no velocity limit of a joint, or no pair.
+        NotFoundError: `left_out` has a name that is no body's.
+        InvalidInputError: The robot has no URDF file, a joint has no velocity limit, or no pair is
+            left to be watched.
         FileError: The collision geometry of the robot cannot be read.
     """
     if not (robot.dq_max < np.inf).all():
@@ -230,7 +244,7 @@ def make_scene(
     frames = tuple(dict.fromkeys(links))
     moved = _moved_ends(robot, frames, _constants(robot, distances, bodies, pairs))
     for row, ends in zip(pairs, moved, strict=True):
-        Pair.of(row).still = 0 if ends.all() else 1 + ends[0]
+        Pair.of(row).unmoved_end = 0 if ends.all() else 1 + ends[0]
     for name in itertools.chain(*left_out):
         if name not in names:
             raise NotFoundError("link or obstacle", name, names)
@@ -262,9 +276,15 @@ def _body(frame: int, box: PlacedBox, radius: float, speed: float) -> Body:
 
 
 def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArray[np.bool_]:
-    """Test which ends of each pair joints move towards or away from its first body, (pairs, 2).
+    """Test which ends of each pair's segment some joint moves along the normal, (pairs, 2).
 
-    A body that moves by itself counts as moved, if any joint moves the other beside it.
+    Both ends count as moved if the first body is an obstacle that moves, and some joint moves the
+    second one.
+
+    Args:
+        robot: The robot, n joints.
+        frames: Links whose placements are needed.
+        constants: Constants of a scene of all pairs, (k,).
     """
     scene = scene_views(constants, robot.dof)
     pairs = Pair.of(scene.pairs)
@@ -281,7 +301,14 @@ def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArr
 def _constants(
     robot: Robot, distances: tuple[float, float], bodies: list[Body], pairs: Matrix
 ) -> Vector:
-    """Return `Scene.constants`, (k,), for bodies and pairs (pairs, 3 + 2 n)."""
+    """Return the constants of a scene, (k,).
+
+    Args:
+        robot: The robot, n joints.
+        distances: As in `make_scene`.
+        bodies: All bodies.
+        pairs: A `Pair` in each row, (pairs, 3 + 2 n).
+    """
     least, gain = distances
     count, size = pairs.shape
     head = SceneHead.make(
@@ -291,7 +318,10 @@ def _constants(
 
 
 def _pair(robot: Robot, bodies: list[Body], i: int, k: int) -> Pair:
-    """Find the joints that move body k, a segment, beside body i, and how far it is from them."""
+    """Make the pair of body i and body k, a segment: which joints move one relative to the other.
+
+    Its `unmoved_end` is 0.
+    """
     model = robot.model
     second = bodies[k]
     placement = model.frames[second.frame].placement
@@ -314,12 +344,12 @@ def _pair(robot: Robot, bodies: list[Body], i: int, k: int) -> Pair:
         radii[j] = reach
     slides = list(robot.slides)
     radii[slides] = np.where(support[slides], -1.0, 0.0)
-    return Pair.make(second=k, first=i, still=0, support=support, radii=radii)
+    return Pair.make(second=k, first=i, unmoved_end=0, support=support, radii=radii)
 
 
 @compiled
 def scene_views(constants: Vector, dof: int) -> SceneViews:
-    """Make the views of a scene's constants (k,) for a robot of `dof` joints."""
+    """Return views of a scene's constants (k,), for a robot with `dof` joints."""
     at_speeds = SceneHead.width()
     head = SceneHead.of(constants[:at_speeds])
     at_bodies = at_speeds + dof
@@ -334,7 +364,13 @@ def scene_views(constants: Vector, dof: int) -> SceneViews:
 
 @compiled
 def place_bodies(scene: SceneViews, placements: Matrix, placed: Matrix) -> None:
-    """Write the placements of all bodies in the world, (b, 12), for those of frames (k, 12)."""
+    """Write the placements of all bodies in the world.
+
+    Args:
+        scene: The scene, b bodies.
+        placements: `Kinematics.placements`, (frames, 12).
+        placed: A `Placement` in each row, (b, 12), overwritten.
+    """
     for k in range(len(scene.bodies)):
         body = Body.of(scene.bodies[k])
         frame = Placement.of(placements[body.frame])
@@ -350,7 +386,13 @@ def place_bodies(scene: SceneViews, placements: Matrix, placed: Matrix) -> None:
 
 @compiled
 def ends_of(scene: SceneViews, placed: Matrix, body: int) -> tuple[Vector3, Vector3]:
-    """Return the ends of a segment among the bodies in the world [m], (3,) each."""
+    """Compute the two ends of a body's segment in the world [m].
+
+    Args:
+        scene: The scene, b bodies.
+        placed: Placements of the bodies, (b, 12).
+        body: Index of the body.
+    """
     place = Placement.of(placed[body])
     center = triple(place.position)
     axis = triple(place.axes[2])
@@ -360,7 +402,13 @@ def ends_of(scene: SceneViews, placed: Matrix, body: int) -> tuple[Vector3, Vect
 
 @compiled
 def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
-    """Compute the contact of pair k, for the placements of all bodies (b, 12)."""
+    """Compute the nearest points and the distance of pair k.
+
+    Args:
+        scene: The scene, b bodies.
+        k: Index of the pair.
+        placed: Placements of the bodies, (b, 12).
+    """
     pair = Pair.of(scene.pairs[k])
     first = Body.of(scene.bodies[pair.first])
     base = Placement.of(placed[pair.first])
@@ -386,9 +434,9 @@ def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
 
 @compiled
 def height_of(end: Vector3, contact: Contact) -> float:
-    """Compute by how much an end of a pair's segment is farther away than the contact [m].
+    """Compute how much farther away than the nearest point an end of the segment is [m].
 
-    No end is below the nearest point, but rounding would hold an arm that is too near.
+    It is measured along the normal, and at least 0 whatever rounding does.
     """
     return max(0.0, dot(combined(1.0, end, -1.0, contact.second), contact.normal))
 
@@ -398,8 +446,8 @@ def write_distances(constants: Vector, dof: int, placements: Matrix, distances: 
     """Write the distance of each pair [m].
 
     Args:
-        constants: `Scene.constants`, (k,).
-        dof: Number of the robot's joints.
+        constants: Constants of the scene, (k,).
+        dof: Number of joints of the robot.
         placements: `Kinematics.placements`, (frames, 12).
         distances: The distances, (pairs,), overwritten.
     """
@@ -412,15 +460,13 @@ def write_distances(constants: Vector, dof: int, placements: Matrix, distances: 
 
 @compiled
 def raise_end_rates(constants: Vector, jacobian: Matrix, placements: Matrix, rates: Matrix) -> None:
-    """Raise the rates (pairs, 2) to those at which joints move the ends of each pair [m/rad].
-
-    The largest of a joint counts, along the pair's normal.
+    """Update the largest rates at which a joint moves the ends of each pair along its normal.
 
     Args:
-        constants: `Scene.constants`, (k,).
+        constants: Constants of the scene, (k,).
         jacobian: `Kinematics.jacobian`, (n, 6).
         placements: `Kinematics.placements`, (frames, 12).
-        rates: The rates so far, overwritten.
+        rates: Largest rates [m/rad], (pairs, 2), raised to those of this posture.
     """
     dof = len(jacobian)
     scene = scene_views(constants, dof)
@@ -438,7 +484,12 @@ def raise_end_rates(constants: Vector, jacobian: Matrix, placements: Matrix, rat
 
 @compiled
 def second_order(pair: Pair, travel: Vector) -> float:
-    """Compute B [m] for a pair whose joints travel by `travel` (n,) [rad], at least 0 each."""
+    """Compute B of a pair [m], a bound on the curvature of its motion.
+
+    Args:
+        pair: The pair.
+        travel: Displacement of each joint, at least 0 [rad], (n,).
+    """
     n = travel.size
     B = 0.0
     turning = 0.0
@@ -456,7 +507,7 @@ def second_order(pair: Pair, travel: Vector) -> float:
 
 @compiled
 def beyond(x: Vector3, half: Vector3) -> Vector3:
-    """Return the vector to a point from the nearest one of a box."""
+    """Return the vector to a point x (3,) from the nearest point of a box of half-extents (3,)."""
     return (
         x[0] - min(max(x[0], -half[0]), half[0]),
         x[1] - min(max(x[1], -half[1]), half[1]),
@@ -466,10 +517,15 @@ def beyond(x: Vector3, half: Vector3) -> Vector3:
 
 @compiled
 def nearest_parameter(a: Vector3, u: Vector3, half: Vector3) -> float:
-    """Compute the s in [0, 1] of the point of a segment that is nearest to a box.
+    """Compute the s in [0, 1] of the point a + s u of a segment that is nearest to a box.
 
-    Half the derivative of the squared distance grows with s: its root is found by regula falsi,
-    every third step of which halves.
+    Half the derivative of the squared distance grows with s. Its root is found by regula falsi with
+    a bisection at each third step.
+
+    Args:
+        a: One end in the coordinates of the box [m], (3,).
+        u: Vector to the other end [m], (3,).
+        half: Half-extents of the box [m], (3,).
     """
     low = 0.0
     high = 1.0
@@ -496,10 +552,10 @@ def nearest_parameter(a: Vector3, u: Vector3, half: Vector3) -> float:
 
 @compiled
 def depth(x: Vector3, half: Vector3) -> tuple[float, float, float, float]:
-    """Compute the signed distance of a point to the nearest face of a box, negative inside.
+    """Compute the signed distance of a point x (3,) to the nearest face of a box, negative inside.
 
     Returns:
-        The distance along the face's outer normal, and the three components of the normal.
+        The distance along the outer normal of the face [m], and the normal's components.
     """
     found = -1e300
     axis = 2

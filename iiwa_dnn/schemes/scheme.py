@@ -1,6 +1,4 @@
-"""Schemes: costs, tasks and limits composed into the program of a control step."""
-
-from __future__ import annotations
+"""Schemes: costs, tasks and limits, composed into the quadratic program of a control step."""
 
 import copy
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,22 +19,22 @@ from iiwa_dnn.schemes.parts import Cost, Limit, Task
 SchemeT = TypeVar("SchemeT", bound="Scheme")
 
 _LISTS = ("costs", "tasks", "limits")
-"""Attributes of a scheme that list its parts."""
+"""Names of the attributes of a scheme that list its parts."""
 
 
 class Scheme:
-    """Costs, tasks and limits that choose the joint velocities.
+    """Costs, tasks and limits whose program has the joint velocities as its solution.
 
-    The program's variables are the n joint velocities [rad/s], then `slack` further variables that
-    costs and limits of one's own may use; the command is the first n of the solution.
+    The variables are the n joint velocities [rad/s], then `slack` variables for costs and limits of
+    one's own; the command is the first n numbers of the solution.
 
     Attributes:
         costs: Terms of the cost.
         tasks: Equality rows, or soft tasks.
         limits: Bounds and inequality rows.
         slack: Number of slack variables.
-        sample: Time of the targets in a control loop: ``"start"`` or ``"end"`` of the control
-            period; at the end with the mean twist over it (`Reference.feed_forward`).
+        sample: Time of the targets in a control loop: the ``"start"`` of the control period, or
+            its ``"end"``, with the mean twist over the period (`Reference.feed_forward`).
     """
 
     costs: tuple[Cost, ...]
@@ -55,7 +53,7 @@ class Scheme:
         """Compose the parts.
 
         Raises:
-            InvalidInputError: A part is of another kind than its list, or `slack` is negative.
+            InvalidInputError: A list has an object of another kind, or `slack` is negative.
         """
         self._compose(costs, tasks, limits)
         self.slack = checks.integer("slack", slack, 0)
@@ -71,7 +69,7 @@ class Scheme:
             object.__setattr__(self, name, checked)  # a scheme may be a frozen dataclass
 
     def anchored(self: SchemeT, conf: Configuration) -> SchemeT:
-        """Return the scheme with `conf` as the posture to come back to, where a part lacks one."""
+        """Return the scheme with the posture `conf` in each part whose posture was left None."""
         lists = [[part.anchored(conf) for part in getattr(self, name)] for name in _LISTS]
         if lists == [list(getattr(self, name)) for name in _LISTS]:
             return self
@@ -84,8 +82,8 @@ class Scheme:
 
         Raises:
             NotFoundError: A part names a frame that the robot does not have.
-            InvalidInputError: A parameter of a part does not fit the robot, or a subclass builds
-                its programs in another way, which no control loop would follow.
+            InvalidInputError: A parameter of a part does not fit the robot, or a subclass overrides
+                `build_qp`, which control loops do not call.
         """
         if type(self).build_qp is not Scheme.build_qp:
             problem = f"{type(self).__name__} overrides build_qp; write a Cost, a Task or a Limit"
@@ -102,11 +100,11 @@ class Scheme:
         """Build the program of one instant; it is not solved here.
 
         Args:
-            conf: Configuration of the robot, n joints; the posture to come back to where there is
-                none.
-            target: Target of the tip; with tasks of other frames, a target by frame name.
-            dt: Control period [s], which a gain of inf stands for.
-            dq: Joint velocities [rad/s], (n,), or the last command; None: zero.
+            conf: Configuration of the robot, n joints, and the posture of each part whose own was
+                left None.
+            target: Target of the tip; with tasks of other frames, targets by frame name.
+            dt: Control period [s], of which a gain is at most the inverse.
+            dq: Last command [rad/s], (n,); None: zero.
 
         Returns:
             A QP in n + slack variables: the rows of the tasks in A, of the limits in G.
@@ -124,10 +122,10 @@ class Scheme:
         return program.qp_at(q, velocity, velocity, targets, dt)
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
-        """Compute dq^T G(q) dq of a joint velocity dq (n,) [rad/s].
+        """Compute the kinetic index dq^T G(q) dq of joint velocities dq (n,) [rad/s].
 
-        G is that of the scheme's `KineticEnergy`: [rad^2/s^2] with the identity, [J] (twice the
-        energy) with the inertia matrix.
+        G is that of the scheme's `KineticEnergy`: with the identity the index is in [rad^2/s^2],
+        with the inertia matrix it is twice the kinetic energy [J].
         """
         velocity = np.asarray(dq, dtype=np.float64)
         along = conf.inertia @ velocity if self.kinetic == "inertia" else velocity
@@ -141,7 +139,7 @@ class Scheme:
         )
 
     def settings(self) -> dict[str, Any]:
-        """Return name, parts and parameters, as values that JSON can hold."""
+        """Return class name, parts and parameters, as values that JSON can hold."""
         parts = {name: [part.settings() for part in getattr(self, name)] for name in _LISTS}
         own = {"slack": self.slack, "kinetic": self.kinetic}
         return {"name": type(self).__name__, **parts, **own}

@@ -1,6 +1,4 @@
-"""One instant of a control loop, as the parts of a scheme see it."""
-
-from __future__ import annotations
+"""One instant of a control loop, as the parts of a scheme read it: from Python, and in kernels."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -25,7 +23,9 @@ TARGET_SIZE = 18
 
 
 class StepViews(NamedTuple):
-    """One instant of a control loop of n joints, as compiled parts read it.
+    """One instant of a control loop of n joints, as the kernels of parts read it.
+
+    The kernels of limits write `least`, `lower_kind` and `upper_kind`; all else is read only.
 
     Attributes:
         t: Time [s].
@@ -38,11 +38,11 @@ class StepViews(NamedTuple):
         support: 1 where a joint moves a frame, else 0, `Robot.support`, (frames, n).
         inertia: Joint-space inertia matrix [kg m^2], (n, n), current if a cost needs it.
         targets: Targets of the tracked frames, `Target.data` each, (k, 18).
-        least: Distance that each watched pair has to keep [m], (pairs,), a state that the limit
-            brings up to date (`collisions.kept_distance`).
-        lower_kind: `LimitKind` of each joint's lower bound, (n,). A limit that notes none is named
-            itself.
-        upper_kind: The same of the upper bounds, (n,).
+        least: Distance that each watched pair has to keep [m], (pairs,), updated by
+            `CollisionAvoidance` (`collisions.kept_distance`).
+        lower_kind: `LimitKind` of each joint's lower bound, (n,). Where a kernel tightens a bound
+            and writes no kind, the bound goes by the name of its limit.
+        upper_kind: The same for the upper bounds, (n,).
     """
 
     t: float
@@ -61,7 +61,7 @@ class StepViews(NamedTuple):
 
 
 class Step:
-    """One instant of a control loop, as parts written in numpy see it.
+    """One instant of a control loop, as parts written in numpy read it.
 
     Attributes:
         robot: The robot, n joints.
@@ -83,7 +83,7 @@ class Step:
         dq: ArrayLike | None = None,
         kinematics: Kinematics | None = None,
     ) -> None:
-        """Compute the kinematics of one instant, for example to test a part of one's own.
+        """Make the instant, for example to test a part of one's own.
 
         Args:
             robot: The robot, n joints.
@@ -92,7 +92,7 @@ class Step:
             dt: Control period [s]; inf outside of a loop.
             t: Time [s].
             dq: Last command [rad/s], (n,); None: zero.
-            kinematics: Kinematics of the robot that are at `q` already; None: they are computed.
+            kinematics: Kinematics of the robot, computed at `q`; None: they are computed here.
 
         Raises:
             InvalidInputError: `q` or `dq` has a wrong shape or is not finite.
@@ -118,10 +118,10 @@ class Step:
         return FrameState(*self._kinematics.frame(self.robot.tip if name is None else name))
 
     def target(self, name: str | None = None) -> Target:
-        """Return the target of a frame that some task tracks; None stands for the tip.
+        """Return the target of a frame; None stands for the tip.
 
         Raises:
-            NotFoundError: No task tracks a frame of that name.
+            NotFoundError: There is no target of that frame, as no task tracks it.
         """
         frame = self.robot.tip if name is None else name
         if frame not in self._targets:
@@ -135,12 +135,12 @@ class Step:
 
 
 class FrameConstants(Record):
-    """Constants that those of a task of a frame begin with.
+    """First constants of each task of a frame.
 
     Attributes:
         frame: Index of the frame.
         gain: Rate at which the error decays [1/s].
-        relative_to: Index of the frame that it is seen from; 0: the world's.
+        relative_to: Index of the base frame, relative to which the frame moves; 0: the world.
     """
 
     frame: int
@@ -150,7 +150,7 @@ class FrameConstants(Record):
 
 @compiled
 def axis_at(placement: Placement, axis: Vector3) -> Vector3:
-    """Turn a direction in a frame's own coordinates, by its placement, into the world's."""
+    """Rotate a vector (3,) from the coordinates of a placed frame into the world's."""
     x = scaled(axis[0], triple(placement.axes[0]))
     y = triple(placement.axes[1])
     return combined(1.0, x, 1.0, combined(axis[1], y, axis[2], triple(placement.axes[2])))
@@ -158,7 +158,7 @@ def axis_at(placement: Placement, axis: Vector3) -> Vector3:
 
 @compiled
 def seen_from(placement: Placement, v: Vector3) -> Vector3:
-    """Turn a vector (3,) of the world into the coordinates of a placement."""
+    """Rotate a vector (3,) from the world's coordinates into those of a placed frame."""
     x = dot(triple(placement.axes[0]), v)
     y = dot(triple(placement.axes[1]), v)
     return x, y, dot(triple(placement.axes[2]), v)
@@ -166,9 +166,9 @@ def seen_from(placement: Placement, v: Vector3) -> Vector3:
 
 @compiled
 def point_rate(jacobian: Matrix, j: int, point: Vector3) -> Vector3:
-    """Compute the velocity (3,) of a point (3,) [m] that joint j moves [m/rad].
+    """Compute the velocity (3,) of a point p (3,) [m] for each unit of velocity of joint j [m/rad].
 
-    A joint with angular velocity w and velocity v of the world's origin moves it with v + w x p.
+    It is v + w x p, with the joint's twist: v of the world's origin, and w.
     """
     twist = Twist.of(jacobian[j])
     return combined(1.0, triple(twist.linear), 1.0, cross(triple(twist.angular), point))
@@ -176,7 +176,7 @@ def point_rate(jacobian: Matrix, j: int, point: Vector3) -> Vector3:
 
 @compiled
 def rate_along(jacobian: Matrix, j: int, point: Vector3, normal: Vector3) -> float:
-    """Compute the velocity along a normal (3,) of a point (3,) [m] that joint j moves [m/rad]."""
+    """Compute the velocity of a point (3,) [m] along a normal (3,) for joint j alone [m/rad]."""
     return dot(normal, point_rate(jacobian, j, point))
 
 
@@ -184,7 +184,15 @@ def rate_along(jacobian: Matrix, j: int, point: Vector3, normal: Vector3) -> flo
 def write_velocity(
     step: StepViews, own: FrameConstants, point: Vector3, axis: Vector3, row: Vector
 ) -> None:
-    """Write the velocity along an axis of a frame's point as seen from its base, a row (n,)."""
+    """Write the Jacobian row (n,) of a point's velocity along an axis, relative to the base frame.
+
+    Args:
+        step: The instant.
+        own: Frame that carries the point, and its base frame.
+        point: The point in the world [m], (3,).
+        axis: The axis in the world, (3,).
+        row: The row, (n,), or longer, overwritten.
+    """
     for j in range(step.q.size):
         sign = step.support[own.frame, j] - step.support[own.relative_to, j]
         row[j] = sign * rate_along(step.jacobian, j, point, axis)
@@ -192,7 +200,10 @@ def write_velocity(
 
 @compiled
 def write_spin(step: StepViews, own: FrameConstants, axis: Vector3, row: Vector) -> None:
-    """Write the angular velocity about an axis of a frame as seen from its base, a row (n,)."""
+    """Write the Jacobian row (n,) of a frame's rate about an axis (3,), relative to its base frame.
+
+    Writes row, of which only the first n numbers if it is longer.
+    """
     for j in range(step.q.size):
         sign = step.support[own.frame, j] - step.support[own.relative_to, j]
         row[j] = sign * dot(axis, triple(Twist.of(step.jacobian[j]).angular))

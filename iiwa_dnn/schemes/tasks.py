@@ -1,14 +1,13 @@
-r"""Tasks: equality rows A dq = b that let frames and joints of the arm follow their targets.
+r"""Tasks: equality rows A dq = b by which frames and joints of the arm follow their targets.
 
-A frame at position p with orientation R is to be at :math:`p_d, R_d` with the twist
-:math:`[v_d;\, \omega_d]`, and moves with :math:`[v;\, \omega] = J \dot q`. Each task brings an
-error to zero at the rate `gain`. With a ``weight`` w the rows become the cost
+A frame at position p with orientation R moves with the twist :math:`[v;\, \omega] = J \dot q`. Its
+target is :math:`p_d, R_d` with the twist :math:`[v_d;\, \omega_d]`. Each task brings an error to
+zero exponentially, at the rate `gain`. With a ``weight`` w the rows become the cost
 :math:`\tfrac12 w\,\|A \dot q - b\|^2`.
 
-A gain above 1 / dt is cut to it. With this one and a reference seen one period ahead
-(`Reference.feed_forward`) the rows ask for the next target, and an Euler step leaves nothing of the
-error but the step's curvature, :math:`\tfrac12 dt^2\,\dot q^T \nabla^2 p\,\dot q`, which does not
-add up.
+A gain above 1 / dt is cut to 1 / dt. With that gain and the target of the end of the control period
+(`Reference.feed_forward`), the error after an Euler step is the curvature of the step alone,
+:math:`\tfrac12 dt^2\,\dot q^T \nabla^2 p\,\dot q`, which does not accumulate.
 """
 
 import math
@@ -48,20 +47,23 @@ from iiwa_dnn.schemes.step import (
 Orientation = Literal["so3", "block", "none"]
 
 ROTATION_LENGTH = 0.5
-"""Weight of a missing 1 rad/s of a task beside a missing 1 m/s where a policy lets it yield [m].
+"""Weight of 1 rad/s of error in a relaxed task, beside 1 m/s [m]: about the length of a forearm.
 
-About an arm's forearm. With a fifth of it, more arms rest at joints' limits with the tip in place
-and the hand turned away; with twice as much, no more arrive."""
+With a fifth of it, more arms rest at joint limits with the tip in place and the hand turned away;
+with twice as much, no more arrive."""
 
 VERTICAL = 1e-9
-"""Sine of the angle between the tool's axis and the vertical that counts as none."""
+"""Sine of the angle between the tool's axis and the vertical up to which they are parallel."""
 
 
 @compiled
 def position_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
-    """Write the rows of a frame's position as seen from its base, three."""
+    """Write A (3, n) and b (3,) of a frame's position relative to its base frame.
+
+    `constants` begin with a `FrameConstants`.
+    """
     own = FrameConstants.of(constants[: FrameConstants.width()])
     gain = min(own.gain, step.rate)
     base = Placement.of(step.placements[own.relative_to])
@@ -78,7 +80,10 @@ def position_rows(
 def rotation_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
-    """Write the rows of a frame's orientation as seen from its base, three."""
+    """Write A (3, n) and b (3,) of a frame's orientation relative to its base frame.
+
+    `constants` begin with a `FrameConstants`.
+    """
     own = FrameConstants.of(constants[: FrameConstants.width()])
     gain = min(own.gain, step.rate)
     base = Placement.of(step.placements[own.relative_to])
@@ -99,7 +104,7 @@ def rotation_rows(
 def block_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
-    """Write the rows of `OrientationTask` in the form ``block``, four."""
+    """Write A (4, n) and b (4,) of an `OrientationTask` in the form ``block``."""
     own = FrameConstants.of(constants)
     gain = min(own.gain, step.rate)
     placement = Placement.of(step.placements[own.frame])
@@ -115,7 +120,12 @@ def block_rows(
 
 @compiled
 def project_on_range(axes: Matrix, b: Vector) -> None:
-    """Replace b (4,) by its projection on the range of W of a frame's axes (3, 3)."""
+    """Project b (4,), in place, on the range of the matrix W of `OrientationTask`.
+
+    Args:
+        axes: Axes of the frame, one a row, (3, 3).
+        b: The vector, overwritten.
+    """
     x, y, _ = triple(axes[2])
     row = math.sqrt(axes[0, 2] * axes[0, 2] + axes[1, 2] * axes[1, 2])
     column = math.sqrt(x * x + y * y)
@@ -136,14 +146,14 @@ def project_on_range(axes: Matrix, b: Vector) -> None:
 
 @compiled
 def pose_rows(step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector) -> None:
-    """Write the rows of a frame's position and orientation as seen from its base, six."""
+    """Write A (6, n) and b (6,) of a frame's pose relative to its base frame, position first."""
     half = b.size // 2
     position_rows(step, constants, target, A[:half], b[:half])
     rotation_rows(step, constants, target, A[half:], b[half:])
 
 
 class HeldPoseConstants(Record):
-    """Frame, gain and base of `RelativePoseTask`, and the pose that is kept, at rest."""
+    """Constants of `RelativePoseTask`: those of a frame, and its desired pose at rest."""
 
     task: FrameConstants = part(FrameConstants)
     pose: TargetData = part(TargetData)
@@ -153,22 +163,22 @@ class HeldPoseConstants(Record):
 def held_pose_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
-    """Write the rows of a pose that is among the constants, six."""
+    """Write A (6, n) and b (6,) of a `RelativePoseTask`, whose pose is among the constants."""
     pose_rows(step, constants, HeldPoseConstants.of(constants).pose, A, b)
 
 
 def feedback_gain(argument: str, value: float) -> float:
-    """Return a gain of at least 0, inf among them; refuse any other value."""
+    """Return a gain of at least 0, which may be inf; refuse any other value."""
     return np.inf if value == np.inf else checks.not_negative(argument, value)
 
 
 @dataclass(frozen=True, kw_only=True)
 class GainTask(Task):
-    """Base of tasks whose error decays.
+    """Base of tasks whose error decays exponentially.
 
     Attributes:
-        gain: Rate at which the error decays [1/s], at least 0; more than 1 / dt, as inf, is cut to
-            that.
+        gain: Rate at which the error decays [1/s], at least 0; above 1 / dt, as inf, it is cut to
+            1 / dt.
         weight: None for hard rows, else the weight of the soft task, at least 0.
     """
 
@@ -189,18 +199,18 @@ class FrameTask(GainTask):
 
     @property
     def _base(self) -> str | None:
-        """Name of the frame that this one is seen from; None stands for the world."""
+        """Name of the base frame, relative to which the frame moves; None stands for the world."""
         return getattr(self, "base", None)
 
     def extra_frames(self, robot: Robot) -> tuple[str, ...]:
-        """Return the name of the frame that this one is seen from, if it is a robot's."""
+        """Return the name of the base frame, unless that is the world."""
         return () if self._base is None else (self._base,)
 
     def frame_constants(self, robot: Robot) -> FrameConstants:
-        """Return the constants that the task's begin with.
+        """Return the first constants of the task.
 
         Raises:
-            NotFoundError: The robot has no such frame.
+            NotFoundError: The robot does not have the frame or the base frame.
         """
         base = 0 if self._base is None else robot.frame_id(self._base)
         frame = robot.frame_id(self.frame_name(robot))
@@ -287,7 +297,7 @@ class PoseTask(FrameTask):
 
 @dataclass(frozen=True)
 class RelativePoseTask(FrameTask):
-    r"""Pose of one frame as seen from another, six rows.
+    r"""Pose of one frame relative to another, six rows.
 
     With the base frame at :math:`p_1, R_1` and the frame at :math:`p_2, R_2`, the relative position
     :math:`r = R_1^T (p_2 - p_1)` and orientation :math:`R = R_1^T R_2` obey
@@ -299,8 +309,9 @@ class RelativePoseTask(FrameTask):
 
     Attributes:
         frame: Name of the frame.
-        base: Name of the frame that it is seen from.
-        pose: Desired pose as a homogeneous matrix, (4, 4); None: the one where a run begins.
+        base: Name of the base frame.
+        pose: Desired pose in the base frame as a homogeneous matrix, (4, 4); None: the one with
+            which a run begins.
     """
 
     kernel = staticmethod(held_pose_rows)
@@ -316,7 +327,7 @@ class RelativePoseTask(FrameTask):
     rows = 6
 
     def anchored(self, conf: Configuration) -> "RelativePoseTask":
-        """Return the task with the relative pose of `conf`, unless it has one already."""
+        """Return the task with the relative pose of `conf`, or the task itself if it has a pose."""
         if self.pose is not None:
             return self
         pose = np.linalg.inv(conf.frame(self.base).pose) @ conf.frame(self.frame).pose
@@ -336,7 +347,7 @@ class AxisConstants(Record):
         task: Frame and gain.
         axis: The axis in the frame's own coordinates.
         normals: Two directions normal to it and to each other.
-        direction: Desired direction in the world; zero for the target's.
+        direction: Desired direction in the world; zero: the axis as the target's rotation turns it.
     """
 
     task: FrameConstants = part(FrameConstants)
@@ -347,7 +358,7 @@ class AxisConstants(Record):
 
 @compiled
 def axis_rows(step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector) -> None:
-    """Write the rows of `AxisTask`, two."""
+    """Write A (2, n) and b (2,) of an `AxisTask`."""
     own = AxisConstants.of(constants)
     placement = Placement.of(step.placements[own.task.frame])
     axis = triple(own.axis)
@@ -372,7 +383,7 @@ def axis_rows(step: StepViews, constants: Vector, target: TargetData, A: Matrix,
 
 @dataclass(frozen=True, kw_only=True)
 class AxisTask(FrameTask):
-    r"""Direction of one axis of a frame, which stays free to spin about it; two rows.
+    r"""Direction of one axis of a frame, about which the frame is free to spin; two rows.
 
     With the axis a, the desired direction :math:`a_d` at the angle :math:`\theta` from it and a
     basis U of the directions normal to a:
@@ -382,7 +393,8 @@ class AxisTask(FrameTask):
 
     Attributes:
         axis: The axis in the frame's own coordinates, (3,), of any length.
-        direction: Desired direction in the world, (3,); None: the axis of the target's rotation.
+        direction: Desired direction in the world, (3,); None: the axis as the target's rotation
+            turns it.
     """
 
     kernel = staticmethod(axis_rows)
@@ -411,9 +423,9 @@ class RemoteCenterConstants(Record):
     """Constants of `RemoteCenterTask`.
 
     Attributes:
-        task: Frame, gain, and the frame that carries the point.
+        task: Frame, gain, and the frame that carries the point as base frame.
         normals: Two directions normal to the shaft and to each other.
-        point: The point, seen from the origin of the frame that carries it [m].
+        point: The point relative to the origin of the base frame [m].
     """
 
     task: FrameConstants = part(FrameConstants)
@@ -425,7 +437,7 @@ class RemoteCenterConstants(Record):
 def remote_center_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
-    """Write the rows of `RemoteCenterTask`, two."""
+    """Write A (2, n) and b (2,) of a `RemoteCenterTask`."""
     own = RemoteCenterConstants.of(constants)
     placement = Placement.of(step.placements[own.task.frame])
     carrier = Placement.of(step.placements[own.task.relative_to])
@@ -506,7 +518,7 @@ class JointConstants(Record):
 def joint_rows(
     step: StepViews, constants: Vector, target: TargetData, A: Matrix, b: Vector
 ) -> None:
-    """Write the rows of a task of joints."""
+    """Write A (rows, n) and b (rows,) of a task of joints."""
     own = JointConstants.of(constants, b.size)
     C = own.coefficients.reshape(b.size, step.q.size)
     gain = min(own.gain, step.rate)
@@ -527,13 +539,13 @@ def numbers_of(argument: str, value: Any) -> dict[str, float]:
 
 
 class JointTask(GainTask):
-    """Base of tasks of joints, which name the rows of C and state c."""
+    """Base of tasks with linear relations C q = c between joint positions."""
 
     kernel = staticmethod(joint_rows)
     tracks = False
 
     def _relations(self) -> list[tuple[Mapping[str, float], float]]:
-        """Return for each row its coefficients by joint name, and its c [rad]."""
+        """Return for each relation its row of C by joint names, and its c [rad]."""
         raise NotImplementedError
 
     def row_count(self, robot: Robot) -> int:
@@ -541,7 +553,7 @@ class JointTask(GainTask):
         return len(self._relations())
 
     def constants(self, robot: Robot) -> JointConstants:
-        """Return the constants for a robot.
+        """Return the constants of the task for a robot.
 
         Raises:
             NotFoundError: The robot has no joint of a name.
@@ -558,7 +570,7 @@ class JointTask(GainTask):
 
 @dataclass(frozen=True)
 class PostureTask(JointTask):
-    r"""Positions of some joints; one row a joint (`CyclicMotion` draws back all of them, softly).
+    r"""Desired positions of some joints, one row a joint; `CyclicMotion` is a cost for all of them.
 
     .. math::  \dot q_j = \delta\,(q_{d,j} - q_j)
 
@@ -576,12 +588,12 @@ class PostureTask(JointTask):
 
 @dataclass(frozen=True)
 class JointCouplingTask(JointTask):
-    r"""One linear relation between joints, as of a gear or of a joint that follows another.
+    r"""One linear relation between joints, for example of a gear or of joints that move as one.
 
     .. math::  c^T \dot q = \delta\,(c_0 - c^T q)
 
-    It is a limit where the tasks yield: a linkage is not pulled apart. Joints that begin off the
-    relation come to it as quickly as the other limits admit; an arm that brakes does not.
+    Policies never relax it, as a linkage cannot be pulled apart. If joints begin off the relation,
+    they approach it as fast as the limits admit, but not while the arm brakes.
 
     Attributes:
         coefficients: c by joint name.
@@ -596,7 +608,7 @@ class JointCouplingTask(JointTask):
     def _relations(self) -> list[tuple[Mapping[str, float], float]]:
         return [(self.coefficients, self.offset)]
 
-    def missing(self, robot: Robot, q: Vector) -> float:
-        """Return the error of the relation at joint positions q (n,), c_0 - c^T q [rad]."""
+    def error(self, robot: Robot, q: Vector) -> float:
+        """Compute the error c_0 - c^T q [rad] of the relation at joint positions q (n,)."""
         own = self.constants(robot)
         return float(own.offsets[0] - own.coefficients @ q)

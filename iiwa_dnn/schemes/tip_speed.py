@@ -17,11 +17,11 @@ from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.step import StepViews, rate_along
 
 NEGLIGIBLE = 1e-6
-"""Contribution of a joint to the speed that is rounding, as of one whose axis meets the tip [m]."""
+"""Lever of a joint that counts as rounding, as where its axis goes through the tip [m]."""
 
 
 class TipSpeedConstants(Record):
-    """Constants of `TipSpeedLimit`: index of the frame, limit [m/s] and gain [1/s]."""
+    """Constants of `TipSpeedLimit`: index of the frame, limit V [m/s] and gain [1/s]."""
 
     frame: int
     limit: float
@@ -32,9 +32,10 @@ class TipSpeedConstants(Record):
 def tip_speed_bounds(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
-    """Tighten the bounds lb and ub (n,) to those of `TipSpeedLimit`.
+    """Tighten the bounds lb and ub (n,) [rad/s] to those of `TipSpeedLimit`.
 
-    Without a control period, or for a frame at rest, they stay; G and h have no rows.
+    Without a control period, or for a frame at rest, they stay. `constants` are a
+    `TipSpeedConstants`. Writes lb and ub; G and h have no rows.
     """
     own = TipSpeedConstants.of(constants)
     frame = own.frame

@@ -1,28 +1,29 @@
 r"""Bounds of a joint's next command after which it can still come to rest within its limits.
 
 A command v_k moves a joint to q_{k+1} = q_k + dt v_k, with acceleration a_k = (v_k - v_{k-1}) / dt
-and jerk (a_k - a_{k-1}) / dt. The bounds of v_k hold the commands after which the joint can still
-come to rest within all of its limits, one step after the other, so that a next command exists
-whenever one did: they are never empty.
+and jerk (a_k - a_{k-1}) / dt. Between the bounds lie the commands after which the joint can come to
+rest step by step within all of its limits. A command within them leaves such commands for the next
+step, so the bounds never contradict each other. The kernels of this file return numbers and write
+no array.
 
-**Velocity.** After a_k > 0 the velocity grows on, by a_k - J dt, a_k - 2 J dt, ... times dt, until
-the acceleration is gone; v_k has to leave a margin for that sum (`approach`). With the acceleration
-limit alone, the same sum is the stopping distance of a joint, and leaves the distance to the
-position limit: the exact discrete viability kernel.
+**Velocity.** With a_k > 0 the velocity goes on growing, by a_k - J dt, a_k - 2 J dt, ... times dt,
+until the acceleration is zero; v_k has to leave a margin for that sum (`approach`). With an
+acceleration limit alone the stopping distance of a joint is the same sum. It has to be within the
+distance to the position limit, which is the exact discrete viability kernel.
 
-**Position, with a jerk limit.** The highest point of the stopping path, `highest`, grows with v_k:
-the upper bound is its root. In one step of the true limits that point can always be kept, since -J
-over a whole step brakes no less: for that, A' = A - J' dt leaves a margin for one step of jerk, and
-J' is at most A / (8 dt) and dq_max / (8 dt^2). Samples are above that path by `MARGIN` at most,
-which is kept free at either end. A joint needs a range to turn round in, with J' too
-(`check_ranges`).
+**Position, with a jerk limit.** The largest position on the stopping path, `highest`, grows with
+v_k: the upper bound is the v_k at which it is the position limit. The stopping path has the jerk J'
+and the deceleration A' = A - J' dt, with J' at most A / (8 dt) and dq_max / (8 dt^2)
+(`usable_jerk`): a step with the full limits J and A then brakes no less than the path. Samples are
+above the path by at most `MARGIN`, which is kept free at either limit. A joint needs a range long
+enough to reverse in with J' (`iiwa_dnn.schemes.rate_limits.check_ranges`).
 
 **Position-dependent velocity limits** (`Robot.position_dependent_velocity`) are zero at :math:`o^2
-/ (2 D)` before a position limit. At the distance x from there one admits v if :math:`v^2 / (2 D) +
-v\,o / D \le x`, the same law with o / D in place of h (`iiwa_dnn.schemes.periods`). With a jerk
-limit a stopping path at a deceleration B < D that ends :math:`(o / D)^2 B D / (2 (D - B))` before
-that point is below the limit all along; of several B the one that admits most counts, as a joint
-may go on with its own.
+/ (2 D)` before a position limit. At the distance x from that point, v is below the limit if
+:math:`v^2 / (2 D) + v\,o / D \le x`, the law of `iiwa_dnn.schemes.periods` with o / D in place of
+h. With a jerk limit, a stopping path at a deceleration B < D is below the limit everywhere if it
+ends :math:`(o / D)^2 B D / (2 (D - B))` before that point. The bound is the largest of several B:
+the joint can brake with the B of the step before.
 
 Sources: A. Del Prete, "Joint position and velocity bounds in discrete-time acceleration/torque
 control of robot arms", IEEE Robotics and Automation Letters 3(1), 2018, for the second order. The
@@ -37,40 +38,41 @@ from iiwa_dnn.schemes.periods import Periods
 from iiwa_dnn.schemes.profiles import ROUNDING, Rates, approach, easing, highest, usable_jerk
 
 MARGIN = 0.2
-"""Margin that is kept free at a position limit, in units of J' dt^3; 1 / sqrt(27) is needed."""
+"""Distance that is kept free at a position limit, in units of J' dt^3; 1 / sqrt(27) is needed."""
 
 REST = 0.25
 """Offset of the rest position of a joint at a limit, in units of J' dt^3, slightly above
 `MARGIN`."""
 
 HALVINGS = 20
-"""Bisection steps for a command that ends at a position limit."""
+"""Bisection steps for the command whose stopping path ends at a position limit."""
 
 LEVELS = 15
-"""Decelerations that are tried below a position-dependent velocity limit."""
+"""Number of decelerations B that are tried below a position-dependent velocity limit."""
 
 LOWER = 0.7
-"""Ratio of each of them to the one before."""
+"""Ratio of each B to the one before."""
 
 
 @compiled
 def joint_bounds(
     last: float, before: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float, float, float]:
-    """Compute bounds of one joint's next command [rad/s], with lower <= upper, and their kinds.
+    """Compute the bounds of one joint's next command and their kinds, with lower <= upper.
 
-    Jerk and acceleration are within their limits at both, whatever the state is.
+    Between the bounds acceleration and jerk are within their limits, whatever the state is.
 
     Args:
         last: Last command [rad/s].
         before: Command before it [rad/s].
         above: Distance to the upper position limit [rad].
         below: Distance to the lower position limit [rad].
-        rates: Its limits.
+        rates: Limits of the joint.
         periods: Periods of the step.
 
     Returns:
-        Lower and upper bound, and the `LimitKind` of each.
+        Lower and upper bound [rad/s], and the `LimitKind` of each; -inf and inf for a joint without
+        acceleration and jerk limits.
     """
     above *= periods.fraction
     below *= periods.fraction
@@ -94,13 +96,20 @@ def joint_bounds(
 
 @compiled
 def _position_kind(rates: Rates) -> float:
-    """Return the kind of the limit that keeps a joint inside its range."""
+    """Return the `LimitKind` of the limit by which a joint brakes before the end of its range."""
     return LimitKind.POSITION_DEPENDENT_VELOCITY if rates.lag > 0.0 else LimitKind.POSITION
 
 
 @compiled
 def _rate_kind(bound: float, speed: float, quickest: float, other: float) -> float:
-    """Return the kind of a bound, which may be that of the velocity or of the acceleration."""
+    """Return the `LimitKind` of a bound: velocity, acceleration, or else `other`.
+
+    Args:
+        bound: The bound [rad/s].
+        speed: Bound of the velocity limit [rad/s].
+        quickest: Bound of the acceleration limit [rad/s].
+        other: `LimitKind` of a bound that is neither.
+    """
     if bound == speed:
         return LimitKind.VELOCITY
     return LimitKind.ACCELERATION if bound == quickest else other
@@ -110,7 +119,7 @@ def _rate_kind(bound: float, speed: float, quickest: float, other: float) -> flo
 def _acceleration_bounds(
     last: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float, float, float]:
-    """Compute `joint_bounds` where no jerk is limited."""
+    """Compute `joint_bounds` of a joint with an acceleration limit and no jerk limit."""
     fastest = rates.velocity
     first = last - rates.acceleration * periods.dt
     final = last + rates.acceleration * periods.dt
@@ -133,9 +142,12 @@ def _acceleration_bounds(
 
 @compiled
 def _speed_within(distance: float, rates: Rates, hold: float) -> float:
-    """Compute the largest velocity [rad/s] from which a joint can brake within `distance` [rad].
+    """Compute the largest velocity [rad/s] below a position-dependent velocity limit.
 
-    A position-dependent velocity limit is zero at its end, and bounds the velocity on the way.
+    Args:
+        distance: Distance to the position at which that limit is zero [rad].
+        rates: Limits of the joint, which brakes with at most its acceleration limit.
+        hold: Time for which the velocity may be held before the joint brakes [s].
     """
     accel = rates.acceleration
     slope = rates.slope
@@ -154,7 +166,7 @@ def _speed_within(distance: float, rates: Rates, hold: float) -> float:
 def _jerk_bounds(
     last: float, before: float, above: float, below: float, rates: Rates, periods: Periods
 ) -> tuple[float, float, float, float]:
-    """Compute `joint_bounds` where the jerk is limited."""
+    """Compute `joint_bounds` of a joint with a jerk limit."""
     fastest = rates.velocity
     accel = rates.acceleration
     dt = periods.dt
@@ -212,9 +224,10 @@ def _ceiling(
     periods: Periods,
     profile: tuple[float, float, float],
 ) -> float:
-    """Compute the largest command in [lb, ub] whose highest position is within `end`, else lb.
+    """Compute the largest command in [lb, ub] whose stopping path stays up to `end` [rad].
 
-    The stopping path is that of `highest`.
+    It is lb if there is none. `end` is relative to the present position; `last`, `periods` and
+    `profile` are those of `highest`.
     """
     if highest(ub, last, periods, profile) <= end:
         return ub
@@ -231,10 +244,18 @@ def _ceiling(
 def _ceiling_below_velocity_limit(
     lb: float, ub: float, distance: float, last: float, rates: Rates, periods: Periods
 ) -> float:
-    """Compute the largest command in [lb, ub] whose stopping path is within a distance, else lb.
+    """Compute the largest command in [lb, ub] below a position-dependent velocity limit.
 
-    Below a position-dependent velocity limit it ends before that by what the limit asks for beyond
-    the distance at constant deceleration: the lower the deceleration, the less.
+    It is lb if there is none. The stopping paths are those of `LEVELS` decelerations B, each of
+    which ends before the point at which the limit is zero, as the head of this file says.
+
+    Args:
+        lb: Lower bound [rad/s].
+        ub: Upper bound [rad/s].
+        distance: Distance to that point [rad].
+        last: Last command [rad/s].
+        rates: Limits of the joint.
+        periods: Periods of the step.
     """
     # Below a limit that shrinks, the stopping path is counted at the samples.
     own = Periods(

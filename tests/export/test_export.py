@@ -166,7 +166,7 @@ def test_the_code_is_plain_c_and_its_memory_is_stated(
     assert not re.search(r"\b(malloc|free|alloca|printf|fopen|goto|setjmp|restrict)\b", code)
     for words in (
         "static inline ptrdiff_t control_cycle_take_step(struct arena *arena, Vector data,",
-        "/* Tighten the bounds to those of `JointLimits`, whose constants these are.",
+        "/* Tighten the bounds lb and ub (n,) [rad/s] to those of `JointLimits`.",
         " * iiwa_dnn/schemes/joint_limits.py: joint_limits */",
     ):
         assert words in text
