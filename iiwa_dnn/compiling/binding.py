@@ -1,4 +1,4 @@
-"""C of the extension module that hands Python's arguments to the kernels."""
+"""Write the C of an extension module that converts Python's arguments and calls the kernels."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ _MAKERS = {
 }
 
 LARGE = 40
-"""Conditions of a named tuple above which the last one that was read is kept: nobody changes it."""
+"""Conditions of a named tuple above which its last conversion is reused for the same tuple."""
 
 
 def prelude(name: str) -> str:
-    """Return a file of C beside this one."""
+    """Return the text of a file of C in this folder, by its file name."""
     return (Path(__file__).parent / name).read_text(encoding="utf-8")
 
 
 def extension(translator: Translator) -> str:
-    """Write the extension module of all kernels that a translator has translated."""
+    """Write one file of C: the functions of a translator, and a Python function for each."""
     functions = list(translator.functions.values())
     # Arrays are no results for Python: they are given back. A record of several sizes is viewed.
     called = [
@@ -52,19 +52,19 @@ def extension(translator: Translator) -> str:
 
 
 def _kernel(own: Function) -> str:
-    """Write a kernel's row in the table of addresses and types."""
+    """Write a kernel's row in the C table of names, function pointers and type codes."""
     address = "NULL" if own.decoration == ENTRY else f"(void *){own.name}"
     return f'    {{"{own.name}", {address}, "{own.code}"}},'
 
 
 def _method(own: Function) -> str:
-    """Write a kernel's row in the table of methods."""
+    """Write a kernel's row in the extension module's table of methods."""
     called = f"(PyCFunction)(void (*)(void))py_{own.name}"
     return f'    {{"{own.name}", {called}, METH_FASTCALL, NULL}},'
 
 
 def _wrapper(own: Function) -> str:
-    """Write the function that Python calls in place of a kernel."""
+    """Write the C function that converts Python arguments, calls a kernel, converts its result."""
     kinds = own.parameters
     given = ["arena_here()", *("&" * kinds[name].is_named + f"a_{name}" for name in kinds)]
     call = f"{own.name}({', '.join(given)});"
@@ -99,7 +99,14 @@ def _wrapper(own: Function) -> str:
 
 
 def _read(kind: Kind, place: str, source: str, written: set[str]) -> list[str]:
-    """Return the conditions that fail unless an argument is read."""
+    """Return C conditions that convert an argument, each true if the argument is refused.
+
+    Args:
+        kind: Type of the argument.
+        place: Name of the C variable that is written, without its prefix ``a_``.
+        source: C expression of the Python object.
+        written: Arrays, by their places, that the kernel writes: these must not be read-only.
+    """
     if kind.axes:
         word = "read_doubles" if kind.element is FLOAT else "read_ints"
         rest = f"{kind.axes}, &a_{place}.size0, {str(place in written).lower()}"
@@ -123,7 +130,7 @@ def _read(kind: Kind, place: str, source: str, written: set[str]) -> list[str]:
 
 
 def _object(kind: Kind, place: str) -> str:
-    """Return the object of Python for a result."""
+    """Return the C expression that makes a Python object of a kernel's result."""
     if kind is VOID:
         return "Py_NewRef(Py_None)"
     if not kind.members:

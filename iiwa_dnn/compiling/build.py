@@ -1,4 +1,4 @@
-"""Build of the extension module: source text to C, and C to a library beside the package."""
+"""Build the extension module: translate the kernels to C and compile them into the package."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ errno or the flags of exceptions. No warning is off: types that do not fit are w
 
 
 def build(package: Path) -> Path:
-    """Translate a package's kernels and compile them, if they have changed; return the library.
+    """Translate and compile a package's kernels if they have changed; return the library's path.
 
-    With ``IIWA_DNN_CHECKED=1``, an index outside of its array raises an IndexError, one that counts
-    from the end too. With ``IIWA_DNN_DRAFT=1`` the compiler takes a quarter of the time, and a step
-    some times longer.
+    With ``IIWA_DNN_CHECKED=1`` an index outside of its array, or below 0, raises an IndexError.
+    With ``IIWA_DNN_DRAFT=1`` compiling takes a quarter of the time, and a control step several
+    times as long.
 
     Raises:
         TranslationError: A kernel leaves the subset of Python that is translated.
@@ -66,7 +66,13 @@ def build(package: Path) -> Path:
 
 
 def _digest(package: Path, read: Sequence[str], kind: str) -> str:
-    """Hash the files that a library is made from: those read last time, and all with kernels."""
+    """Hash the files that a library is made from, and its flags.
+
+    Args:
+        package: Folder of the package.
+        read: Paths in it of the modules that the last translation has read.
+        kind: Flags of the compiler, and whether indices are checked.
+    """
     found = {package / name for name in read} | {*package.glob("compiling/*.[chp]*")}
     found |= {path for path in package.rglob("*.py") if has_kernels(path)}
     contents = [path.read_bytes() for path in sorted(found) if path.is_file()]
@@ -74,7 +80,11 @@ def _digest(package: Path, read: Sequence[str], kind: str) -> str:
 
 
 def compiler() -> list[str]:
-    """Return the command of the C compiler: the environment's, the system's, or that of ziglang."""
+    """Return the words of the C compiler's command: ``CC``, a system compiler, or ziglang's.
+
+    Raises:
+        LookupError: There is no compiler.
+    """
     names = [*filter(None, [os.environ.get("CC")]), "cc", "gcc", "clang"]
     for name in names:
         if shutil.which(name.split()[0]):
@@ -85,7 +95,12 @@ def compiler() -> list[str]:
 
 
 def run_compiler(flags: Sequence[str], sources: Sequence[Path], output: Path) -> None:
-    """Compile files of C; raises what `build` does."""
+    """Compile files of C into one output file.
+
+    Raises:
+        RuntimeError: The compiler refuses them; its messages are the error's.
+        LookupError: There is no compiler.
+    """
     words = [*compiler(), *flags, *map(str, sources), "-o", str(output), "-lm"]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode:
@@ -93,13 +108,13 @@ def run_compiler(flags: Sequence[str], sources: Sequence[Path], output: Path) ->
 
 
 def _environment_flags() -> list[str]:
-    """Return the flags that the environment asks for."""
+    """Return the compiler's flags for ``IIWA_DNN_DRAFT``, and those in ``CFLAGS``."""
     draft = ["-Og"] if os.environ.get("IIWA_DNN_DRAFT") == "1" else []
     return [*draft, *os.environ.get("CFLAGS", "").split()]
 
 
 def _system_flags() -> list[str]:
-    """Return the compiler's flags for an extension module."""
+    """Return the compiler's flags for including Python and numpy, and for linking on macOS."""
     import numpy as np
 
     folders = [f"-isystem{path}" for path in (sysconfig.get_paths()["include"], np.get_include())]

@@ -1,4 +1,4 @@
-"""Expressions of a kernel, as C."""
+"""Translate expressions of kernels to C."""
 
 from __future__ import annotations
 
@@ -40,24 +40,23 @@ _FUNCTIONS = {
     "int": (INT, "int_of"),
     "abs": (FLOAT, "fabs"),
 }
-"""Type of the result and name in C of Python's functions. Numpy's others may differ in the last
-digit."""
+"""Result's type and C name of functions of Python; numpy's others may differ in the last digit."""
 
 NUMBERS: dict[Kind, type] = {BOOL: bool, INT: int, FLOAT: float}
 _OF_FLOAT = {INT: ("(int64_t){}", Rank.UNARY), BOOL: ("{} != 0.0", Rank.EQUALITY)}
 
 
 class Value(NamedTuple):
-    """An expression of C.
+    """Expression of C.
 
     Attributes:
-        kind: Its type.
-        text: The expression, without parentheses around it.
-        rank: Binding strength of its outermost operator.
-        pointer: Pointer through which a struct is reached, if any.
-        parts: Pointer to the first element and sizes of an array that is written as a literal.
-        is_plan: Whether it is the exported plan, or a member of it.
-        places: Variables whose memory it is a view of, or members of them.
+        kind: Type of the expression.
+        text: Text of the expression, without parentheses around it.
+        rank: Binding strength of the outermost operator.
+        pointer: For a struct that is reached through a pointer, the pointer's text; else "".
+        parts: For an array written as a literal, pointer to its first element, and its sizes.
+        is_plan: Whether the expression is the exported plan or a member of the plan.
+        places: Variables, or members of variables, whose memory the expression may view.
     """
 
     kind: Kind
@@ -69,7 +68,7 @@ class Value(NamedTuple):
     places: frozenset[str] = frozenset()
 
     def within(self, rank: int) -> str:
-        """Return the text as an operand, in parentheses if its operator binds less than a rank."""
+        """Return the text as an operand: in parentheses if its operator binds less than `rank`."""
         return self.text if self.rank >= rank else f"({self.text})"
 
     def member(self, name: str, kind: Kind) -> Value:
@@ -79,7 +78,7 @@ class Value(NamedTuple):
         return Value(kind, f"{owner}{c_word(name)}", is_plan=self.is_plan, places=places)
 
     def converted(self, kind: Kind) -> Value:
-        """Return the value as a float, if that is asked for and it is an integer."""
+        """Return an integer converted to a float if `kind` is `FLOAT`; else the value unchanged."""
         if kind is not FLOAT or self.kind is not INT:
             return self
         if self.text.isdigit():
@@ -100,22 +99,22 @@ class Value(NamedTuple):
 
     @property
     def size(self) -> Value:
-        """Number of elements of an array."""
+        """Number of elements of an array, the product of its sizes."""
         return joined("*", self.sizes)
 
     @property
     def initializer(self) -> str:
-        """Text with which a variable of its type begins."""
+        """Text of the value as the initializer of a variable."""
         return self.text.removeprefix(f"({self.kind.tag})") if self.is_literal else self.text
 
     @property
     def is_literal(self) -> bool:
-        """Test whether it is a struct that has no address."""
+        """Test whether the value is a compound literal, a struct without a variable."""
         return self.text.startswith(f"({self.kind.tag}){{")
 
 
 def joined(sign: str, values: Sequence[Value]) -> Value:
-    """Join values by an operator, from the left; a single one stays as it is."""
+    """Join whole numbers by an operator, from left to right; a single one is returned unchanged."""
     whole = values[0]
     for value in values[1:]:
         rank = _RANKS.get(sign, Rank.SUM)
@@ -124,10 +123,10 @@ def joined(sign: str, values: Sequence[Value]) -> Value:
 
 
 def number(value: float) -> Value:
-    """Return the literal of a number, of Python's or of numpy's.
+    """Return the C literal of a number of Python or a float of numpy.
 
     Raises:
-        TypeError: It is none.
+        TypeError: `value` is no number.
     """
     for kind, own in NUMBERS.items():
         if isinstance(value, own):
@@ -138,26 +137,26 @@ def number(value: float) -> Value:
 
 
 def literal(kind: Kind, members: Sequence[str]) -> str:
-    """Return a value of a struct of C."""
+    """Return the compound literal of a struct, from the texts of its members."""
     inner = ", ".join(members)
     return f"({kind.tag}){{{inner if kind.is_named or kind.axes else f'{{{inner}}}'}}}"
 
 
 def array(element: Kind | None, data: Value, sizes: Sequence[Value]) -> Value:
-    """Return an array of elements of a type."""
+    """Return an array from the type of its elements, a pointer to the first one, and the sizes."""
     kind = ARRAYS[element, len(sizes)]
     parts = (data, *sizes)
     return Value(kind, literal(kind, [own.text for own in parts]), parts=parts)
 
 
 def _inserted(places: Iterable[str], given: dict[str, frozenset[str]]) -> set[str]:
-    """Replace parameters by the arguments that are given for them."""
+    """Return places that begin with parameters as places of the arguments `given` for these."""
     parts = [place.partition(".") for place in places]
     return {f"{own}{dot}{rest}" for name, dot, rest in parts for own in given[name]}
 
 
 def _arrays(kind: Kind, place: str = "") -> Iterator[str]:
-    """List the arrays of a type: itself, or members, after a dot each."""
+    """List the places of all arrays in a type: `place`, or its members, each after a dot."""
     if kind.axes:
         yield place
     for name, own in kind.members.items():
@@ -168,17 +167,18 @@ class Translation:
     """Types, constants and settings that all functions of a translation share.
 
     Attributes:
-        package: The package that they are in.
-        kinds: Types of their variables.
-        constants: Constants of modules and of the exported plan, by their names in C.
-        tables: Tables of the exported plan, by their names in C.
-        plan: Constants that members of the exported plan are, by its types and their names.
-        parts: Functions that entries call by their numbers, from 1; None: by any address.
-        is_checked: Whether indices are checked.
+        package: The package of the functions.
+        kinds: Types of the functions' variables.
+        constants: Declarations of constants of modules and of the exported plan, by C names.
+        tables: Declarations of the exported plan's tables, by their names in C.
+        plan: For each type of named tuples in the exported plan, the members that are constants.
+        parts: Functions that entries of an export call by number, the first by 1; None in the
+            library, whose entries call by address.
+        is_checked: Whether indices are checked when the C runs.
     """
 
     def __init__(self, folder: Path, is_checked: bool) -> None:
-        """Take the folder of a package."""
+        """Take the folder of a package, and whether indices are checked."""
         self.package = Package(folder)
         self.is_checked = is_checked
         self.kinds = Kinds(self.package)
@@ -188,11 +188,16 @@ class Translation:
         self.plan: dict[str, dict[str, Value]] = {}
 
     def function(self, module: Module, node: ast.FunctionDef) -> Expressions:
-        """Return the translation of a function."""
+        """Return the translation of a function, which is made at the first call."""
         raise NotImplementedError
 
     def constant(self, name: str, own: Any, about: str) -> Value:
-        """Write a constant, a number or a sequence of numbers; return its value in C.
+        """Declare a constant with a comment; return its value in C.
+
+        Args:
+            name: C name of the constant.
+            own: A number, or a sequence of numbers of one type.
+            about: The comment, or "".
 
         Raises:
             TranslationError: Another constant has the name.
@@ -216,18 +221,18 @@ class Expressions:
 
     Attributes:
         node: Syntax tree of the function.
-        result: Type of its result.
+        result: Type of the function's result.
         translator: The translation that the function belongs to.
         module: The function's module.
-        parameters: Types of its parameters.
-        kinds: Types of its parameters and variables.
-        written: Arrays that are written into, as Python names them.
-        aliases: For a variable, or a member of one, others whose memory it may be a view of.
-        assigned: Variables that have a value wherever the current statement is reached.
-        plans: Variables that are the exported plan, or a part of it.
-        lines: Lines of the body so far.
-        is_certain: Whether the expression is evaluated whenever its statement is reached.
-        uses_arena: Whether it takes memory, or calls a kernel that does.
+        parameters: Types of the function's parameters.
+        kinds: Types of the function's parameters and variables.
+        written: Arrays that the function writes, as places in Python.
+        aliases: For each variable, or member of one, the places whose memory it may view.
+        assigned: Variables that have a value on every path to the current statement.
+        plans: Variables that hold the exported plan or a member of the plan.
+        lines: Lines of the C body that are translated.
+        is_certain: Whether the current expression is evaluated whenever its statement runs.
+        uses_arena: Whether the function, or a kernel that it calls, takes memory.
     """
 
     node: ast.FunctionDef
@@ -236,7 +241,7 @@ class Expressions:
     def __init__(
         self, translator: Translation, module: Module, parameters: dict[str, Kind]
     ) -> None:
-        """Begin the translation of a function."""
+        """Begin the translation of a function with the types of its parameters."""
         self.translator = translator
         self.module = module
         self.parameters = parameters
@@ -252,21 +257,21 @@ class Expressions:
 
     @property
     def name(self) -> str:
-        """Name in C."""
+        """Name of the function in C."""
         return self.module.c_name(self.node.name)
 
     @property
     def views(self) -> dict[str, set[str]]:
-        """Parameters, or members of them, that the result or its members may be views of."""
+        """Parameters, or their members, whose memory each array in the result may view."""
         return {place: self.sources(f"return{place}") for place in _arrays(self.result)}
 
     def require(self, holds: bool, node: ast.AST, problem: str) -> None:
-        """Refuse a node unless a condition holds."""
+        """Raise a TranslationError with a problem at a node unless a condition holds."""
         if not holds:
             fail(self.module, node, problem)
 
     def value(self, node: ast.expr) -> Value:
-        """Translate an expression."""
+        """Translate an expression; raise a TranslationError if it has no translation."""
         match node:
             case ast.Name(id=name) if name in self.kinds:
                 return self._variable(node)
@@ -313,7 +318,7 @@ class Expressions:
         fail(self.module, node, "has no translation")
 
     def _variable(self, node: ast.Name) -> Value:
-        """Translate a parameter or variable; a parameter that is a named tuple is a pointer."""
+        """Translate a parameter or variable; a struct that is a parameter is a pointer in C."""
         name = node.id
         self.require(name in self.assigned, node, "is not assigned on every path here")
         kind = self.kinds[name]
@@ -324,7 +329,7 @@ class Expressions:
         return own
 
     def _uncertain(self, node: ast.expr) -> Value:
-        """Translate an expression that is evaluated only on a condition."""
+        """Translate an expression that is evaluated on a condition only."""
         before = self.is_certain
         self.is_certain = False
         own = self.value(node)
@@ -332,13 +337,13 @@ class Expressions:
         return own
 
     def _once(self, node: ast.expr) -> Value:
-        """Translate an expression that C writes several times: the result of a call is kept."""
+        """Translate an expression whose text is repeated in C: a call is kept in a variable."""
         own = self.value(node)
         is_called = any(isinstance(each, ast.Call) for each in ast.walk(node))
         return self._keep(own, node) if is_called and not own.parts else own
 
     def _keep(self, own: Value, node: ast.expr) -> Value:
-        """Keep a value in a variable, before the statement that it is part of."""
+        """Keep a value in a new variable, declared before the current statement; return that."""
         self.require(self.is_certain, node, "is needed twice, and not in each case")
         self._kept += 1
         name = f"own_{self._kept}"
@@ -346,7 +351,7 @@ class Expressions:
         return Value(own.kind, name, places=own.places)
 
     def sources(self, place: str) -> set[str]:
-        """Return the parameters, or members of them, that a place may be a view of."""
+        """Return the parameters, or members of parameters, whose memory a place may view."""
         found = {place}
         waiting = [place]
         while waiting:
@@ -359,17 +364,17 @@ class Expressions:
         return {own for own in found if own.partition(".")[0] in self.parameters}
 
     def _named(self, kind: Kind, text: str, views: Mapping[str, Iterable[str]]) -> Value:
-        """Return a value that is a view of others, for each of its members."""
+        """Return a value whose members, by their names after a dot, may view the given places."""
         place = f"own {len(self.aliases)}"
         self.aliases |= {f"{place}{member}": {*places} for member, places in views.items()}
         return Value(kind, text, places=frozenset([place]))
 
     def _wider(self, values: list[Value]) -> Kind:
-        """Return the widest type of some values; the compiler refuses other combinations."""
+        """Return `FLOAT` if one of the values is a float, else the first type."""
         return next((own.kind for own in values if own.kind is FLOAT), values[0].kind)
 
     def _constant(self, node: ast.expr) -> Value:
-        """Translate a number, or a constant of a module, which is a number or a table of them."""
+        """Translate a literal number or a module's constant, a number or a sequence of numbers."""
         found = self.module.value(node)
         if not isinstance(node, ast.Name):
             return number(found)
@@ -378,7 +383,7 @@ class Expressions:
         return self.translator.constant(home.c_name(node.id), found, about)
 
     def _attribute(self, node: ast.Attribute) -> Value:
-        """Translate a member of a named tuple, record or enumeration, or an array's size."""
+        """Translate a member of a named tuple, a record or an enumeration, or an array's size."""
         name = ast.unparse(node.value)
         home, found = self.translator.package.find(self.module, name)
         if name not in self.kinds and isinstance(found, ast.ClassDef):
@@ -394,14 +399,14 @@ class Expressions:
         return known.get(node.attr, own)
 
     def _number(self, owner: Value, name: str, own: Value) -> Value:
-        """Translate a number of a record, which holds whole numbers and truths as floats."""
+        """Translate a number of a record, where integers and truth values are stored as floats."""
         pointer = owner.member("at", FLOAT).text
         found = owner._replace(pointer=pointer).member(name, FLOAT)
         text, rank = _OF_FLOAT.get(own.kind, ("{}", Rank.PRIMARY))
         return Value(own.kind, text.format(found.text), rank, places=own.places)
 
     def _comparison(self, values: list[Value], signs: list[str]) -> Value:
-        """Translate comparisons, all of which hold."""
+        """Translate a chain of comparisons by signs between neighbouring values."""
         kind = self._wider(values)
         texts = [own.converted(kind).within(Rank.SUM) for own in values]
         parts = [f"{a} {sign} {b}" for a, sign, b in zip(texts, signs, texts[1:], strict=False)]
@@ -409,6 +414,7 @@ class Expressions:
         return Value(BOOL, " && ".join(parts), rank)
 
     def _arithmetic(self, op: type, left: Value, right: Value) -> Value:
+        """Translate a binary operation; both operands are floats if one is, or by ``/``."""
         kind = FLOAT if FLOAT in (left.kind, right.kind) or op is ast.Div else INT
         both = [left.converted(kind), right.converted(kind)]
         if op in _ROUNDED:
@@ -416,7 +422,7 @@ class Expressions:
         return joined("/" if op is ast.Div else SIGNS[op], both)._replace(kind=kind)
 
     def _part(self, owner: Value, parts: list[ast.expr]) -> Value:
-        """Translate an element of an array, or a part without gaps, or an item of a tuple."""
+        """Translate an element of an array, a part of one without gaps, or an item of a tuple."""
         element = owner.kind.element
         assert element
         if owner.kind.members:
@@ -446,13 +452,13 @@ class Expressions:
         return Value(element, f"{first}[{inner}]", places=owner.places)
 
     def _checked(self, index: Value, size: Value) -> Value:
-        """Return an index that a checked build holds against a size."""
+        """Return an index; in a checked build, one that is compared with a size when the C runs."""
         if not self.translator.is_checked:
             return index
         return Value(INT, f"checked({index.text}, {size.text})")
 
     def _offset(self, node: ast.expr, size: Value, steps: list[Value]) -> Value:
-        """Translate an index of an axis into the number of elements before it."""
+        """Translate an index along an axis into the number of elements before it in memory."""
         self.require(not isinstance(node, ast.Slice), node, "has gaps between its rows")
         self.require(not isinstance(node, ast.UnaryOp), node, "counts from the end")
         at = self._checked(self.value(node), size)
@@ -461,7 +467,7 @@ class Expressions:
         return joined("*", steps if at.text == "1" else [at, *steps])
 
     def _call(self, node: ast.Call) -> Value:
-        """Translate a call."""
+        """Translate a call: of a kernel, a class, a method, or a function of Python or numpy."""
         self.require(not node.keywords, node, "has no translation")
         name = ast.unparse(node.func)
         match node.func:
@@ -497,7 +503,7 @@ class Expressions:
         return self._standard(name, values)
 
     def _record(self, kind: Kind, numbers: Value, *given: Value) -> Value:
-        """View an array as a record; the last size follows from that of the array."""
+        """Translate the view of an array as a record; a missing last size is computed."""
         fixed, *shared = kind.sizes.values()
         own = numbers.size.text
         sizes = [each.text for each in given]
@@ -517,7 +523,14 @@ class Expressions:
     def _taken(
         self, element: Kind | None, word: str, given: list[Value], sizes: list[Value]
     ) -> Value:
-        """Return an array in memory that the function takes."""
+        """Return an array in memory that the function takes from its arena.
+
+        Args:
+            element: Type of the elements.
+            word: How the memory begins: ``empty``, ``zeros`` or ``copy``.
+            given: Number of the elements, after the pointer that a copy is made from.
+            sizes: Sizes of the array.
+        """
         assert element
         self.uses_arena = True
         texts = ", ".join(["arena", *(own.text for own in given)])
@@ -541,13 +554,13 @@ class Expressions:
         return self._named(own.result, f"{own.name}({', '.join(texts)})", views)
 
     def _address(self, value: Value, node: ast.expr) -> str:
-        """Return the address of a struct."""
+        """Return the text of a struct's address; the result of a call is kept in a variable."""
         if any(isinstance(each, ast.Call) for each in ast.walk(node)):
             value = self._keep(value, node)
         return value.pointer or f"&{value.text}"
 
     def _standard(self, name: str, values: list[Value]) -> Value:
-        """Translate a function of Python, of its module math or of numpy."""
+        """Translate a call of a function of Python, of `math` or of numpy, by its dotted name."""
         kind = self._wider(values)
         if name == "len":
             return values[0].sizes[0]

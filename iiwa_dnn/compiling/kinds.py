@@ -1,4 +1,4 @@
-"""Types of a kernel's variables, from annotations, and their declarations in C."""
+"""Translate annotations of kernels to types of C, and write the structs that these need."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ from .sources import Module, Package, c_word, fail
 
 @dataclass(frozen=True, eq=False)
 class Kind:
-    """A type.
+    """Type of a variable in a kernel and in C.
 
     Attributes:
-        tag: Its name in C.
-        code: Its letter where types are distinguished by a text.
+        tag: Name of the type in C.
+        code: Letters of the type in the code that describes a function's types.
         element: Type of the elements of an array without gaps, or of a plain tuple.
         axes: Number of axes of an array.
         members: Type of each member of a tuple, plain or named, or of a record.
-        sizes: Of a record: how many numbers it has for each of its sizes, by none in any case.
+        sizes: Of a record: for each name of a size, how many numbers the record has per unit of
+            that size; by the empty name, how many it has besides.
     """
 
     tag: str
@@ -34,18 +35,18 @@ class Kind:
 
     @property
     def is_named(self) -> bool:
-        """Test whether it is a named tuple or a record, which is handed on by its address."""
+        """Test whether the type is a named tuple or a record: C functions take its address."""
         return bool(self.members) and self.element is None
 
     @property
     def is_sized(self) -> bool:
-        """Test whether an array tells the sizes of all records in it."""
+        """Test whether the sizes of all records in the type follow from their arrays' lengths."""
         inner = (own.is_sized for own in self.members.values())
         return len(self.sizes) <= 2 and all(inner)
 
     @property
     def word(self) -> str:
-        """Name of the type within a longer name."""
+        """Name of the type in names of C that are made of several words."""
         return self.tag.removesuffix("64_t")
 
 
@@ -74,15 +75,23 @@ WIDTH = 120
 
 
 class Kinds:
-    """Types that annotations stand for, and the structs of C that they need."""
+    """Types of C for the annotations of a package.
+
+    Attributes:
+        structs: Declarations in C of the types so far, by their names.
+    """
 
     def __init__(self, package: Package) -> None:
-        """Begin with no struct."""
+        """Take the package in whose modules types are found."""
         self._package = package
         self.structs: dict[str, str] = {}
 
     def of(self, module: Module, node: ast.AST) -> Kind:
-        """Return the type that an annotation, or a named tuple, stands for."""
+        """Return the type of an annotation, or of a class, in a module.
+
+        Raises:
+            TranslationError: There is no such type in C.
+        """
         text = ast.unparse(node)
         if text in _KINDS:
             return _KINDS[text]
@@ -103,13 +112,14 @@ class Kinds:
         fail(module, node, "has no annotation" if bare else "is no type of a kernel's variable")
 
     def tuple(self, kind: Kind, count: int) -> Kind:
-        """Return the type of a plain tuple, whose items have the same type."""
+        """Return the type of a plain tuple of `count` items of one type."""
         tag = f"{kind.word}_{count}"
         self.structs[tag] = f"typedef struct {{ {kind.tag} at[{count}]; }} {tag};"
         members = {f"at[{i}]": kind for i in range(count)}
         return Kind(tag, f"({kind.code * count})", kind, members=members)
 
     def _named(self, module: Module, node: ast.ClassDef) -> Kind:
+        """Write the struct of a named tuple, and return its type."""
         rows = [each for each in node.body if isinstance(each, ast.AnnAssign)]
         members = {ast.unparse(row.target): self.of(module, row.annotation) for row in rows}
         tag = module.c_name(node.name)
@@ -118,7 +128,7 @@ class Kinds:
         return Kind(tag, f"<{''.join(k.code for k in members.values())}>", members=members)
 
     def _enumeration(self, module: Module, node: ast.ClassDef) -> Kind:
-        """Write an enumeration, whose members are integers."""
+        """Write the C enumeration of an IntEnum; return the type of its members, an integer."""
         tag = module.c_name(node.name)
         rows = [f"    {tag}_{own.name} = {own.value}," for own in module[node.name]]
         inner = "\n".join(rows)
@@ -126,7 +136,11 @@ class Kinds:
         return INT
 
     def _record(self, module: Module, node: ast.ClassDef) -> Kind:
-        """Write a record: its array, a pointer to its numbers, and its parts, which follow them."""
+        """Write the struct of a record and the function that views an array so; return the type.
+
+        The struct holds the whole array, a pointer to the numbers at its beginning, and the parts
+        that follow these.
+        """
         tag = module.c_name(node.name)
         rows = [own for own in node.body if isinstance(own, ast.AnnAssign)]
         annotations = {ast.unparse(row.target): row.annotation for row in rows if not row.value}
@@ -157,7 +171,14 @@ class Kinds:
 
 
 def _part(kind: Kind, shape: list[Any], place: str, end: dict[str, int]) -> str:
-    """Return the value of a record's part at an offset in C, and advance the offset."""
+    """Return the C initializer of a record's part, and count its numbers in `end`.
+
+    Args:
+        kind: Type of the part.
+        shape: Sizes of the part, numbers or names; of a nested record, none.
+        place: C expression of the part's address.
+        end: Numbers of the record before the part, as in `Kind.sizes`; updated.
+    """
     if kind.sizes:
         shape = [kind.sizes[""]]
     size = next((own for own in shape if isinstance(own, str)), "" if shape else "n")
@@ -167,20 +188,20 @@ def _part(kind: Kind, shape: list[Any], place: str, end: dict[str, int]) -> str:
 
 
 def _counted(sizes: dict[str, int]) -> list[str]:
-    """Return how many numbers there are as summands in C."""
+    """Return the summands in C of a number of numbers, given as in `Kind.sizes`."""
     fixed = [str(sizes[""])] * (sizes[""] > 0)
     return fixed + [f"{n} * {size}" if n > 1 else size for size, n in sizes.items() if size and n]
 
 
 def attributes(docstring: str) -> dict[str, str]:
-    """Return the descriptions of a docstring's attributes or members, by their names."""
+    """Read the descriptions of attributes or members in a docstring, by their names."""
     sections = re.split("^(?:Attributes|Members):\n", docstring, flags=re.MULTILINE)[1:]
     rows = re.findall(r"^ {4}(\w+): (.+(?:\n {8}.+)*)", "".join(sections), re.MULTILINE)
     return {name: " ".join(text.split()) for name, text in rows}
 
 
 def commented(declaration: str, about: str) -> str:
-    """Write a member of a struct of C and a comment on it, before it if the line is too long."""
+    """Write a declaration in C with a comment behind it, or before it if the line is long."""
     whole = f"{declaration}; /* {about} */"
     if about and ("\n" in declaration or len(whole) > WIDTH - 12):
         above = textwrap.fill(f"/* {about} */", WIDTH - 12, subsequent_indent=" * ")
@@ -189,12 +210,17 @@ def commented(declaration: str, about: str) -> str:
 
 
 def _fields(declarations: dict[str, str], node: ast.ClassDef) -> str:
-    """Write the members of a struct, with their descriptions in a docstring."""
+    """Write the members of a C struct, with comments from the docstring of a class.
+
+    Args:
+        declarations: Declaration of each member, by its name in the class.
+        node: The class.
+    """
     about = attributes(ast.get_docstring(node) or "")
     lines = [commented(text, about.get(name, "")) for name, text in declarations.items()]
     return textwrap.indent("\n".join(lines), "    ")
 
 
 def _about(node: ast.ClassDef) -> str:
-    """Return the first line of a docstring."""
+    """Return the first line of a class's docstring."""
     return (ast.get_docstring(node) or "").partition("\n")[0]

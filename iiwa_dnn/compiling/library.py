@@ -30,7 +30,7 @@ _ROOT = Path(__file__).parents[1]
 
 
 def _loaded() -> Any:
-    """Load the library; in a checkout it is built anew if a file of the package has changed."""
+    """Import the extension module; in a checkout, build it first if its sources have changed."""
     if (_ROOT.parent / "pyproject.toml").is_file():
         build(_ROOT)
     return import_module("iiwa_dnn._kernels")
@@ -45,7 +45,7 @@ _KEPT: list[Any] = []
 
 
 def compiled(function: Function) -> Function:
-    """Return the library's translation of a kernel; outside of the package, the function itself."""
+    """Return the compiled form of a kernel of the package; other functions are returned as is."""
     if not function.__module__.startswith("iiwa_dnn.") or INTERPRETED:
         return function
     found = getattr(_LIBRARY, c_name(function.__module__, function.__name__), function)
@@ -54,16 +54,16 @@ def compiled(function: Function) -> Function:
 
 
 released = compiled
-"""As `compiled`, for a kernel during which Python's other threads go on."""
+"""As `compiled`, for a kernel that runs without Python's lock: other threads run meanwhile."""
 
 
 def source_of(kernel: Any) -> Any:
-    """Return the function in Python that a kernel was translated from."""
+    """Return the Python function of a compiled kernel; any other object is returned unchanged."""
     return _SOURCES.get(id(kernel), kernel)
 
 
 def raise_failure() -> None:
-    """Raise the error of a user's function that a kernel of this thread has entered, if any."""
+    """Raise the error of a Python callback in this thread's last call of a kernel, if any."""
     error = _ERRORS.pop(threading.get_ident(), None)
     _FAILED.value = len(_ERRORS)
     if error is not None:
@@ -71,29 +71,29 @@ def raise_failure() -> None:
 
 
 class Entry(Generic[P, R]):
-    """Calls of functions of the same types by function pointer.
+    """Decorator of a prototype: calls functions with the prototype's types by function pointer.
 
-    The function is a kernel of the package; a function of C with the flat arguments that
-    CONTRIBUTING.md describes (its address, what `numba.cfunc` returns, or a function of ctypes); or
-    any function in Python, which is called back. The address of a function of C is negative.
+    A function may be a kernel of the package; a function of C with the flat arguments that
+    CONTRIBUTING.md describes (given as an address, by `numba.cfunc` or by ctypes); or any Python
+    function, which is called back. Function pointers of kernels are positive, others negative.
 
     Attributes:
-        functions: The function of each address that was asked for.
-        prototypes: The function that states the types of each.
+        functions: The Python function, or the object that was given, of each function pointer.
+        prototypes: The prototype of each function pointer.
     """
 
     functions: ClassVar[dict[int, Any]] = {}
     prototypes: ClassVar[dict[int, Any]] = {}
 
     def __init__(self, prototype: Callable[P, R]) -> None:
-        """Take the function that states the types."""
+        """Take the prototype, a function without a body whose annotations state the types."""
         self.prototype = prototype
         self._name = c_name(prototype.__module__, prototype.__name__)
         self._types = _LIBRARY.codes[self._name][1:]
         self._addresses: dict[int, tuple[int, Any]] = {}
 
     def __call__(self, *arguments: P.args, **keywords: P.kwargs) -> R:
-        """Call the function at an address."""
+        """Call the function whose pointer is the first argument, with the other arguments."""
         address, *own = arguments
         if INTERPRETED and address > 0:  # type: ignore[operator]
             return cast(R, self.functions[address](*own))  # type: ignore[index]
@@ -103,13 +103,14 @@ class Entry(Generic[P, R]):
         """Return the function pointer of a function.
 
         Raises:
-            TypeError: It is a kernel of other types, or no function.
+            TypeError: `function` is a kernel of other types, or no function.
         """
         if id(function) not in self._addresses:
             self._addresses[id(function)] = (self._address(function), function)
         return self._addresses[id(function)][0]
 
     def _address(self, function: Any) -> int:
+        """Make the function pointer of a function that `address` meets for the first time."""
         source = source_of(function)
         found = getattr(function, "address", function)
         if source is not function:
@@ -133,7 +134,7 @@ class Entry(Generic[P, R]):
         return address
 
     def _callback(self, function: Callable[..., Any]) -> Any:
-        """Make a function of C that calls one in Python; its error is raised by `raise_failure`."""
+        """Make a C function that calls a Python one and keeps its error for `raise_failure`."""
         letters, _, result = re.sub(r"\{\w+\}", "v", self._types).partition(":")
         kinds = [kind for letter in letters for kind in _FLAT.get(letter, [])]
         is_tuple = result[0] == "("
@@ -157,7 +158,7 @@ class Entry(Generic[P, R]):
 
 
 entry = Entry
-"""Decorator of a function without a body, which states the types."""
+"""`Entry`, as kernels write it: ``@entry``."""
 
 
 _FLAT: dict[str, list[Any]] = {
@@ -170,7 +171,13 @@ _FLAT: dict[str, list[Any]] = {
 
 
 def _rebuilt(hint: Any, codes: Iterator[str], values: Iterator[Any]) -> Any:
-    """Make an argument of Python from flat ones of C; a named tuple holds no other."""
+    """Make a Python argument from the next flat arguments of a C call.
+
+    Args:
+        hint: Type of the argument; the members of a named tuple are no named tuples.
+        codes: Letters of the types of the arguments, consumed.
+        values: Flat arguments, consumed.
+    """
     if hasattr(hint, "_fields"):
         return hint(*[_rebuilt(own, codes, values) for own in _hints(hint)])
     code = next(code for code in codes if code in _FLAT)
@@ -186,5 +193,5 @@ def _rebuilt(hint: Any, codes: Iterator[str], values: Iterator[Any]) -> Any:
 
 @cache
 def _hints(own: type) -> list[Any]:
-    """Return the types of the members of a named tuple."""
+    """Return the types of the members of a named tuple, in their order."""
     return [*get_type_hints(own).values()]

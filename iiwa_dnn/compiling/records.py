@@ -1,4 +1,4 @@
-"""Records: numbers of one flat array by their names, in Python attributes and in C a struct."""
+"""View the numbers of one flat array by names: attributes in Python, members of a struct in C."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ def part(*shape: Any) -> Any:
 
 
 class Record(np.ndarray[Any, np.dtype[np.float64]]):
-    """Numbers of one flat array by the names that a subclass annotates.
+    """Flat array whose numbers have the names that a subclass annotates.
 
-    A member is a number, held as a float, or what its `part` says. In the array all numbers come
-    first, then the parts::
+    A member is one number, or an array or record declared by `part`. In the array all single
+    numbers come first, then the parts::
 
         class JointState(Record):
             time: float
             position: Vector = part()
             axis: Vector = part(3)
 
-    A kernel takes one as a parameter, within a named tuple too, or views an array as one by `of`.
-    Where parts have sizes of several names, only `of` makes one. In Python an array of several
-    axes holds a record in each of its last axis.
+    A kernel takes a record as a parameter, or in a named tuple, or views an array as a record by
+    `of`. A record with sizes of several names is made by `of`, `zeros` or `make` alone. In Python
+    an array of several axes holds one record along its last axis for each of the other indices.
 
     Attributes:
-        members: Shape of each member; of a number ``()``.
-        names: Names of the sizes.
+        members: Shape of each member by its name, in the order of the array; of a number ``()``.
+        names: Names of the sizes that differ from record to record.
     """
 
     members: ClassVar[dict[str, tuple[Any, ...]]]
@@ -46,7 +46,7 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
     _sizes: tuple[int, ...] = ()
 
     def __init_subclass__(cls) -> None:
-        """Lay the members out."""
+        """Give each annotated member its place in the array and a property."""
         own = {name: vars(cls).get(name, ()) for name in cls.__annotations__}
         cls.members = dict(sorted(own.items(), key=lambda item: len(item[1]) > 0))
         sizes = [size for shape in own.values() for size in shape]
@@ -58,12 +58,12 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        """Sizes of the names."""
+        """Sizes of the record, in the order of `names`."""
         return self._sizes or self._with_last(self.shape[-1], ())
 
     @classmethod
     def _with_last(cls, count: int, sizes: tuple[int, ...]) -> tuple[int, ...]:
-        """Return the sizes of a record of so many numbers, whose last one follows from them."""
+        """Return all sizes of a record of `count` numbers; a missing last one is computed."""
         if len(sizes) != len(cls.names) - 1:
             return sizes
         fixed = cls.width(*sizes, 0)
@@ -72,7 +72,7 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
     @classmethod
     @cache
     def columns(cls, *sizes: int) -> dict[str, slice]:
-        """Return the columns of each member."""
+        """Return the place of each member in the array, for the sizes in the order of `names`."""
         known = dict(zip(cls.names, sizes, strict=True))
         found = {}
         start = 0
@@ -85,16 +85,16 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
     @classmethod
     @cache
     def width(cls, *sizes: int) -> int:
-        """Count the numbers of a record; -1 if a size is below 0."""
+        """Count the numbers of a record from the sizes of `names`; -1 if a size is negative."""
         ends = (own.stop for own in cls.columns(*sizes).values())
         return max(ends, default=0) if min(sizes, default=0) >= 0 else -1
 
     @classmethod
     def of(cls: type[Own], numbers: np.ndarray[Any, Any], *sizes: int) -> Own:
-        """View an array's numbers by their names; the last size follows from that of the array.
+        """View an array as a record; the last size, if not given, follows from the array's length.
 
         Raises:
-            ValueError: The array has not the size of such a record.
+            ValueError: The array's length is none of such a record.
         """
         sizes = cls._with_last(numbers.shape[-1], sizes)
         if numbers.shape[-1] != cls.width(*sizes):
@@ -106,16 +106,16 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
 
     @classmethod
     def zeros(cls: type[Own], *sizes: int) -> Own:
-        """Make a record of zeros."""
+        """Make a record of zeros, for the sizes in the order of `names`."""
         return cls.of(np.zeros(cls.width(*sizes)), *sizes)
 
     @classmethod
     def make(cls: type[Own], **values: Any) -> Own:
-        """Make a record of the values of its members, by their names.
+        """Make a record from the values of all members, by their names.
 
         Raises:
             TypeError: A member has no value, or a value no member.
-            ValueError: The array for a part has another shape.
+            ValueError: The array for a part has another shape than declared.
         """
         if values.keys() != cls.members.keys():
             members = ", ".join(cls.members)
@@ -131,17 +131,17 @@ class Record(np.ndarray[Any, np.dtype[np.float64]]):
         return own
 
     def duplicate(self: Own) -> Own:
-        """Return a copy."""
+        """Return a record with a copy of the numbers."""
         return self.of(self.numbers.copy(), *self.sizes)
 
     @property
     def numbers(self) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """All numbers as a plain array, a view."""
+        """All numbers of the record as a plain array, a view."""
         return self.view(np.ndarray)
 
 
 def _size(own: Any) -> int:
-    """Return the size of a part of a record that is a number, or another record."""
+    """Return a size that a part states as a number, or as another record."""
     return own if isinstance(own, int) else int(own.width())
 
 
@@ -160,7 +160,7 @@ def _writer(i: int) -> Any:
 
 
 def _part(name: str, shape: tuple[Any, ...]) -> Any:
-    """Return the property of a part."""
+    """Return the property of a part, by its name and shape."""
 
     def view(own: Any) -> Any:
         columns = own.columns(*own.sizes)[name]

@@ -1,4 +1,4 @@
-"""Names of a package's modules, read from source text: functions, types and constants."""
+"""Read the functions, types and constants of a package from source text, without importing it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ KERNELS = ("compiled", "released")
 """Decorators of a kernel: plain, and called without Python's lock."""
 
 ENTRY = "entry"
-"""Decorator of a function without a body, which calls the kernel at an address."""
+"""Decorator of a prototype, a function without a body: it calls a function by its address."""
 
 
 _WORDS = re.compile(
@@ -24,21 +24,21 @@ _WORDS = re.compile(
     "struct|switch|template|this|thread_local|throw|typedef|typeid|typename|union|"
     "unsigned|using|virtual|void|volatile|wchar_t|xor|xor_eq"
 )
-"""Names that a variable of C has not: words of C, of C++, and of a kernel's own."""
+"""Words that are no names of variables: those of C and C++, and names in every C function."""
 
 
 class TranslationError(Exception):
-    """A kernel leaves the subset of Python that is translated; the message names file and line."""
+    """A kernel leaves the subset of Python that is translated; the message has file and line."""
 
 
 def fail(module: Module, node: ast.AST, problem: str) -> NoReturn:
-    """Raise the TranslationError of a node."""
+    """Raise a TranslationError with the file, line and first line of text of a syntax node."""
     text = ast.unparse(node).partition("\n")[0]
     raise TranslationError(f"{module.path}:{getattr(node, 'lineno', 0)}: `{text}` {problem}")
 
 
 def decoration(node: ast.AST | None) -> str:
-    """Return the decorator that makes a function a kernel or an entry; else nothing."""
+    """Return the decorator that makes a function a kernel or an entry; nothing if none does."""
     words = [ast.unparse(each) for each in getattr(node, "decorator_list", [])]
     return next((word for word in words if word in (*KERNELS, ENTRY)), "")
 
@@ -50,13 +50,13 @@ def has_kernels(file: Path) -> bool:
 
 
 def stored_names(node: ast.AST) -> list[str]:
-    """List the variables that a node writes."""
+    """List the variables that a syntax node assigns, once each time, without ``_``."""
     names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
     return [each.id for each in names if isinstance(each.ctx, ast.Store) and each.id != "_"]
 
 
 def _bound(node: ast.stmt) -> list[str]:
-    """List the names that a statement binds."""
+    """List the names that a statement of a module binds."""
     match node:
         case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
             return [name]
@@ -68,30 +68,30 @@ def _bound(node: ast.stmt) -> list[str]:
 
 
 def c_name(module: str, name: str, package: str = "iiwa_dnn") -> str:
-    """Return the name in C of what a module binds: its full name, within a package without it."""
+    """Return the C name of a name in a module: both joined by ``_``, without the package's name."""
     words = [*module.removeprefix(f"{package}.").split("."), name.strip("_")]
     return "_".join(words).lstrip("_")
 
 
 def c_word(name: str) -> str:
-    """Return a variable's name in C, which is no word of C, of C++ or of a kernel's own."""
+    """Return the C name of a variable: its own, with ``_`` behind it if it is one of `_WORDS`."""
     return f"{name}_" if _WORDS.fullmatch(name) else name
 
 
 class Module(dict[str, Any]):
-    """Names of one file, whose values are computed where they are asked for.
+    """Names that one file binds; the value of a constant is computed at its first look-up.
 
     Attributes:
         package: The package.
         name: Full name of the module.
         file: The file.
         path: Its path, from the folder that holds the package.
-        names: For each name the statement that binds it.
-        about: Docstrings after the statements that bind constants.
+        names: Statement that binds each name.
+        about: Docstring of each constant that has one.
     """
 
     def __init__(self, package: Package, name: str, file: Path) -> None:
-        """Read a file."""
+        """Read and parse a file."""
         self.package = package
         self.name = name
         self.file = file
@@ -107,7 +107,7 @@ class Module(dict[str, Any]):
                     self.about |= dict.fromkeys(_bound(node), " ".join(text.split()))
 
     def __missing__(self, name: str) -> Any:
-        """Compute a constant by executing the one statement that binds it."""
+        """Compute the value of a constant by executing the one statement that binds the name."""
         home, _ = self.package.find(self, name)
         if home is not self:
             return home[name]
@@ -115,16 +115,16 @@ class Module(dict[str, Any]):
         return self[name]
 
     def c_name(self, name: str) -> str:
-        """Return the name in C of what is bound here."""
+        """Return the C name of a name that the file binds."""
         return c_name(self.name, name, self.package.folder.name)
 
     def value(self, node: ast.expr) -> Any:
-        """Compute an expression of constants."""
+        """Compute the value of an expression of constants."""
         return eval(ast.unparse(node), {}, self)
 
 
 class Package:
-    """All modules of a package, read where they are asked for."""
+    """Modules of a package, each read at its first look-up."""
 
     def __init__(self, folder: Path) -> None:
         """Take the folder of a package."""
@@ -133,11 +133,11 @@ class Package:
 
     @property
     def modules(self) -> list[Module]:
-        """Modules that were read so far."""
+        """Modules that have been read."""
         return [*self._modules.values()]
 
     def module(self, name: str, file: Path | None = None) -> Module:
-        """Return a module by its full name, from a file unless it is one of the package."""
+        """Return a module by its full name; `file` is that of a module outside of the package."""
         if name not in self._modules:
             path = self.folder.parent.joinpath(*name.split("."))
             own = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
@@ -145,7 +145,7 @@ class Package:
         return self._modules[name]
 
     def kernels(self) -> Iterator[tuple[Module, ast.FunctionDef]]:
-        """List all functions that are translated, with their modules, by paths."""
+        """List all kernels and entries of the package with their modules, ordered by paths."""
         for path in sorted(self.folder.rglob("*.py")):
             if not has_kernels(path):
                 continue
@@ -156,9 +156,9 @@ class Package:
                     yield module, node
 
     def find(self, module: Module, name: str) -> tuple[Module, ast.stmt | None]:
-        """Return the module in which a name is bound, and the statement that binds it.
+        """Follow a name through imports; return the module and the statement that bind it.
 
-        The statement is an import for a name from outside of the package, and None for a builtin.
+        For a name from outside of the package the statement is its import, for a builtin None.
         """
         node = module.names.get(name)
         if not isinstance(node, ast.ImportFrom):

@@ -1,8 +1,8 @@
-"""Translator of a package's kernels to C99, for sizes that are known at run time.
+"""Translate a package's kernels to C99, for arrays whose sizes are known at run time.
 
-It reads source text alone. An array is a pointer and its sizes; what a kernel makes for itself
-comes from an arena, and is given back where the kernel returns. What it does not know it refuses by
-file and line; types that do not fit are refused by the compiler, which is told file and line too.
+Source text alone is read. In C an array is a pointer and its sizes; memory for arrays that a kernel
+makes comes from an arena, and is released when the kernel returns. A statement without translation
+is refused by file and line; a wrong type is refused by the C compiler, by file and line too.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from .sources import (
 
 
 class Translator(Translation):
-    """A translation of kernels that call each other into one text of C.
+    """Translation of kernels that call each other into one text of C.
 
     Attributes:
-        functions: The functions, by module and name.
+        functions: Translated functions by module and name, each after those that it calls.
     """
 
     def __init__(self, folder: Path, is_checked: bool = False) -> None:
-        """Take the folder of a package."""
+        """Take the folder of a package, and whether indices are checked in C."""
         super().__init__(folder, is_checked)
         self.functions: dict[tuple[str, str], Function] = {}
 
@@ -46,11 +46,11 @@ class Translator(Translation):
             self.function(module, node)
 
     def text(self, titles: Mapping[str, str] = MappingProxyType({})) -> str:
-        """Return structs, constants and functions as one text.
+        """Return types, constants, tables and functions as one text of C.
 
         Args:
-            titles: Titles of sections, in their order, by the first word of a module in the
-                package; by none for modules from outside.
+            titles: Titles of the sections of functions, in their order, by subpackages; the title
+                by an empty name is of functions from outside of the package.
         """
         enter = _entry if self.parts is None else partial(_numbered, parts=self.parts)
         ranks = {room: i for i, room in enumerate(titles)}
@@ -74,7 +74,7 @@ class Translator(Translation):
     def function(
         self, module: Module, node: ast.FunctionDef, like: Function | None = None
     ) -> Function:
-        """Return the translation of a function; one without annotations has another's types."""
+        """Return the translation of a function; one without annotations has the types of `like`."""
         key = (module.name, node.name)
         if key not in self.functions:
             own = self.functions[key] = Function(self, module, node, like)
@@ -91,14 +91,14 @@ _LEFT = "return"
 """Mark of a block whose end is never reached, among the names of variables."""
 
 _LASTING = r"\w+(\.size\d)?( [*+-] \w+(\.size\d)?)*"
-"""Ends of a loop that nothing writes but their own names."""
+"""Pattern of an end of a loop that changes only if one of its variables is assigned."""
 
 
 class Function(Expressions):
-    """Translation of one function; a variable has the type of what is first assigned to it.
+    """Translation of one function; a variable has the type of the first value assigned to it.
 
     Attributes:
-        text: The function in C.
+        text: The function in C; "" before `translate`, and for an entry.
     """
 
     def __init__(
@@ -108,7 +108,7 @@ class Function(Expressions):
         node: ast.FunctionDef,
         like: Function | None = None,
     ) -> None:
-        """Read name and types of a function; without annotations it enters as another does."""
+        """Read the types of a function; one without annotations has those of the entry `like`."""
         of = translator.kinds.of
         names = [own.arg for own in node.args.args]
         result = of(module, node.returns or ast.Constant(None))
@@ -128,23 +128,23 @@ class Function(Expressions):
 
     @property
     def about(self) -> str:
-        """Docstring."""
+        """Docstring of the function, "" without one."""
         return ast.get_docstring(self.node) or ""
 
     @property
     def decoration(self) -> str:
-        """Decorator that makes it a kernel or an entry."""
+        """Name of the decorator that makes the function a kernel or an entry."""
         return decoration(self.node)
 
     @property
     def types(self) -> list[str]:
-        """Types of its parameters in C."""
+        """Types of the parameters in C; named tuples and records are pointers."""
         kinds = self.parameters.values()
         return [f"const {own.tag} *" if own.is_named else f"{own.tag} " for own in kinds]
 
     @property
     def head(self) -> str:
-        """Declaration in C."""
+        """Head of the function in C, without its body."""
         names = map(c_word, self.parameters)
         own = ["struct arena *arena"] * self.uses_arena
         own += map("".join, zip(self.types, names, strict=True))
@@ -152,17 +152,17 @@ class Function(Expressions):
 
     @property
     def code(self) -> str:
-        """Types of parameters and result as a text, one letter each."""
+        """Code of the function's types: `Kind.code` of each parameter, a colon, the result's."""
         return f"{''.join(kind.code for kind in self.parameters.values())}:{self.result.code}"
 
     def room(self, rooms: Iterable[str]) -> str:
-        """Return the subpackage that the function comes from, or nothing."""
+        """Return which of some subpackages the function is in; nothing if it is in none."""
         words = self.module.name.split(".")
         is_own = words[0] == self.translator.package.folder.name and words[1] in rooms
         return words[1] if is_own else ""
 
     def translate(self) -> None:
-        """Translate the body."""
+        """Translate the body into `text`."""
         self._takes = re.search(r"\bnp\.(empty|zeros)\(|\.copy\(\)", ast.unparse(self.node))
         if self._takes:
             self.lines.append("const struct arena mark = *arena;")
@@ -176,7 +176,13 @@ class Function(Expressions):
         self.text = self.written_out(about, self.lines)
 
     def written_out(self, about: str, lines: list[str]) -> str:
-        """Return the function with a body; parameters that it does not read are said to be idle."""
+        """Return the function in C.
+
+        Args:
+            about: Comment on the function.
+            lines: Lines of the body; a zero character and a number before a declaration become
+                ``const`` if the variable of that number is written once.
+        """
         body = "\n    ".join(lines)
         # A variable that is never written again is constant.
         body = re.sub(r"\0(\d+) ", lambda own: "const " * self._is_const[int(own[1])], body)
@@ -187,9 +193,9 @@ class Function(Expressions):
         return f"/* {comment} */\n{self.head}\n{{\n    {body}\n}}\n"
 
     def _assigns(self, block: list[ast.stmt]) -> set[str]:
-        """Return the variables that a block writes on every path to its end.
+        """Return the variables that are assigned on every path to the end of a block.
 
-        All are written, and `_LEFT` is, if no path leads there.
+        If no path leads to the end, return all variables of the function and `_LEFT`.
         """
         found: set[str] = set()
         for node in block:
@@ -203,7 +209,7 @@ class Function(Expressions):
         return found
 
     def _block(self, statements: list[ast.stmt]) -> None:
-        """Translate statements of a block."""
+        """Translate statements one after another."""
         for node in statements:
             if self.translator.parts is None:  # of a library, which nobody reads
                 self.lines.append(f'#line {node.lineno} "{self.module.path}"')
@@ -214,6 +220,7 @@ class Function(Expressions):
             self.assigned |= self._assigns([node])
 
     def _statement(self, node: ast.stmt) -> None:
+        """Translate one statement; raise a TranslationError if it has no translation."""
         match node:
             case ast.Pass() | ast.Expr(value=ast.Constant()):
                 pass
@@ -240,7 +247,7 @@ class Function(Expressions):
                 fail(self.module, node, "has no translation")
 
     def _nested(self, head: str, body: list[ast.stmt]) -> None:
-        """Translate a block under a head; variables that it declares are its own."""
+        """Translate a block under a head of C; variables declared in it are unknown after it."""
         before = len(self.lines)
         declared = dict(self._declared)
         assigned = {*self.assigned}
@@ -250,7 +257,7 @@ class Function(Expressions):
         self.lines[before:] = [f"{head} {{", *(f"    {own}" for own in self.lines[before:]), "}"]
 
     def _if(self, node: ast.If) -> None:
-        """Translate a condition; a variable that each path writes is declared before it."""
+        """Translate an `if`; a variable that both branches assign is declared before it."""
         head = f"if ({self.value(node.test).text})"
         before = len(self.lines)
         found = self._assigns([node])
@@ -265,7 +272,12 @@ class Function(Expressions):
         self.lines[before:before] = declared
 
     def _join(self, closed: int, orelse: list[ast.stmt]) -> None:
-        """Write an `else`, or an `else if`, on the line of the closing brace before it."""
+        """Join the lines of an `else` with the brace before them; an inner `if` becomes `else if`.
+
+        Args:
+            closed: Index of the first line of the `else`.
+            orelse: Statements of the `else`.
+        """
         first, *inner = self.lines[closed:]
         is_alone = isinstance(orelse[0], ast.If) and len(orelse) == 1
         if is_alone and inner[0].startswith("    if ("):
@@ -274,7 +286,7 @@ class Function(Expressions):
         self.lines[closed - 1 :] = [f"}} {first}", *inner]
 
     def _return(self, node: ast.expr | None) -> None:
-        """Return a value, and release the memory that the function has taken."""
+        """Translate a `return`, before which memory that the function has taken is released."""
         own = self.value(node).converted(self.result) if node else Value(VOID, "")
         self.aliases.setdefault("return", set()).update(own.places)
         if self._takes and not re.fullmatch(r"[\w.-]*", own.text):
@@ -285,7 +297,7 @@ class Function(Expressions):
         self.lines.append(f"return {own.text};" if own.text else "return;")
 
     def _for(self, node: ast.For, ends: list[Value]) -> None:
-        """Translate a loop over a range; its variable is known inside of it alone."""
+        """Translate a loop over a range with `ends`; its variable is known in the loop alone."""
         name = ast.unparse(node.target)
         self.require(len(ends) < 3, node, "has a step")
         stored = {*stored_names(ast.Module(node.body, []))}
@@ -303,7 +315,7 @@ class Function(Expressions):
         self.kinds.pop(name, None)
 
     def _store(self, target: ast.expr, sign: str, value: Value) -> None:
-        """Translate the writing of a value."""
+        """Translate an assignment to a target by ``=``, or by an augmented sign such as ``+=``."""
         match target:
             case ast.Tuple(elts=targets):
                 own = self._keep(value, target).text
@@ -335,7 +347,7 @@ class Function(Expressions):
                 fail(self.module, target, "has no translation")
 
     def _write(self, name: str, target: ast.expr, sign: str, value: Value) -> None:
-        """Translate the writing of a variable, which is declared where it is first written."""
+        """Translate an assignment to a variable, which is declared at the first one."""
         kind = self.kinds.setdefault(name, value.kind)
         self.aliases.setdefault(name, set()).update(value.places)
         own = c_word(name)
@@ -354,7 +366,7 @@ class Function(Expressions):
 
 
 def _numbered(own: Function, parts: list[Function]) -> str:
-    """Write the function that calls one of an exported text's parts by its number."""
+    """Write the body of an entry in exported C: a call of one of some functions by its number."""
     address, *names = map(c_word, own.parameters)
     back = "return " * (own.result is not VOID)
     lines = []
@@ -368,10 +380,11 @@ def _numbered(own: Function, parts: list[Function]) -> str:
 
 
 def _entry(own: Function) -> str:
-    """Write the function that calls a function of its types by its address.
+    """Write the body of an entry in the library: a call by a function pointer.
 
-    A function of a user's has a negative one: it takes numbers as they are, an array as its pointer
-    and its sizes, and a named tuple as its members; a tuple's numbers go to a last pointer.
+    A positive pointer is a kernel's. A negative one is, without its sign, a function of C that
+    takes an array as its pointer and sizes, a named tuple as its members, and a last pointer to
+    which it writes the numbers of a resulting tuple.
     """
     address, *names = own.parameters
     tag = own.result.tag
@@ -391,7 +404,7 @@ def _entry(own: Function) -> str:
 
 
 def _flat(value: Value) -> Iterator[tuple[str, str]]:
-    """Return the types and texts of the flat arguments for one argument."""
+    """Return the C types and expressions of the flat arguments that stand for one value."""
     kind = value.kind
     if kind.element and kind.axes:
         yield f"{kind.element.tag} *", value.data.text

@@ -1,8 +1,8 @@
-"""Sine and cosine in arithmetic alone: the same bits from every compiler and on every processor.
+"""Compute sine and cosine by sums and products alone, with the same bits on every processor.
 
-C libraries differ in the last digit. Here the angle is reduced by multiples of pi/2 in four
-parts (Cody and Waite, 1980), and polynomials of degree five in its square, of least largest error
-(Remez), give the value. It is off by less than 0.8 units in the last place below `LARGEST`.
+C libraries differ in the last digit. Here a multiple of pi/2, in four parts, is subtracted from the
+angle (Cody and Waite, 1980); polynomials of degree five in the square of the rest, of least largest
+error (Remez), give both values. Below `LARGEST` the error is less than 0.8 units in the last place.
 """
 
 from .library import compiled
@@ -52,8 +52,8 @@ COSINE = (
 def sin_cos(angle: float) -> tuple[float, float]:
     """Compute sine and cosine of an angle [rad].
 
-    Beyond `LARGEST` whole turns are taken away in one product: the error is at most that of an
-    angle which is off by one unit in its last place. From `FARTHEST` on the angle counts as 0.
+    From `LARGEST` on, whole turns are subtracted as one product: the error is at most that of an
+    angle which is off by one unit in its last place. From `FARTHEST` on, the angle counts as 0.
     Infinity and NaN give NaN.
     """
     x = angle
@@ -88,5 +88,5 @@ def sin_cos(angle: float) -> tuple[float, float]:
 
 @compiled
 def sin(angle: float) -> float:
-    """Compute the sine of an angle [rad], as `sin_cos`."""
+    """Compute the sine of an angle [rad] with the bits of `sin_cos`."""
     return sin_cos(angle)[0]

@@ -1,4 +1,4 @@
-"""Export as C99, one file that runs without Python, and of a shield as a package of its own."""
+"""Export a controller or a shield: as C99 that runs without Python, or as a Python package."""
 
 from iiwa_dnn.export.folder import c99, python
 from iiwa_dnn.export.load import ExportedCommand, ExportedController, load

@@ -1,4 +1,4 @@
-"""A controller as C code: the kernels that it reaches, its tables, the texts of the templates."""
+"""Translate the step of a controller or a shield to C, and make the texts of the templates."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ _SECTIONS = {
 
 
 def filled(template: Path, values: dict[str, Any]) -> str:
-    """Fill the values into a template by their names."""
+    """Return a template's text with values in place of their names; long lines of C are wrapped."""
     text = template.read_text(encoding="utf-8")
     text = re.sub(r"@(\w+)@", lambda found: str(values[found[1]]), text)
     if template.suffix not in (".c", ".h"):
@@ -93,7 +93,7 @@ def filled(template: Path, values: dict[str, Any]) -> str:
 
 
 def wrapped(line: str) -> list[str]:
-    """Wrap a line of C that is too long, where it is nested least."""
+    """Split a line of C at `WIDTH` characters, where brackets are nested least."""
     lines = []
     indent = " " * (len(line) - len(line.lstrip()) + 4)
     while len(line) > WIDTH:
@@ -118,10 +118,11 @@ def controller_code(controller: Controller) -> dict[str, Any]:
     """Translate a controller whose scheme is anchored.
 
     Returns:
-        Texts by the names of their places in the templates.
+        Texts by their names in the templates.
 
     Raises:
-        InvalidInputError: A part of it is no kernel, or has no translation; it is named.
+        InvalidInputError: A part of the controller is no kernel, or has no translation; the part
+            is named.
     """
     step = controller.control_layout
     robot = controller.robot
@@ -175,12 +176,12 @@ def controller_code(controller: Controller) -> dict[str, Any]:
 
 
 def _nested(initializer: str) -> str:
-    """Indent an initializer for its place in a function."""
+    """Indent the lines of an initializer after the first, as in a function."""
     return initializer.replace("\n", "\n    ")
 
 
 def _members(prefix: str, kind: type[IntEnum]) -> str:
-    """Return the members of an enumeration in C."""
+    """Write the members of an enumeration in C, with a prefix before their names."""
     return "\n".join(f"    {prefix}_{own.name} = {own.value}," for own in kind)
 
 
@@ -192,7 +193,16 @@ def _about(
     reasons: Sequence[str],
     program: ProgramLayout,
 ) -> dict[str, Any]:
-    """Return texts with those about the robot, the names of limits and the code."""
+    """Add the texts about the robot, the limits and the code to those of a controller or shield.
+
+    Args:
+        kind: ``"controller"`` or ``"shield"``.
+        made: The controller or shield.
+        texts: The other texts.
+        code: The translation.
+        reasons: Names of the reasons, whose codes come before those of limits.
+        program: Layout of the program that a step answers.
+    """
     names = [json.dumps(name) for name in [*reasons, *limit_words(program)]]
     robot = made.robot
     n, m, p = program.sizes
@@ -220,9 +230,9 @@ def _about(
 
 
 def limit_words(program: ProgramLayout) -> list[str]:
-    """List the names of all limits of a program; the index of a name is its code.
+    """List the names of all limits of a program in the order of their codes.
 
-    For each joint come the lower and the upper bound of each of `limit_kinds`, then the rows.
+    For each joint: the lower and the upper bound of each of `limit_kinds`; then the rows.
     """
     settings: dict[str, Any] = LimitNames(program).settings
     rows = settings["rows"]
@@ -241,7 +251,7 @@ def limit_words(program: ProgramLayout) -> list[str]:
 
 
 def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
-    """Translate a shield, whose twists are those of one frame; returns what the controller's do."""
+    """Translate a shield with twists of one frame; return texts as `controller_code` does."""
     plan, step, memory, _ = shield.layout(frame)
     written = ("jacobian", "placements", "inertia", "fallback")
     code = _Code(step.program, [], dict.fromkeys(written, "/* each arm's */ NULL"), folds=False)
@@ -276,7 +286,7 @@ def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
 
 
 def _lengths(controller: Controller) -> dict[str, int]:
-    """Count the numbers of each field of the struct."""
+    """Return the number of doubles in each field of the C struct of a controller."""
     step = controller.control_layout
     dof = controller.robot.dof
     return {
@@ -294,7 +304,7 @@ def _lengths(controller: Controller) -> dict[str, int]:
 
 
 class _Code:
-    """Translation of the kernels that a controller reaches, and its tables."""
+    """Translation of the kernels that a step calls, and of the tables that they read."""
 
     def __init__(
         self,
@@ -306,11 +316,11 @@ class _Code:
         """Begin without tables.
 
         Args:
-            program: The program.
-            paths: The paths of its frames.
-            memory: Places in C of arrays that are written, by their names in a plan.
-            folds: Whether kernels take the plan's numbers for constants, as none makes another
-                plan: the compiler leaves out what is never reached, a third of the code.
+            program: Layout of the program that a step answers.
+            paths: Reference of each tracked frame, or none.
+            memory: C expressions of arrays that a step writes, by their names in a plan.
+            folds: Whether a plan's members are constants for the C compiler, which then drops code
+                that is never reached, a third of all; only if no kernel makes another plan.
         """
         self._folds = folds
         self._memory = memory
@@ -325,7 +335,7 @@ class _Code:
         self._numbers = {0: 0}
 
     def numbered(self, plan: ControlPlan) -> ControlPlan:
-        """Return a plan with the numbers of parts in place of their addresses."""
+        """Translate the functions at a plan's addresses; return the plan with their numbers."""
         network = plan.network._replace(
             rates=self._part(plan.network.rates), address=self._part(plan.network.address)
         )
@@ -334,7 +344,7 @@ class _Code:
         return plan._replace(arrays=arrays, network=network, paths=paths)
 
     def _renumbered(self, own: Any, columns: type[IntEnum]) -> Any:
-        """Return parts or paths whose table holds numbers of functions in place of addresses."""
+        """Replace the addresses in a table of parts or paths by the numbers of functions."""
         address = columns["ADDRESS"]
         table = own.table.copy()
         table[:, address] = [*map(self._part, table[:, address].tolist())]
@@ -343,7 +353,7 @@ class _Code:
         return own._replace(table=table)
 
     def _part(self, address: int) -> int:
-        """Translate the function at an address, once; return its number."""
+        """Translate the function at an address, once; return its number, from 1."""
         if address not in self._numbers:
             like = Function(self._translator, *self._found(Entry.prototypes[address]))
             self._parts.append(self._translated(Entry.functions[address], like))
@@ -351,23 +361,27 @@ class _Code:
         return self._numbers[address]
 
     def kernels(self, *kernels: Any) -> dict[str, str]:
-        """Translate kernels; return how a call of each begins, by its name."""
+        """Translate kernels; return the beginnings of their calls in C, by the kernels' names."""
         return {source_of(each).__name__: self.kernel(each) for each in kernels}
 
     def kernel(self, kernel: Any) -> str:
-        """Translate a kernel; return how a call of it in C begins."""
+        """Translate a kernel; return the beginning of a call in C, up to the first argument."""
         own = self._translated(source_of(kernel))
         return f"{own.name}({'&arena, ' * own.uses_arena}"
 
     def _found(self, function: Any) -> tuple[Module, Any]:
-        """Return the module of a function of the package or of a user's, and its definition."""
+        """Return the module that defines a function, and the syntax tree of the definition."""
         own = function.__module__.startswith("iiwa_dnn.")
         file = None if own else Path(inspect.getfile(function))
         module = self._translator.package.module(function.__module__, file)
         return module, module.names[function.__qualname__]
 
     def _translated(self, function: Any, like: Function | None = None) -> Function:
-        """Translate a function, or raise an InvalidInputError."""
+        """Translate a function; without annotations it has the types of the entry `like`.
+
+        Raises:
+            InvalidInputError: The function has no translation.
+        """
         try:
             return self._translator.function(*self._found(function), like)
         except (
@@ -382,7 +396,7 @@ class _Code:
             raise InvalidInputError("controller", problem) from error
 
     def initializer(self, name: str, own: Any) -> str:
-        """Return the initializer of a named tuple, whose variables begin with a name."""
+        """Return the C initializer of a named tuple; names of its tables begin with `name`."""
         items: dict[str, Any] = own._asdict()
         values = {field: self._value(f"{name}_{field}", own, field) for field in items}
         known = {field: own for field, own in values.items() if isinstance(own, Value)}
@@ -393,7 +407,13 @@ class _Code:
         return braced([f".{name} = {text}" for name, text in zip(items, texts, strict=True)])
 
     def _value(self, name: str, owner: Any, field: str) -> Value | str:
-        """Return a number or a table of a named tuple as a constant; anything else as it begins."""
+        """Return a member of a named tuple: a `Value` for a constant, else an initializer.
+
+        Args:
+            name: C name of the constant, or beginning of the names of tables.
+            owner: The named tuple.
+            field: Name of the member.
+        """
         own = getattr(owner, field)
         if isinstance(own, tuple):
             return self.initializer(name, own)
@@ -408,7 +428,7 @@ class _Code:
         return f"{_tag(own)}_of({', '.join([table.text, *map(str, own.sizes)])})"
 
     def _table(self, name: str, owner: Any, field: str) -> tuple[Kind, Value]:
-        """Write an array as a variable; return the type of its numbers and a pointer to them."""
+        """Write an array as a table; return the type of its numbers and a pointer to them."""
         own = getattr(owner, field)
         kind = FLOAT if own.dtype == np.float64 else INT
         if not own.size:
@@ -425,7 +445,7 @@ class _Code:
         return kind, Value(kind, f"({kind.tag} *){address}{name}", Rank.UNARY)
 
     def text(self) -> str:
-        """Return structs, tables and functions, and before them those of C's own that they call."""
+        """Return the C of types, tables and functions, after the helpers that these call."""
         text = self._translator.text(_SECTIONS)
         shared = prelude("kernels.h").split("\n\n")
         found = [re.match(r"static inline \S+ \*?(\w+)\(", each) for each in shared]
@@ -434,5 +454,5 @@ class _Code:
 
 
 def _tag(own: Any) -> str:
-    """Return the name in C of the type of a named tuple or record."""
+    """Return the C name of the type of a named tuple or a record."""
     return c_name(type(own).__module__, type(own).__name__)

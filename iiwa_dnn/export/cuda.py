@@ -1,4 +1,4 @@
-"""A shield in CUDA C++: its C as a kernel over a grid, one thread an arm."""
+"""Write a shield in CUDA C++: its C as a GPU kernel over a grid, one thread for each arm."""
 
 import re
 from pathlib import Path
@@ -20,7 +20,7 @@ _REWRITTEN = {
 
 
 def write_cuda(package: Path, texts: dict[str, Any]) -> None:
-    """Write the sources for a GPU into a package of a shield, whose texts are given."""
+    """Write the sources for a GPU into the package of a shield, from the shield's texts."""
     code = "\n".join(filled(TEMPLATES / "shield" / f"shield.{end}", texts) for end in "hc")
     for pattern, text in _REWRITTEN.items():
         code = re.sub(pattern, text, code)

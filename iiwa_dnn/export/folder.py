@@ -1,4 +1,4 @@
-"""The folder of an exported controller: code, vectors of a run, a test, examples."""
+"""Write folders of exports: code, recorded steps, a program that compares them, examples."""
 
 import copy
 import json
@@ -63,20 +63,21 @@ def c99(
     """Write a controller or a shield as a folder of C99.
 
     Args:
-        made: The controller or shield; it stays as it is. The twists of a shield are those of its
+        made: The controller or shield, which is not changed. A shield takes twists of its
             robot's tip.
         folder: The folder, which is new, empty, or holds an earlier export, whose files are
             overwritten.
-        q0: Joint positions where the arm begins [rad], (n,): the home of a scheme without one, and
-            the beginning of the vectors; None: where the controller is, or the start posture.
+        q0: Joint positions [rad], (n,), at which the recorded steps begin, and which are the home
+            of a scheme that states none; None: the controller's positions, or the start posture of
+            a shield's robot.
         overwrite: Write into a folder that holds other files too.
 
     Returns:
         The folder.
 
     Raises:
-        InvalidInputError: A part of the controller is not compiled or cannot be translated; it is
-            named.
+        InvalidInputError: A part of the controller is not compiled or has no translation; the
+            part is named.
         FileError: The folder holds other files, or cannot be written.
     """
     texts = _texts(made, None, q0)
@@ -88,10 +89,11 @@ def c99(
 
 
 def _claimed(folder: str | os.PathLike[str], mark: str, overwrite: bool) -> Path:
-    """Make the folder of an export, and return it.
+    """Make the folder of an export, and return its path.
 
     Raises:
-        FileError: It holds files and none that matches the pattern `mark`, unless `overwrite`.
+        FileError: Without `overwrite`, the folder holds files, and none matches the pattern
+            `mark`; or it cannot be written.
     """
     folder = Path(folder)
     if not overwrite and any(folder.glob("[!.]*")) and not any(folder.glob(mark)):
@@ -101,6 +103,7 @@ def _claimed(folder: str | os.PathLike[str], mark: str, overwrite: bool) -> Path
 
 
 def _templates(*folders: str) -> list[Path]:
+    """List the templates in some folders of templates."""
     return [path for folder in folders for path in sorted((TEMPLATES / folder).iterdir())]
 
 
@@ -116,11 +119,11 @@ def python(
 ) -> Path:
     """Write a controller or a shield as a package of Python that needs numpy alone.
 
-    ``pip install folder`` compiles it for that machine; with `platforms` it is compiled here by zig
-    (``pip install ziglang``), and its wheel is for all of them.
+    ``pip install folder`` compiles the package on the machine where it runs. With `platforms` it is
+    compiled here by zig (``pip install ziglang``), and one wheel serves all of them.
 
     Args:
-        made: The controller or shield; it stays as it is.
+        made: The controller or shield, which is not changed.
         folder: The folder of the project, as for `c99`.
         name: Name by which the package is imported.
         frame: Frame of a shield's twists; None stands for the tip.
@@ -133,7 +136,7 @@ def python(
         The folder.
 
     Raises:
-        InvalidInputError: The name is none of a package, or a part has no C; it is named.
+        InvalidInputError: The name is no package's, or a part has no C; the part is named.
         NotFoundError: There is no such frame or platform.
         MissingDependencyError: `platforms` are given, and ziglang is not installed.
         FileError: The folder holds other files, or cannot be written.
@@ -185,7 +188,7 @@ def _compile_for(package: Path, kind: str, platform: str) -> None:
 
 
 def _texts(made: Controller | Shield, frame: str | None, q0: ArrayLike | None) -> dict[str, Any]:
-    """Return the texts of a controller or a shield, and the vectors of a run."""
+    """Return the texts of a controller or a shield for the templates, and recorded steps."""
     if isinstance(made, Shield):
         texts = _shield_texts(made, frame, q0)
     else:
@@ -206,12 +209,12 @@ def _texts(made: Controller | Shield, frame: str | None, q0: ArrayLike | None) -
 
 
 def _names(**counts: int) -> list[str]:
-    """Number columns, as many of each name as is said."""
+    """Return names of columns: each name with the numbers from 1 to its count."""
     return [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
 
 
 def _shield_texts(shield: Shield, frame: str | None, q0: ArrayLike | None) -> dict[str, Any]:
-    """Return the texts of a shield, and vectors of a run with requests of all kinds.
+    """Return the texts of a shield, and recorded steps with requests of all kinds.
 
     Raises:
         NotFoundError: There is no such frame.
@@ -233,13 +236,14 @@ def _shield_texts(shield: Shield, frame: str | None, q0: ArrayLike | None) -> di
 
 
 def _members(kind: type[IntEnum]) -> str:
+    """Write the members of an enumeration in Python."""
     return "\n".join(f"    {each.name} = {each.value}" for each in kind)
 
 
 def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
-    """Run a shield on requests of all kinds that jump, are held, fall silent, or are not finite.
+    """Record steps of a shield with requests of all kinds: new, repeated, missing, not finite.
 
-    The arm follows its commands, late by the shield's `delay`.
+    The arm moves as commanded, late by the shield's `delay`. Requests have `width` numbers.
 
     Returns:
         Rows of the joint positions, kind of the request, stated period [s], the request, the
@@ -277,7 +281,7 @@ def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
 
 
 def take_exported_kinematics(controller: Controller) -> None:
-    """Let the kernel that is exported compute a controller's kinematics, not Pinocchio."""
+    """Replace Pinocchio in a controller by the kinematics kernel that is exported."""
     own = controller.program.kinematics
     needs_inertia = controller.program.needs_inertia
     tables = model_tables(controller.robot, own.frame_ids, needs_inertia)
@@ -287,9 +291,10 @@ def take_exported_kinematics(controller: Controller) -> None:
 
 
 def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
-    """Run a controller from joint positions q0 (n,) [rad], with an arm that follows every command.
+    """Record steps of a controller, from joint positions q0 (n,) [rad]; the arm moves as commanded.
 
-    Without a reference its frames follow a small figure of eight. The kinematics are those of C.
+    A controller without a reference follows a small figure of eight. The kinematics are those of
+    the exported C.
 
     Returns:
         Rows of the time [s], joint positions, targets of all frames, the command and the action.
@@ -314,10 +319,10 @@ def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
 
 
 def _controller_texts(controller: Controller, q0: ArrayLike | None) -> dict[str, Any]:
-    """Return the texts of a controller, and vectors of a run.
+    """Return the texts of a controller, and recorded steps.
 
     Raises:
-        InvalidInputError: A part of it has no C; it is named.
+        InvalidInputError: A part of the controller has no C; the part is named.
     """
     if controller.longest_period is not None:
         raise InvalidInputError("controller", "with longest_period has no C", controller)
@@ -360,4 +365,5 @@ def _controller_texts(controller: Controller, q0: ArrayLike | None) -> dict[str,
 
 
 def _numbers(values: Vector) -> str:
+    """Write numbers one after another, all digits kept."""
     return ", ".join(map(repr, values.tolist()))

@@ -1,4 +1,4 @@
-"""Compile and load an exported controller, to call its step in C from Python."""
+"""Compile and load an exported controller, to call its C from Python."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ FLAGS = ("-std=c99", "-O2")
 
 
 class ExportedCommand(NamedTuple):
-    """Decision of one step.
+    """Command of one step.
 
     Attributes:
         dq: Joint velocity [rad/s], (n,).
-        action: 0 if the command does all that the tasks ask; else the code of the action.
+        action: 0 if the command fulfils the tasks; else the code of the action that was taken.
     """
 
     dq: Vector
@@ -35,7 +35,7 @@ class ExportedCommand(NamedTuple):
 
 
 class ExportedController:
-    """A controller in C, with memory of its own.
+    """Controller in C, and the memory of its state.
 
     Attributes:
         dof: Number of joints, n.
@@ -45,7 +45,7 @@ class ExportedController:
     """
 
     def __init__(self, library: Any, header: str) -> None:
-        """Take a compiled controller and its header, and begin at rest."""
+        """Take the loaded library of a controller and the text of its header; begin at rest."""
         macros = dict(re.findall(r"#define CONTROLLER_(\w+) (\S+)", header))
         self.dof = int(macros["DOF"])
         self.frames = int(macros["FRAMES"])
@@ -56,7 +56,7 @@ class ExportedController:
         self.reset()
 
     def reset(self) -> None:
-        """Begin at rest."""
+        """Forget the last commands and begin at rest."""
         self._library.controller_init(self._memory)
 
     def step(self, q: ArrayLike, target: ArrayLike) -> ExportedCommand:
@@ -79,6 +79,7 @@ class ExportedController:
         return target
 
     def _command(self, step: Any, q: ArrayLike, asked: Vector | None) -> ExportedCommand:
+        """Call a C function `step` with joint positions and targets, or without targets."""
         joints = checks.finite_array("q", q, (self.dof,))
         dq = np.empty(self.dof)
         given = None if asked is None else asked.ctypes
@@ -86,10 +87,11 @@ class ExportedController:
 
 
 def load(folder: str | os.PathLike[str], flags: Sequence[str] = FLAGS) -> ExportedController:
-    """Compile an exported controller, by the environment's ``CC`` or what there is; return it.
+    """Compile the controller in a folder, by ``CC`` or another C compiler, and load it.
 
     Raises:
-        FileError: The folder holds no controller, it does not compile, or there is no compiler.
+        FileError: The folder holds no controller, or one that does not compile, or there is no
+            compiler.
     """
     source = Path(folder) / "controller.c"
     with tempfile.TemporaryDirectory() as build:

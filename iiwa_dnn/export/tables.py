@@ -1,6 +1,6 @@
-"""Tables of an exported plan: variables of C, initialised by the names of their fields.
+"""Write arrays of an exported plan as C variables that are initialised by names of fields.
 
-A reviewer finds each limit, gain and capsule by its name, and beside it the joint or link.
+Beside each limit, gain and capsule stands its joint or link, from the docstrings its meaning.
 """
 
 from __future__ import annotations
@@ -47,12 +47,12 @@ _ROWS: dict[tuple[type, str], type[Record]] = {
 
 
 class Node(NamedTuple):
-    """Part of a table.
+    """Value of C: a struct, an array or a number.
 
     Attributes:
-        value: Members of a struct by their names, elements of an array, or a number.
-        labels: Comments on the elements, or none.
-        about: Comments on the members, by their names, and on the struct, by no name.
+        value: A dictionary of nodes by members' names, a list of nodes, or a number.
+        labels: Comments on the elements of an array, or none.
+        about: Comments on the members of a struct by their names; on the struct by an empty name.
     """
 
     value: Any
@@ -61,12 +61,12 @@ class Node(NamedTuple):
 
     @classmethod
     def of(cls, own: Any, labels: Labels, key: str = "") -> Node:
-        """Read a record, a named tuple, an array of numbers or of records, or a number.
+        """Make a node of a record, a named tuple, an array of numbers or records, or a number.
 
         Args:
-            own: What is read.
+            own: The record, named tuple, array or number.
             labels: Comments on the elements of arrays.
-            key: Name of its own labels.
+            key: Name by which `labels` has those of `own`, if it is an array.
         """
         if isinstance(own, tuple) or (isinstance(own, Record) and own.ndim == 1):
             return cls.struct(own, labels)
@@ -79,7 +79,7 @@ class Node(NamedTuple):
 
     @classmethod
     def struct(cls, own: Any, labels: Labels) -> Node:
-        """Read the members of a record or a named tuple that are not empty."""
+        """Make a node of a record or a named tuple, without members that have no numbers."""
         if isinstance(own, Record):
             keys = {name: str(shape[0]) if shape else "" for name, shape in own.members.items()}
         else:
@@ -89,7 +89,7 @@ class Node(NamedTuple):
         return cls(inner, about=about_members(own))
 
     def declaration(self, name: str, kind: str) -> str:
-        """Declare a variable or member of C whose numbers are of a type."""
+        """Declare the node as a variable or member of C; `kind` is the C type of its numbers."""
         if isinstance(self.value, list):
             first: Node = self.value[0]
             return first.declaration(f"{name}[{len(self.value)}]", kind)
@@ -103,14 +103,14 @@ class Node(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """Comment on a struct, or on those of an array."""
+        """Comment on the struct, or on the structs of an array; else ""."""
         if isinstance(self.value, list):
             first: Node = self.value[0]
             return first.sentence
         return self.about.get("", "")
 
     def initializer(self) -> str:
-        """Write the value; members that do not fit on a line, and labelled elements, have one."""
+        """Write the C initializer; long structs and labelled arrays have a line for each item."""
         if isinstance(self.value, dict):
             items = [f".{name} = {own.initializer()}" for name, own in self.value.items()]
         elif isinstance(self.value, list):
@@ -124,7 +124,7 @@ class Node(NamedTuple):
 
 
 def braced(items: Sequence[str], labels: Sequence[str] = ()) -> str:
-    """Write initializers between braces, on a line each if they are long or have comments."""
+    """Write initializers between braces, each on a line if they are long or have comments."""
     whole = f"{{{', '.join(items)}}}"
     if not labels and "\n" not in whole and len(whole) < SHORT:
         return whole
@@ -134,29 +134,35 @@ def braced(items: Sequence[str], labels: Sequence[str] = ()) -> str:
 
 
 def _block(lines: Sequence[str]) -> str:
-    """Write lines between braces, indented."""
+    """Write lines between braces, and indent them."""
     return "\n".join(["{", *lines]).replace("\n", "\n    ") + "\n}"
 
 
 def constant(own: float) -> str:
-    """Write a number, and for a member of an enumeration its name as a comment."""
+    """Write a number in C; behind a member of an enumeration stands its name as a comment."""
     return number(own).text + (f" /* {own.name} */" if isinstance(own, IntEnum) else "")
 
 
 def about_members(own: object) -> dict[str, str]:
-    """Read the comments on the members of a record or a named tuple from its docstring."""
+    """Read the docstring of an object's class: by an empty name its first line, then attributes."""
     text = cleandoc(type(own).__doc__ or "")
     return {"": text.partition("\n")[0], **attributes(text)}
 
 
 def rows_of(own: Any, name: str) -> Any:
-    """Return a member; the rows of a matrix that holds records, as those."""
+    """Return a member of a named tuple or a record; a matrix of records as an array of those."""
     kind = _ROWS.get((type(own), name))
     return kind.of(getattr(own, name)) if kind else getattr(own, name)
 
 
 def function_table(table: IntMatrix, columns: type[IntEnum], functions: Sequence[str]) -> Node:
-    """Read a table of parts or paths by the names of its columns, each row beside its function."""
+    """Make a node of a table whose rows are structs.
+
+    Args:
+        table: The table, (k, columns).
+        columns: Names of the columns.
+        functions: Comment on each row, the C name of the row's function.
+    """
     about = attributes(cleandoc(columns.__doc__ or ""))
     rows = []
     for row in table.tolist():
@@ -168,7 +174,7 @@ def function_table(table: IntMatrix, columns: type[IntEnum], functions: Sequence
 
 
 def robot_labels(robot: Robot, frames: Sequence[int]) -> Labels:
-    """Name joints and frames, those of the kinematics by Pinocchio's indices."""
+    """Return comments with the names of joints and frames; `frames` are those of the kinematics."""
     names = [frame.name for frame in robot.model.frames]
     of_joints = ("n", "parents", "joints", "slides", "armature", "lower", "upper", "dq_max")
     of_frames = ("frames", "carriers", "offsets")
@@ -177,7 +183,7 @@ def robot_labels(robot: Robot, frames: Sequence[int]) -> Labels:
 
 
 def part_constants(part: Part, robot: Robot, numbers: Vector, labels: Labels) -> Node:
-    """Read the constants of a part, (k,), by their names."""
+    """Make a node of the constants of a part, (k,), by their names."""
     if isinstance(part, CollisionAvoidance):
         scene = scene_views(numbers, robot.dof)
         frames = robot.model.frames
@@ -195,7 +201,7 @@ def part_constants(part: Part, robot: Robot, numbers: Vector, labels: Labels) ->
 
 
 def program_constants(program: ProgramLayout, labels: Labels) -> Node:
-    """Read the constants of all parts of a scheme, by the parts and their names."""
+    """Make a node of the constants of all parts of a program, by the parts' names."""
     found: dict[str, Node] = {}
     for k, part in enumerate(program.parts):
         name = _member(part, found)
@@ -208,7 +214,7 @@ def program_constants(program: ProgramLayout, labels: Labels) -> Node:
 
 
 def path_constants(paths: Sequence[Reference], labels: Labels) -> Node:
-    """Read base and constants of the paths of all frames, by their names."""
+    """Make a node of the base and the constants of paths, by the paths' names."""
     found: dict[str, Node] = {}
     for path in paths:
         name = _member(path, found)
@@ -219,7 +225,7 @@ def path_constants(paths: Sequence[Reference], labels: Labels) -> Node:
 
 
 def _member(part: object, others: Mapping[str, Any]) -> str:
-    """Name a member after a class, and by a number after others of the name."""
+    """Return a member's name: that of an object's class, with a number if `others` have it."""
     name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", type(part).__name__).lower().strip("_")
     count = sum(re.fullmatch(rf"{name}(_\d+)?", other) is not None for other in others)
     return f"{name}_{1 + count}" if count else name
