@@ -4,6 +4,7 @@ import ctypes
 import importlib
 import re
 import shutil
+from inspect import cleandoc
 from pathlib import Path
 from typing import Any
 from unittest.mock import Mock
@@ -17,9 +18,12 @@ from helpers_export import QUICK, WARNINGS, needs, packaged, run
 from hostile_arms import START, make_shield
 from iiwa_dnn import DoubleIndicator
 from iiwa_dnn.compiling import build
+from iiwa_dnn.compiling.kinds import attributes
+from iiwa_dnn.compiling.sources import Package
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.export import ExportedController, c99, load, python
 from iiwa_dnn.export.folder import run as run_controller, take_exported_kinematics
+from iiwa_dnn.schemes.joint_limits import PositionConstants
 from iiwa_dnn.studies.runs import paper_robot
 
 pytestmark = needs("gcc")
@@ -305,6 +309,9 @@ def test_tables_have_pythons_numbers_by_their_names(name: str, tmp_path: Path) -
         np.testing.assert_array_equal(found, numbers, field)
 
 
+ROOT = Path(iiwa_dnn.__file__).parent
+
+
 @pytest.mark.parametrize("kind", ["controller", "shield"])
 def test_a_reviewer_finds_limits_gains_and_capsules_by_name(kind: str, tmp_path: Path) -> None:
     if kind == "shield":
@@ -314,16 +321,16 @@ def test_a_reviewer_finds_limits_gains_and_capsules_by_name(kind: str, tmp_path:
         c99(controller, tmp_path, q0)
     text = " ".join((tmp_path / f"{kind}.c").read_text(encoding="utf-8").split()).replace("{ ", "{")
     limit = repr(float(paper_robot().dq_max[3]))
+    about = attributes(cleandoc(PositionConstants.__doc__ or ""))
     for words in (
-        "double velocity[7]; /* Velocity limits [rad/s], (n,). */",
+        f"double velocity[7]; /* {about['velocity']} */",
         ".velocity = {/* iiwa7_joint_1 */ 1.710422666954443, /* iiwa7_joint_2 */",
         f"/* iiwa7_joint_4 */ {limit},",
         "/* Sphere 1 */ {.frame = 0, .radius = 0.05, .speed = 0.0, .half = {0.0, 0.0, 0.0},",
         "/* iiwa7_link_4 */ {.frame = 9, .radius = 0.080001, .speed = 0.0, .half = {0.0, 0.0, 0.07",
         "/* Sphere 1 and iiwa7_link_4 */ {.second = 4, .first =",
         ".kind = 3 /* LIMIT */",
-        "/* Least distance [m]. */",
-        "/* Bisection steps for a command that ends at a position limit. */",
+        f"/* {Package(ROOT).module('iiwa_dnn.schemes.viability').about['HALVINGS']} */",
     ):
         assert words in text
     # No number of a table stands without a name but in matrices.
