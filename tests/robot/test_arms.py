@@ -3,6 +3,7 @@
 import dataclasses
 import io
 import xml.etree.ElementTree as ET
+from importlib import metadata
 from itertools import product
 
 import numpy as np
@@ -12,7 +13,6 @@ import yourdfpy
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array, example_urdf
-from iiwa_dnn.robot import arms
 from iiwa_dnn.robot.arms import ARMS, robots_folder
 from iiwa_dnn.robot.collision import collision_file
 from iiwa_dnn.robot.shapes import visual_meshes
@@ -86,9 +86,9 @@ def test_without_the_package_one_line_says_what_to_install(monkeypatch: pytest.M
     assert d.available_robots() == tuple(ARMS)
 
     def missing(name: str) -> None:
-        raise arms.PackageNotFoundError(name)
+        raise metadata.PackageNotFoundError(name)
 
-    monkeypatch.setattr(arms, "distribution", missing)
+    monkeypatch.setattr(metadata, "distribution", missing)
     with pytest.raises(d.MissingDependencyError, match=r"pip install 'iiwa-dnn\[robots\]'"):
         d.load_robot("panda")
     assert d.available_robots() == OWN
