@@ -399,13 +399,21 @@ def _update_request(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> N
         arm.reason = Reason.TIMED_OUT
     if arm.reason != Reason.NONE:
         arm.reasons[arm.reason] = 1.0
-    other = 0
+    before = arm.request.copy()
     for i in range(arm.request.size):
-        now = inputs.request[i] if i < count else arm.request[i]
-        now = now if arm.reason == Reason.NONE else 0.0
-        other += now != arm.request[i]
-        arm.request[i] = now
-    arm.is_repeated = other == 0 and arm.reasons[Reason.Q_NOT_FINITE] == 0.0
+        now = inputs.request[i] if i < count else before[i]
+        arm.request[i] = now if arm.reason == Reason.NONE else 0.0
+    known = arm.reasons[Reason.Q_NOT_FINITE] == 0.0
+    arm.is_repeated = known and differing(arm.request, before) == 0
+
+
+@compiled
+def differing(values: Vector, others: Vector) -> int:
+    """Count the entries of an array (n,) that differ from those of another, (n,) or longer."""
+    count = 0
+    for i in range(values.size):
+        count += values[i] != others[i]
+    return count
 
 
 @compiled
@@ -585,13 +593,10 @@ def _note_limits(arm: ArmState, log: StepLog) -> None:
     A command for a twist or for positions differs if a limit is active or there is a `Reason`.
     """
     copied(arm.limiting, log.limiting)
-    differs = 0
-    for i in range(arm.positions.size):
-        differs += log.dq[i] != arm.request[i]
     reason = first_reason(arm)
     arm.is_clipped = largest_entry(log.limiting) > 0.0 or reason != Reason.NONE
     if arm.answered == Request.VELOCITY and reason == Reason.NONE:
-        arm.is_clipped = differs > 0
+        arm.is_clipped = differing(log.dq, arm.request) > 0
 
 
 @compiled

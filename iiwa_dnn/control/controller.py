@@ -43,16 +43,19 @@ MODES: tuple[Mode, ...] = ("converged", "continuous")
 
 _FLOAT = np.dtype(np.float64)
 
-_ACTIONS = {int(action): action for action in Action}
+ACTION_OF = {int(action): action for action in Action}
+"""Actions by their codes: a table is quicker than `Action(code)`."""
 
 
 class Controller:
     """Velocity controller: the programs of a scheme, solved by a network at every step.
 
-    In a robot's loop, `step` takes the encoders' reading and returns the command. Attributes may
-    be set in motion: the last commands and the reference's clock stay. Copies and pickles carry
-    them along. Threads may share a controller: its methods wait for each other, but for `halt`.
-    References, parts and solvers that a step asks may read it; to move or change it is refused.
+    In a robot's loop, `step` takes the measured joint positions and returns the command. Attributes
+    may be set while the arm moves: the last commands and the reference's clock stay. Copies and
+    pickles of a controller hold the last commands and the clock too. Threads may share a
+    controller: its methods, other than `halt`, wait for each other. A reference, part or solver
+    that is called by a step may read the controller; if it takes a step or sets an attribute, an
+    error is raised.
 
     Attributes:
         robot: The robot, n joints, with the limits that the scheme keeps.
@@ -61,12 +64,13 @@ class Controller:
         dt: Control period [s].
         longest_period: Longest control period in a loop whose periods vary [s]; None: all are `dt`,
             unless a step states another one.
-        mode: ``"converged"``: the network converges at every step. ``"continuous"``: it advances by
-            one control period, as in the paper, and lags: bounds of the joints hold, the rows of
-            other limits only where it has converged; beside obstacles the arm may stop.
+        mode: ``"converged"``: the network converges at every step. ``"continuous"``: the network's
+            differential equation advances by one control period, as in the paper, so the command
+            lags behind the solution: bounds of the joints hold, the rows of other limits only where
+            the network has converged; beside obstacles the arm may stop.
         policy: Action at a step without a solution in ``converged`` mode (`control.policies`).
         solver: Network, integrators and tolerance; keeps the network's state between steps.
-        path_lag: Time by which the reference's clock is behind, since a policy slowed it [s].
+        path_lag: Time by which a policy has slowed the reference's clock [s].
     """
 
     def __init__(
@@ -81,7 +85,7 @@ class Controller:
         policy: Policy = "slow",
         solver: DNNSolver | None = None,
     ) -> None:
-        """Check the settings and take them.
+        """Take a robot, a scheme, and the settings of the loop.
 
         Args:
             robot: The robot.
@@ -120,7 +124,7 @@ class Controller:
             self._set(name, value)
 
     def _set(self, name: str, value: Any) -> None:
-        """Set a setting, and discard what is derived from the settings."""
+        """Set an attribute, and discard the layout that depends on it."""
         before = vars(self).get(name)
         if name == "scheme":
             value.program(self.robot)  # parts that do not fit the robot are refused
@@ -143,10 +147,11 @@ class Controller:
         vars(self).update(state, _lock=threading.RLock(), _derived=None)
 
     def _turn(self) -> threading.RLock:
-        """Return the lock, for whatever uses the kinematics or changes the state.
+        """Return the lock of the kinematics and the state, which is not held yet.
 
         Raises:
-            InvalidInputError: A reference, a part or a solver that a step asks calls it.
+            InvalidInputError: This thread holds the lock: a reference, part or solver that a step
+                calls has called the controller.
         """
         if self._lock._is_owned():  # type: ignore[attr-defined]
             problem = "is within a step: what the step asks may only read it, or halt it"
@@ -155,7 +160,7 @@ class Controller:
 
     @property
     def path_lag(self) -> float:
-        """Time by which the reference's clock is behind [s]."""
+        """Time by which a policy has slowed the reference's clock [s]."""
         return self._state.motion.path_lag
 
     def step(
@@ -167,20 +172,20 @@ class Controller:
         dt: float | None = None,
         elapsed: float | None = None,
     ) -> Command:
-        """Compute the command for joint positions at a time; it counts as sent when it is returned.
+        """Compute the command for joint positions at a time, and count it as sent.
 
-        Where periods vary (`longest_period`), either `dt` or `elapsed` is stated at each step. With
-        neither, velocities change by what `dt` of the controller allows, and may be held for the
-        longest period.
+        Where periods vary (`longest_period`), either `dt` or `elapsed` is stated at each step. If
+        neither is, the change of the velocities is limited as for the controller's `dt`, and their
+        size as if they were held for the longest period.
 
         Args:
             q: Measured joint positions [rad], (n,).
-            t: Time [s]; the reference is asked for the time `path_lag` before it.
+            t: Time [s]; the reference is sampled at t - `path_lag`.
             target: Target in place of the reference's; with ``sample="end"`` as
                 `Reference.feed_forward` gives it.
-            dt: Period for which this command will be held [s]. Without a `longest_period`, velocity
-                and acceleration limits hold all the same, jerk and position limits as far as these
-                allow (docs/limits.md).
+            dt: Period for which this command will be held [s]. If it varies without a
+                `longest_period`, velocity and acceleration limits hold, jerk and position limits
+                only where these allow (docs/limits.md).
             elapsed: Time since the last step [s], for which the last command was held.
 
         Returns:
@@ -215,7 +220,7 @@ class Controller:
             raise
 
     def compute(self, q: Vector, t: float, target: Mapping[str, Target] | None = None) -> Command:
-        """Compute a command that does not count as sent; `send` makes it count.
+        """Compute a command that does not count as sent, unless it is passed to `send`.
 
         Args:
             q: Joint positions [rad], (n,).
@@ -226,7 +231,11 @@ class Controller:
             return self._compute(q, t, target, None, None)
 
     def send(self, dq: Vector, fraction: float = 1.0) -> None:
-        """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a fraction of the period.
+        """Count a velocity as sent for a control period, in place of a step's command.
+
+        Args:
+            dq: Joint velocity [rad/s], (n,).
+            fraction: Fraction of the period by which the reference's clock advances.
 
         Raises:
             InvalidInputError: `dq` has another size, or is not finite, or the fraction is below 0.
@@ -282,12 +291,12 @@ class Controller:
             checks.joint_positions("q", q, self.robot.dof)
             checks.finite_array("target", log_layout.targets(data), (-1, TARGET_SIZE))
         state.next_numbers = next_numbers
-        return Command(data, log_layout, _ACTIONS[action], periods)
+        return Command(data, log_layout, ACTION_OF[action], periods)
 
     def _vary(
         self, layout: ControlLayout, plan: ControlPlan, dt: float | None, elapsed: float | None
     ) -> ControlPlan:
-        """Return the plan of a step with its own periods, and book the time that has passed."""
+        """Return the plan of a step with stated periods; correct the path lag by `elapsed` [s]."""
         timing = periods_of_step(self, self._state.warned, dt, elapsed)
         plan.network.settings.duration = timing.expected * layout.lag
         if elapsed is not None:
@@ -295,13 +304,13 @@ class Controller:
         return plan._replace(timing=timing)
 
     def is_clear(self, q: Vector, dq: Vector) -> bool:
-        """Test whether a velocity is safe to send; always True with limits on acceleration or jerk.
+        """Test whether a velocity brings no watched pair nearer than its least distance.
 
-        It is safe if it brings no pair nearer than its distance.
+        With limits on acceleration or jerk the result is True, without a test.
 
         Args:
             q: Joint positions [rad], (n,).
-            dq: Velocity that the program's bounds and rows allow [rad/s], (n,).
+            dq: Joint velocity within the bounds and rows of the program at q [rad/s], (n,).
         """
         with self._turn():
             control_layout = self.control_layout
@@ -316,7 +325,7 @@ class Controller:
             return bool(rest >= 0.0)
 
     def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlLayout:
-        """Anchor the scheme, and at the first step warn of a start that is most likely wrong.
+        """Anchor the scheme at q (n,), warn of the start at the first step; return the layout.
 
         `own` says that the targets are the reference's.
         """
@@ -329,7 +338,7 @@ class Controller:
 
     @property
     def control_layout(self) -> ControlLayout:
-        """The control step, laid out anew after a change of the settings."""
+        """Layout of the control step for the present settings."""
         control_layout = self._derived
         if control_layout is not None:
             return control_layout
@@ -346,14 +355,14 @@ class Controller:
 
     @property
     def positions(self) -> Vector:
-        """Joint positions of the last step [rad], (n,); without any the robot's start."""
+        """Joint positions of the last step [rad], (n,); before the first, the robot's start."""
         with self._lock:
             own = self._state.motion.q if self._anchored else self.robot.start_posture()
             return np.array(own)
 
     @property
     def program(self) -> ProgramLayout:
-        """The scheme laid out for the robot."""
+        """Layout of the scheme's program for the robot."""
         return self.control_layout.program
 
     def halt(self) -> None:
@@ -361,7 +370,7 @@ class Controller:
         self._state.halted = True  # no array: a step that goes on may replace it
 
     def anchor(self, start: Configuration) -> None:
-        """Make a configuration the posture to come back to, if the scheme has none."""
+        """Make a configuration the scheme's home, if it has none."""
         with self._lock:
             scheme = self.scheme.anchored(start)
             if scheme is not self.scheme:
@@ -373,8 +382,8 @@ class Controller:
         """Warn of settings, a start posture or a first target that are most likely wrong, once.
 
         Args:
-            start: The start.
-            t: Time [s].
+            start: Configuration in which the loop begins.
+            t: Time at which it begins [s].
             own: Whether the targets are the reference's.
         """
         self._state.warned.add("start")
@@ -389,7 +398,7 @@ class Controller:
             warn_caller(message)
 
     def reset(self) -> None:
-        """Forget the network's state, the last commands and the path lag; the home stays."""
+        """Reset the network's state, the last commands and the path lag; the home stays."""
         with self._turn():
             self.solver.reset()
             self._state.rest()
@@ -412,15 +421,16 @@ class Controller:
         target: Target | Mapping[str, Target] | None = None,
         dt: float | None = None,
     ) -> Matrix:
-        """Return the targets at a time of the reference's clock, (k, 18), or those given.
+        """Return the targets of the tracked frames, (k, 18): the given ones, or the reference's.
 
         Args:
-            t: Time [s].
-            target: Targets in place of the references'.
-            dt: Control period [s]; None takes the controller's.
+            t: Time of the reference's clock [s].
+            target: Targets in place of the reference's.
+            dt: Control period, for feed-forward [s]; None takes the controller's.
 
         Raises:
-            InvalidInputError: A frame that a task tracks has no reference, or another one has.
+            InvalidInputError: A tracked frame has no reference, or a frame that is not tracked has
+                one.
         """
         frames = self.program.target_frames
         if target is not None:
@@ -433,7 +443,7 @@ class Controller:
         return found
 
     def _seen(self, paths: Mapping[str, Reference], dt: float) -> Mapping[str, Reference]:
-        """Return references by frame name; with feed-forward if the scheme samples at the end."""
+        """Return references with feed-forward over dt [s], if the scheme samples at the end."""
         at_end = self.scheme.sample == "end"
         return {name: path.feed_forward(dt) if at_end else path for name, path in paths.items()}
 
@@ -459,7 +469,7 @@ def periods_of_step(
 
     Args:
         loop: A controller or shield.
-        warned: What it has warned of; whoever calls a step is warned once.
+        warned: Warnings that the loop has given; `EXCEEDED` is added.
         dt: Period for which the command will be held [s], if it is stated.
         elapsed: Time since the last step [s], if it is stated.
 
@@ -476,13 +486,13 @@ def periods_of_step(
 
 
 def _is_plain(q: Any, shape: tuple[int, ...]) -> bool:
-    """Test whether joint positions (n,) are an array as compiled code takes it."""
+    """Test whether joint positions are an array of float64 of this shape, without gaps."""
     # Of bytes in another order Pinocchio makes other numbers, without a word.
     plain: bool = type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == shape
     return plain and (q.base is None or q.flags.c_contiguous)  # own data have no gaps
 
 
-# A change of one of them is checked, and what is derived from them is made anew.
+# Checks of the attributes that may be set.
 _CHECKS: dict[str, Callable[[str, Any], object]] = {
     "robot": partial(checks.instance, kind=Robot),
     "scheme": partial(checks.instance, kind=Scheme),

@@ -46,7 +46,7 @@ from iiwa_dnn.control.arms import (
     stopping_time_of,
 )
 from iiwa_dnn.control.command import Command
-from iiwa_dnn.control.controller import periods_of_step
+from iiwa_dnn.control.controller import ACTION_OF, periods_of_step
 from iiwa_dnn.control.cycle import INVALID, ControlLayout
 from iiwa_dnn.control.paths import setup_warnings
 from iiwa_dnn.control.policies import Action
@@ -455,7 +455,7 @@ class Shield:
             memory, last = self._kept
             memory = memory.copy()
             seen = (frame or robot.tip) if kind is Request.TWIST else last
-            layout = self.layout(seen)
+            layout = self._layouts.get(seen) or self.layout(seen)
             plan = layout.plan
             step = layout.step
             if "start" not in self._warned:
@@ -476,7 +476,7 @@ class Shield:
             )
             if action == INVALID:
                 checks.joint_positions("q", positions, robot.dof)
-            command = ShieldCommand(data, layout, Action(action), periods, memory)
+            command = ShieldCommand(data, layout, ACTION_OF[action], periods, memory)
             self._kept = (memory, seen)  # last: an interrupted step changes nothing
             return command
 
