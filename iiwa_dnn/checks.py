@@ -34,11 +34,12 @@ class Checked:
     _checks: ClassVar[Checks] = {}
 
     def __post_init__(self) -> None:
-        """Check and convert the parameters that are given."""
+        """Check and convert the parameters; None passes for one whose default is None."""
         for kind in type(self).__mro__:
             for name, check in vars(kind).get("_checks", {}).items():
-                if getattr(self, name) is not None:
-                    self._set(**{name: check(name, getattr(self, name))})
+                value = getattr(self, name)
+                if value is not None or getattr(type(self), name, ...) is not None:
+                    self._set(**{name: check(name, value)})
 
     def _set(self, **values: Any) -> None:
         """Set attributes of a frozen dataclass."""

@@ -8,15 +8,6 @@ import numpy as np
 
 from iiwa_dnn.qp.program import QP, Matrix, Vector
 
-SCALINGS = {
-    "rows times 1e-6 to 1e6": (1.0, 1.0, 1.0),
-    "cost times 1e6": (0.0, 1.0, 1e6),
-    "cost times 1e-6": (0.0, 1.0, 1e-6),
-    "multipliers near 1e6": (0.0, 1e6, 1.0),
-}
-"""Kinds of bad scaling: fraction of the decades in the rows, size of the multipliers and the
-cost."""
-
 
 def strictly_convex(
     rng: np.random.Generator,
@@ -161,20 +152,18 @@ def with_point(
     return qp, np.concatenate([x, y, z, z_box])
 
 
-def badly_scaled(rng: np.random.Generator, kind: str) -> QP:
-    """A solvable program of one of the kinds in `SCALINGS`, 5 to 29 variables."""
-    rows, multipliers, cost = SCALINGS[kind]
+def badly_scaled(rng: np.random.Generator) -> QP:
+    """A solvable program of 5 to 29 variables, its rows times 1e-6 to 1e6."""
     n = int(rng.integers(5, 30))
     P = _positive_definite(rng, n, 1e3)
     x = rng.standard_normal(n)
     G = rng.standard_normal((n, n))
     A = rng.standard_normal((n // 3, n))
-    z = multipliers * rng.exponential(size=n) * (rng.uniform(size=n) < 0.4)
-    q = -(P @ x + G.T @ z + A.T @ (multipliers * rng.standard_normal(n // 3)))
+    z = rng.exponential(size=n) * (rng.uniform(size=n) < 0.4)
+    q = -(P @ x + G.T @ z + A.T @ rng.standard_normal(n // 3))
     h = G @ x + rng.exponential(size=n) * (z == 0.0)
-    b = A @ x
-    e, f = (10.0 ** (rows * rng.uniform(-6.0, 6.0, size)) for size in (n, n // 3))
-    return QP(cost * P, cost * q, e[:, None] * G, e * h, f[:, None] * A, f * b)
+    e, f = (10.0 ** rng.uniform(-6.0, 6.0, size) for size in (n, n // 3))
+    return QP(P, q, e[:, None] * G, e * h, f[:, None] * A, f * (A @ x))
 
 
 def in_other_units(

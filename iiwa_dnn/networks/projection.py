@@ -78,7 +78,7 @@ def write_slacks(qp: QPViews, x: Vector, slacks: Vector) -> None:
 
 
 @compiled
-def field(qp: QPViews, s: Vector, rates: Vector) -> float:
+def unprojected_rates(qp: QPViews, s: Vector, rates: Vector) -> float:
     """Write rho ds/dt at a state, both (size,), without the projection of x on its bounds.
 
     Returns:
@@ -120,7 +120,7 @@ class ProjectionConstants(Record):
 @compiled
 def projection_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
     """Write the rates (size,) of `ProjectionNetwork` at a state (size,)."""
-    field(qp, state, rates)
+    unprojected_rates(qp, state, rates)
     if ProjectionConstants.of(constants).projects:
         for i in range(qp.q.size):
             rates[i] = min(max(state[i] + rates[i], qp.lb[i]), qp.ub[i]) - state[i]

@@ -11,7 +11,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network, checked_flow, enter_rates
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
 from iiwa_dnn.networks.integrators.base import AnswerSettings, CompiledAnswer, enter_answer
-from iiwa_dnn.networks.integrators.explicit import follow
+from iiwa_dnn.networks.integrators.explicit import advance_explicitly
 from iiwa_dnn.networks.integrators.implicit import solve
 from iiwa_dnn.networks.integrators.scaling import (
     LARGE,
@@ -135,7 +135,7 @@ class DNNSolver:
             duration / network.rho,
             substeps or 0,
         ]
-        address = enter_answer.address(follow if duration > 0.0 else solve)
+        address = enter_answer.address(advance_explicitly if duration > 0.0 else solve)
         rates = enter_rates.address(function) if duration > 0.0 else 0
         settings = AnswerSettings.of(np.array([*constants, *network.constants(sizes)]))
         return CompiledAnswer(address, rates, settings)

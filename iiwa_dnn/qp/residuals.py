@@ -124,7 +124,7 @@ def cost_size(qp: QPViews) -> float:
 
 
 @compiled
-def terms(rows: Matrix, j: int, x: Vector, is_column: bool) -> Triple:
+def product_terms(rows: Matrix, j: int, x: Vector, is_column: bool) -> Triple:
     """Multiply row or column j of a matrix (k, n) by the first entries of x.
 
     Returns:
@@ -153,11 +153,11 @@ def is_accepted(
 ) -> bool:
     """Check a point (2n + m + p,) by the rule of acceptance, and that `QP.data` is convex."""
     qp = qp_views(data, n, m, p)
-    return fits(qp, point, eps_abs, eps_rel) and is_convex(qp.P, np.empty((n, n)))
+    return is_small_enough(qp, point, eps_abs, eps_rel) and is_convex(qp.P, np.empty((n, n)))
 
 
 @compiled
-def fits(qp: QPViews, point: Vector, eps_abs: float, eps_rel: float) -> bool:
+def is_small_enough(qp: QPViews, point: Vector, eps_abs: float, eps_rel: float) -> bool:
     """Check a point [x | y | z | z_box] by the rule of acceptance, entry by entry."""
     n = qp.q.size
     p = qp.b.size
@@ -167,7 +167,7 @@ def fits(qp: QPViews, point: Vector, eps_abs: float, eps_rel: float) -> bool:
     for j in range(p + qp.h.size):
         limit = qp.b[j] if j < p else qp.h[j - p]
         if limit < np.inf:
-            value, of_row, largest = terms(
+            value, of_row, largest = product_terms(
                 qp.A if j < p else qp.G, j if j < p else j - p, point, False
             )
             excess = abs(value - limit) if j < p else value - limit
@@ -180,11 +180,11 @@ def fits(qp: QPViews, point: Vector, eps_abs: float, eps_rel: float) -> bool:
         allowed = max(eps_abs, relative * (abs(point[i]) + abs(nearest)))
         if not abs(point[i] - nearest) <= allowed:
             return False
-    return _cost_fits(qp, point, eps_abs, relative, gap, size)
+    return _cost_is_small_enough(qp, point, eps_abs, relative, gap, size)
 
 
 @compiled
-def _cost_fits(
+def _cost_is_small_enough(
     qp: QPViews, point: Vector, eps_abs: float, relative: float, gap: float, size: float
 ) -> bool:
     """Check the dual residual and the gap of a point by the rule of acceptance.
@@ -200,9 +200,9 @@ def _cost_fits(
         multiplier = point[at_box + i]
         bound = qp.ub[i] if multiplier > 0.0 else qp.lb[i]
         term = bound * multiplier if multiplier != 0.0 and abs(bound) < np.inf else 0.0
-        value, of_P, largest = terms(qp.P, i, point, False)
-        in_A, of_A, largest_A = terms(qp.A, i, point[n:], True)
-        in_G, of_G, largest_G = terms(qp.G, i, point[at_z:], True)
+        value, of_P, largest = product_terms(qp.P, i, point, False)
+        in_A, of_A, largest_A = product_terms(qp.A, i, point[n:], True)
+        in_G, of_G, largest_G = product_terms(qp.G, i, point[at_z:], True)
         value += qp.q[i]
         of_P += abs(qp.q[i])
         gap += point[i] * value + term

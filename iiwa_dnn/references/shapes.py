@@ -13,7 +13,6 @@ from iiwa_dnn.checks import Array, Checks, Vector3, direction, positive, vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import sin, sin_cos
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Reference, SoftStart, soft_clock
 from iiwa_dnn.references.targets import TargetData
 
@@ -183,17 +182,9 @@ class Line(Reference):
         )
 
 
-def _whole(argument: str, value: Any) -> Vector3:
-    """Return three whole numbers as a tuple of floats; refuse any other value."""
-    turns = vector3(argument, value)
-    if not all(each.is_integer() for each in turns):
-        raise InvalidInputError(argument, "must be whole numbers", value)
-    return turns
-
-
 @dataclass(frozen=True, eq=False)
 class Lissajous(SoftStart):
-    """A closed Lissajous figure: on each axis a sine of a whole number of turns per period.
+    """A Lissajous figure: on each axis a sine, closed if all turns are whole numbers.
 
     With w = 2 pi / period and the clock s of `SoftStart`, on each axis i::
 
@@ -203,20 +194,19 @@ class Lissajous(SoftStart):
 
     Attributes:
         amplitudes: Amplitudes on x, y, z [m], shape (3,).
-        turns: Whole numbers of turns per period on x, y, z, shape (3,).
+        turns: Numbers of turns per period on x, y, z, shape (3,).
         phases: Phases at t = 0 on x, y, z [rad], shape (3,).
         period: Time to go round once [s].
         begin: Length of the soft start [s], see `SoftStart`.
 
     Raises:
-        InvalidInputError: If a parameter is not finite, the period is not above zero or a number of
-            turns is not whole.
+        InvalidInputError: If a parameter is not finite or the period is not above zero.
     """
 
     path: ClassVar[Any] = staticmethod(lissajous_path)
     _checks: ClassVar[Checks] = {
         "amplitudes": vector3,
-        "turns": _whole,
+        "turns": vector3,
         "phases": vector3,
         "period": positive,
     }

@@ -15,22 +15,7 @@ def test_degenerate_vertices_converges() -> None:
         assert iiwa_dnn.solve_problem(problem).is_optimal(2e-9), seed
 
 
-@pytest.mark.parametrize("kind", programs.SCALINGS)
-def test_badly_scaled_programs_converges(kind: str) -> None:
-    for seed in range(20):
-        problem = programs.badly_scaled(np.random.default_rng([8, seed]), kind).to_qpsolvers()
-        assert iiwa_dnn.solve_problem(problem, tol=1e-6).is_optimal(1.1e-6), seed
-
-
 # The cost is 1e8 and more: gaps of 1e-8 and 1e-6 are one rounding.
-@pytest.mark.parametrize(("P", "G", "h"), [(1e8, -1.0, -1.0), (1.0, -1e-5, -1.0)])
-def test_one_variable_and_one_row_of_another_scale(P: float, G: float, h: float) -> None:
-    solution = DNNSolver(tol=1e-5).solve(QP([[P]], [0.0], [[G]], [h]))
-    assert solution.found
-    assert solution.x[0] == pytest.approx(h / G, rel=1e-12)
-    assert solution.z[0] == pytest.approx(-P * h / G / G, rel=1e-9)
-
-
 def test_a_large_cold_program_converges() -> None:
     qp, known = programs.strictly_convex(np.random.default_rng(44), 160, 1e2, spoilt=False)
     solution = DNNSolver().solve(qp)

@@ -38,17 +38,6 @@ def test_products_are_the_exact_ones_to_the_rounding_of_a_sum_in_four_parts() ->
         assert n >= dense.LONG or product == in_turn  # an arm's programs keep their bits
 
 
-def test_a_cost_becomes_its_symmetric_part_where_that_is_what_it_means() -> None:
-    rng = np.random.default_rng(4)
-    root, skew = rng.standard_normal((2, 6, 6))
-    P, skew = root @ root.T, skew - skew.T
-    for size, is_meant in ((0.0, True), (1e-7, True), (1e-2, False)):
-        given = P + size * skew
-        found = given.copy()
-        dense.symmetrize(found)
-        assert (found == (0.5 * given + 0.5 * given.T if is_meant else given)).all()
-
-
 def test_extreme_eigenvalues_are_numpys() -> None:
     rng = np.random.default_rng(3)
     for n in (1, 2, 7, 20):

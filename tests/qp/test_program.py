@@ -23,15 +23,6 @@ def test_missing_parts_become_empty_rows_and_infinite_bounds() -> None:
     assert qp.to_qpsolvers().is_unconstrained
 
 
-def test_sparse_and_single_row_problems_are_taken() -> None:
-    problem = qpsolvers.Problem(
-        spa.eye(3, format="csc"), np.ones(3), np.ones(3), np.array([2.0]), lb=np.zeros(3)
-    )
-    qp = QP.from_qpsolvers(problem)
-    np.testing.assert_array_equal(qp.P, np.eye(3))
-    assert qp.G.shape == (1, 3)
-
-
 @pytest.mark.parametrize(
     "kind",
     [

@@ -37,7 +37,7 @@ KINDS = {
     "whole numbers": whole_numbers,
     "strictly convex": lambda rng: programs.strictly_convex(rng, int(rng.integers(2, 6)))[0],
     "an arm's shape": lambda rng: known_qp(rng, 7, 6, int(rng.integers(0, 2)))[0],
-    "rows badly scaled": lambda rng: programs.badly_scaled(rng, "rows times 1e-6 to 1e6"),
+    "rows badly scaled": programs.badly_scaled,
 }
 
 

@@ -8,7 +8,6 @@ import pytest
 from scipy.integrate import quad
 
 import iiwa_dnn as d
-from helpers_simulation import paper_start
 
 POSE = d.Target([0.4, 0.1, 0.5], [[0, 0, 1], [1, 0, 0], [0, 1, 0]])
 PATHS: list[Any] = [
@@ -56,14 +55,3 @@ def test_it_takes_a_second_unless_told_otherwise() -> None:
         assert (make(period=2.0).begin, make(period=30.0).begin) == (1.0, 1.0)
     assert d.Tilting(d.Circle(begin=0.25), begin=0.5).begin == 0.5
     assert replace(d.Circle(begin=0.25), radius=0.1).settings()["begin"] == 0.25
-
-
-@pytest.mark.parametrize("make", [d.Circle, d.Lissajous, d.Cone, d.Tilting])
-def test_an_arm_begins_within_a_hundredth_of_its_acceleration(make: Any) -> None:
-    """73 to 261 rad/s^2 in the first step, before."""
-    start = paper_start()
-    robot = d.load_robot("iiwa7")
-    path = make().anchored(start)
-    record = d.simulate(robot, d.DoubleIndicator(), path, start.q, dt=5e-3, duration=1.5)
-    rates = np.diff(np.vstack([np.zeros(7), record.dq]), axis=0) / 5e-3
-    assert np.abs(rates).max() < 0.5

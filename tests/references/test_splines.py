@@ -223,17 +223,6 @@ def test_turns_are_the_spline_of_their_quaternions_where_that_stays_near() -> No
     assert unchanged > 5
 
 
-@pytest.mark.parametrize("step", [0.1, 0.5, 0.8])
-def test_about_one_axis_the_rate_is_that_of_the_angles_spline(step: float) -> None:
-    angles = step * np.array([0.0, 1.0, 2.0, 3.0, 2.5, 1.0, 0.0])
-    turns = Rotation.from_rotvec(np.outer(angles, [0.6, 0.0, 0.8]))
-    path = Waypoints(np.arange(7.0), np.zeros((7, 3)), quaternions=turns.as_quat()[:, [3, 0, 1, 2]])
-    t = np.linspace(0.0, 6.0, 301)
-    rates = path.sample(t).angular_velocity
-    wanted = CubicSpline(np.arange(7.0), angles, bc_type="clamped")(t, 1)
-    np.testing.assert_allclose(rates, np.outer(wanted, [0.6, 0.0, 0.8]), atol=0.04 * step)
-
-
 def test_a_closed_path_may_turn_right_round() -> None:
     angles = np.linspace(0.0, 2.0 * np.pi, 13)
     turns = Rotation.from_rotvec(np.outer(angles, [0.0, 0.0, 1.0])).as_quat()[:, [3, 0, 1, 2]]
@@ -241,15 +230,6 @@ def test_a_closed_path_may_turn_right_round() -> None:
     targets = path.sample(np.linspace(-12.0, 24.0, 101))
     np.testing.assert_allclose(targets.angular_velocity[:, 2], np.pi / 6.0, rtol=1e-4)
     assert not path.jumps.size
-
-
-def test_a_turn_that_pauses_goes_no_further() -> None:
-    """The cubic spline swings to 1.25 rad."""
-    turns = Rotation.from_rotvec([[0, 0, 0], [1.0, 0, 0], [1.0, 0, 0], [0, 0, 0]])
-    quaternions = turns.as_quat()[:, [3, 0, 1, 2]]
-    path = quiet([0.0, 1.0, 6.0, 7.0], np.zeros((4, 3)), quaternions=quaternions)
-    angles = Rotation.from_matrix(path.sample(np.linspace(0.0, 7.0, 701)).rotation).magnitude()
-    assert angles.max() <= 1.0 + 1e-12
 
 
 def is_a_smooth_turn(path: Waypoints, turns: Rotation) -> None:

@@ -72,7 +72,7 @@ class ExplicitEuler(Integrator):
 
 
 @compiled
-def follow(
+def advance_explicitly(
     qp: QPViews, rates: int, settings: AnswerSettings, state: Vector, point: Vector
 ) -> Answered:
     """Advance a network by a time with explicit steps, as a function of type `enter_answer`.

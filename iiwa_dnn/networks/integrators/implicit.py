@@ -38,10 +38,10 @@ from iiwa_dnn.networks.integrators.implicit_steps import (
     linear_step,
 )
 from iiwa_dnn.networks.integrators.pseudo_transient import LONGEST
-from iiwa_dnn.networks.projection import field, is_projection, mark_active
+from iiwa_dnn.networks.projection import is_projection, mark_active, unprojected_rates
 from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, check_size, copied, qp_views
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import fits, kkt_point, within
+from iiwa_dnn.qp.residuals import is_small_enough, kkt_point, within
 
 SHORTEST = 30.0
 """Length of the first backward Euler step [rho]."""
@@ -154,7 +154,7 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
     linear_solves = 0
     time = 0.0
     stalled = 0
-    rate = field(qp, s, now)
+    rate = unprojected_rates(qp, s, now)
     smallest = np.inf
     while linear_solves < budget:
         stalled += 1
@@ -168,7 +168,7 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
         mark_active(qp, s, now, matrix.active)
         linear_solves += 1
         if linear_step(qp, s, now, LONGEST, matrix, new):
-            new_rate = field(qp, new, then)
+            new_rate = unprojected_rates(qp, new, then)
             if new_rate < 0.5 * rate:
                 copied(s, new)
                 copied(now, then)
@@ -177,7 +177,7 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
                 continue
         if stalled > 0:
             kkt_point(qp, s, point)
-            if stalled > STALLED or fits(qp, point, tol, 0.0):
+            if stalled > STALLED or is_small_enough(qp, point, tol, 0.0):
                 break
         taken = backward_euler(
             qp, s, step, new, 0.1 * rate, min(MAX_NEWTON, budget - linear_solves), matrix
@@ -188,7 +188,7 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
             continue
         time += step
         copied(s, new)
-        rate = field(qp, s, now)
+        rate = unprojected_rates(qp, s, now)
         if step < LONGEST:
             step *= GROWTH
     primal, dual, gap = kkt_point(qp, s, point)
