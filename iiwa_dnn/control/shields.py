@@ -101,10 +101,7 @@ class Shields:
         self.dt = shield.dt
         self.frame = frame or shield.robot.tip
         self.threads = checks.integer("threads", threads or os.cpu_count() or 1, 1)
-        memory = shield.layout(self.frame).memory
-        # Rows of whole cache lines: no two threads write into one.
-        self._memories = np.zeros((self.count, -(-memory.size // 8) * 8))
-        self._memories[:, : memory.size] = memory
+        self._memories = np.tile(shield.layout(self.frame).memory, (self.count, 1))
 
     def __getstate__(self) -> dict[str, Any]:
         with self._shield._lock:
@@ -154,7 +151,7 @@ class Shields:
             if obstacles is not None:
                 self._place(obstacles)
             self._take_steps(inputs, kinds)
-            arms = layout.state(self._memories[:, : layout.memory.size])
+            arms = layout.state(self._memories)
             return ShieldsCommand(
                 motion_of(layout.plan, arms).last.copy(),
                 arms.positions.copy(),
@@ -218,7 +215,7 @@ class Shields:
 
     def _memory(self, i: int) -> Vector:
         """Return the memory of arm i, (k,), a view."""
-        return self._memories[i, : self._shield.layout(self.frame).memory.size]
+        return self._memories[i]
 
     def active_limits(self, i: int) -> tuple[str, ...]:
         """Name the active limits of arm i's last command, as `ShieldCommand.active_limits`."""

@@ -277,7 +277,8 @@ def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
         )
         or "none",
         "places": ", ".join(map(repr, centers or [0.0])),
-        "memory": -(-memory.size // 8) * 8,
+        "memory": -(-memory.size // 8) * 8,  # whole cache lines
+        "state": memory.size,
         "scratch": taken,
         "requests": _members("SHIELD_REQUEST", Request),
         "reasons": _members("SHIELD", Reason),

@@ -32,7 +32,7 @@ static const double shield_places[] = {@places@};
 
 static inline Vector shield_memory(const struct shield *s)
 {
-    const Vector memory = {(double *)s->memory, @memory@};
+    const Vector memory = {(double *)s->memory, @state@};
     return memory;
 }
 
