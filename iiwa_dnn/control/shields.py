@@ -17,7 +17,7 @@ from iiwa_dnn.control.arms import ArmInput, halt_arm, motion_of, place_arm, rest
 from iiwa_dnn.control.requests import one_request
 from iiwa_dnn.control.shield import Margin, Shield
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp import Matrix
 from iiwa_dnn.qp.layout import IntVector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.periods import stated_periods
@@ -101,7 +101,8 @@ class Shields:
         self.dt = shield.dt
         self.frame = frame or shield.robot.tip
         self.threads = checks.integer("threads", threads or os.cpu_count() or 1, 1)
-        self._memories = np.tile(shield.layout(self.frame).memory, (self.count, 1))
+        memory = shield.layout(self.frame).memory
+        self._memories: Matrix = np.tile(memory, (self.count, 1))
 
     def __getstate__(self) -> dict[str, Any]:
         with self._shield._lock:
@@ -187,7 +188,7 @@ class Shields:
         given = shape if np.ndim(obstacles) == len(shape) else shape[1:]
         centers = checks.finite_array("obstacles", obstacles, given)
         for i, own in enumerate(np.broadcast_to(centers, shape)):
-            place_arm(plan, self._memory(i), own)
+            place_arm(plan, self._memories[i], own)
 
     def reset(self, mask: ArrayLike | None = None, q: ArrayLike | None = None) -> None:
         """Reset arms to rest: requests, halts and the last commands no longer count.
@@ -201,7 +202,7 @@ class Shields:
             positions = checks.array("q", q, (self.count, self.robot.dof))
         with self._shield._lock:
             for i in np.flatnonzero(self._flags("mask", mask)):
-                rest_arm(self._shield.layout(self.frame).plan, self._memory(i), positions[i])
+                rest_arm(self._shield.layout(self.frame).plan, self._memories[i], positions[i])
 
     def halt(self, mask: ArrayLike | None = None) -> None:
         """Brake arms at every step from now on, whatever is requested, until `reset`.
@@ -211,23 +212,19 @@ class Shields:
         """
         with self._shield._lock:
             for i in np.flatnonzero(self._flags("mask", mask)):
-                halt_arm(self._shield.layout(self.frame).plan, self._memory(i))
-
-    def _memory(self, i: int) -> Vector:
-        """Return the memory of arm i, (k,), a view."""
-        return self._memories[i]
+                halt_arm(self._shield.layout(self.frame).plan, self._memories[i])
 
     def active_limits(self, i: int) -> tuple[str, ...]:
         """Name the active limits of arm i's last command, as `ShieldCommand.active_limits`."""
         with self._shield._lock:
-            return self._shield.layout(self.frame).active_limits(self._memory(i))
+            return self._shield.layout(self.frame).active_limits(self._memories[i])
 
     def margin(self, i: int) -> Margin:
         """Return the distances of arm i at the positions that its last command starts from."""
         with self._shield._lock:
-            return self._shield.layout(self.frame).margin(self._memory(i))
+            return self._shield.layout(self.frame).margin(self._memories[i])
 
     def stopping_time(self, i: int) -> float:
         """Return the time of arm i's stopping motion from its last command [s]."""
         with self._shield._lock:
-            return self._shield.layout(self.frame).stopping_time(self._memory(i))
+            return self._shield.layout(self.frame).stopping_time(self._memories[i])
