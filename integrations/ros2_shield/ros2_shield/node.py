@@ -59,21 +59,13 @@ class RefusedError(Exception):
 
 @dataclass
 class Newest:
-    """The newest message of a kind.
+    """The newest message of a kind."""
 
-    Attributes:
-        kind: Words for the kind.
-        problem: Reason why the message does not count, or nothing.
-        value: Numbers of the last message without a problem, (1, k), by their name.
-        time: Time of its arrival, by the clock of the periods [s].
-        age: Age that it had then by its stamp [s].
-    """
-
-    kind: str
-    problem: str
-    value: dict[str, Any] = field(default_factory=dict)
-    time: float = 0.0
-    age: float = 0.0
+    kind: str  # words for it
+    problem: str  # reason why the message does not count, or nothing
+    value: dict[str, Any] = field(default_factory=dict)  # its numbers (1, k) by their name
+    time: float = 0.0  # of its arrival, by the clock of the periods [s]
+    age: float = 0.0  # that it had then by its stamp [s]
 
     def fault(self, now: float, timeout: float) -> str:
         """Return why the message does not count at a time [s], or nothing."""
@@ -127,7 +119,7 @@ class ShieldNode(Node):
         self._worst = 0.0  # longest period since the last report [s]
         self._restart()
         for topic, message, *taker in (
-            ("/joint_states", JointState, self._states, "q", self._measured),
+            ("/joint_states", JointState, self._states, "q", self._joints),
             ("~/delta_twist_cmds", TwistStamped, self._request, "twist", self._twist),
             ("~/velocity_cmds", Float64MultiArray, self._request, "dq", self._velocities),
             ("~/position_cmds", JointTrajectory, self._request, "position", self._positions),
@@ -198,15 +190,13 @@ class ShieldNode(Node):
     def _positions(self, message: JointTrajectory) -> list[float]:
         if len(message.points) != 1:
             raise RefusedError(f"of {len(message.points)} points, not one")
-        return self._ordered(message.joint_names, message.points[0].positions)
+        positions = message.points[0].positions
+        return self._joints(JointState(name=message.joint_names, position=positions))
 
-    def _measured(self, message: JointState) -> list[float]:
-        return self._ordered(message.name, message.position)
-
-    def _ordered(self, names: Any, positions: Any) -> list[float]:
+    def _joints(self, message: JointState) -> list[float]:
         """Return positions [rad] in the order of the shield's joints, by their names."""
-        found = dict(zip(names, positions, strict=False))
-        if len(found) != len(names):
+        found = dict(zip(message.name, message.position, strict=False))
+        if len(found) != len(message.name):
             raise RefusedError("with a joint twice, or without positions")
         for each in self._package.JOINT_NAMES:
             if each not in found:
@@ -316,8 +306,8 @@ class ShieldNode(Node):
     def come_to_rest(self, executor: Any) -> str:
         """Brake within the limits; return why that was not possible, or nothing."""
         self._held = "the node ends"
-        longest = 1.0 + self._set["timeout"] + 2.0 * self._shields.stopping_time(0)
-        end = time.monotonic() + longest
+        duration = 1.0 + self._set["timeout"] + 2.0 * self._shields.stopping_time(0)
+        end = time.monotonic() + duration
         while not self._is_at_rest() and time.monotonic() < end:
             executor.spin_once(timeout_sec=0.01)
         return "" if self._is_at_rest() else f"velocities left: {self._command.dq.round(4)}"

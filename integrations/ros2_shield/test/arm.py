@@ -167,13 +167,15 @@ def drive(arm, seconds):
     held = arm.t
     moving = 0
     while len(arm.times) < seconds / arm.dt:
+        # No clock says how long a period was in which it has jumped, and the longest one is stated.
+        periods = random.choice([1, 2, 3], p=[0.95, 0.025, 0.025])
         if arm.t >= held:
-            arm.t += random.choice([0.0, 50.0], p=[0.9, 0.1])
+            jump = random.choice([0.0, 50.0], p=[0.9, 0.1])
+            periods = 1 if jump else periods
+            arm.t += jump
             name = random.choice([*6 * GOOD, *cases(random, arm)])
             request, shown = cases(random, arm)[name]
             held = arm.t + (0.6 if "timed out" in name else random.choice([0.03, 0.1]))
-        # No clock says how long a period was in which it has jumped, and the longest one is stated.
-        periods = random.choice([1, 2, 3], p=[0.95, 0.025, 0.025]) if arm.t < held - 0.02 else 1
         assert arm.turn(request, periods, **shown), f"no command at {arm.t} s"
         moving += not arm.rests()
     assert moving > 0.3 * len(arm.times), "does not go on after a fault"
