@@ -1,12 +1,15 @@
 """Draw the figures of these pages anew: ``python docs/figures.py``, or some of them by name.
 
 A curve is an SVG that takes the reader's light or dark colors; a motion is an animated WebP, drawn
-by MuJoCo (extra ``sim``). Each function below draws one; the tests call them all.
+by MuJoCo (extra ``sim``); a page that is served is photographed in Chromium. Each function below
+draws the file of its name; the tests call them all.
 """
 
 import io
 import re
+import runpy
 import sys
+import tempfile
 import time
 import warnings
 from collections.abc import Callable, Iterator
@@ -922,11 +925,80 @@ def robots() -> Frames:
     yield np.vstack([np.hstack(pictures[i : i + 3]) for i in (0, 3, 6)])
 
 
+# Pages that are served -------------------------------------------------------------------------
+
+SCREENS: dict[str, Callable[[], Any]] = {}
+"""Functions that serve a page whose picture is taken, by the names of their files."""
+
+
+def screen(serve: Callable[[], Any]) -> Callable[[], Any]:
+    """Register a function by its name."""
+    SCREENS[serve.__name__] = serve
+    return serve
+
+
+# The page warns of graphics without a card.
+_DISMISS = "document.querySelector('.mantine-Notification-closeButton')?.click()"
+
+
+def save_screen(name: str, folder: Path = IMAGES) -> Path:
+    """Serve a page and take its picture in a browser once it has come to rest."""
+    from PIL import Image
+
+    from helpers_browser import open_browser, picture
+
+    path = folder / f"{name}.png"
+    server = SCREENS[name]().server
+    with tempfile.TemporaryDirectory() as profile, open_browser(Path(profile)) as browser:
+        size = {"width": 1280, "height": 720, "deviceScaleFactor": 1, "mobile": False}
+        browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        browser.get(f"http://127.0.0.1:{server.get_port()}")
+        before, shown = None, picture(browser)
+        while len(np.unique(shown)) < 200 or not np.array_equal(before, shown):
+            time.sleep(5.0)
+            browser.execute_script(_DISMISS)
+            before, shown = shown, picture(browser)
+    server.stop()
+    Image.fromarray(shown).quantize(256).save(path, optimize=True)
+    return path
+
+
+@screen
+def viewer() -> Any:
+    """Serve the replay of a heart that its velocity limits have slowed."""
+    from iiwa_dnn.app.replay import Replay
+
+    robot = paper_robot()
+    robot = robot.with_limits(velocity=0.06 * robot.dq_max)
+    q0 = robot.start_posture()
+    heart = iiwa_dnn.Heart(0.005).anchored(iiwa_dnn.Configuration(robot, q0))
+    record = iiwa_dnn.simulate(robot, iiwa_dnn.DoubleIndicator(), heart, q0, dt=5e-3)
+    page = Replay(robot, record, port=0)
+    page.clock.value = 4.5
+    page.show()
+    return page
+
+
+@screen
+def viewer_live() -> Any:
+    """Serve the live page, its target dragged beside a ball."""
+    script = runpy.run_path(str(IMAGES.parents[1] / "scripts" / "live.py"))
+    page = script["Live"](iiwa_dnn.load_robot("iiwa7"), port=0)
+    page.target.position = tuple(np.array(page.target.position) + [0.05, 0.15, 0.05])
+    page.ball.position = tuple(page.center - [-0.08, 0.0, 0.22])
+    for _ in range(23):
+        page.tick()
+    return page
+
+
 def main(names: list[str]) -> int:
     """Draw all figures, or those of some names."""
     sys.path[:0] = [str(IMAGES.parents[1]), str(IMAGES.parents[1] / "tests")]
-    for name in names or [*FIGURES, *MOTIONS]:
-        print(save(name) if name in FIGURES else save_motion(name))
+    makers = [(FIGURES, save), (MOTIONS, save_motion), (SCREENS, save_screen)]
+    for made, saver in makers:
+        for name in made:
+            if not names or name in names:
+                print(saver(name))
     return 0
 
 

@@ -10,10 +10,10 @@ import pytest
 from PIL import Image
 
 import iiwa_dnn
+from helpers_browser import needs_browser
 from helpers_physics import needs_opengl
 
 DOCS = Path(__file__).parents[1] / "docs"
-SCREENS = {"viewer.png", "viewer_live.png"}  # of the browser, taken by hand
 
 NEEDS = {"shield": ("ruckig", "pylibfranka"), "push": ("mujoco",), "solvers": ("daqp",)}
 
@@ -28,14 +28,15 @@ def test_every_image_of_the_pages_has_its_script() -> None:
     made = {f"{name}.svg" for name in figures.FIGURES} | {
         f"{name}.webp" for name in figures.MOTIONS
     }
-    assert {path.name for path in figures.IMAGES.iterdir()} == made | SCREENS
+    made |= {f"{name}.png" for name in figures.SCREENS}
+    assert {path.name for path in figures.IMAGES.iterdir()} == made
     pages = [DOCS.parent / "README.md", *DOCS.glob("*.md")]
     shown = {
         Path(image).name
         for page in pages
         for image in re.findall(r"images/([\w/.]+)", page.read_text(encoding="utf-8"))
     }
-    assert shown == made | SCREENS
+    assert shown == made
 
 
 @pytest.mark.parametrize("name", figures.FIGURES)
@@ -79,3 +80,19 @@ def test_a_motion_shows_a_robot(name: str, tmp_path: Path) -> None:
     with Image.open(figures.IMAGES / path.name) as kept:
         assert kept.size == picture.shape[1::-1]
         assert kept.n_frames > 30 or name == "robots"
+
+
+@needs_browser
+@pytest.mark.parametrize("name", figures.SCREENS)
+def test_a_page_that_is_served_is_photographed_at_rest(name: str, tmp_path: Path) -> None:
+    pytest.importorskip("viser")
+    with Image.open(figures.save_screen(name, tmp_path)) as shown:
+        picture = np.asarray(shown.convert("RGB")).astype(int)
+    with Image.open(figures.IMAGES / f"{name}.png") as kept:
+        assert kept.size == picture.shape[1::-1]
+        before = np.asarray(kept.convert("RGB")).astype(int)
+    orange = (picture[..., 0] > picture[..., 1] + 60) & (picture[..., 1] > picture[..., 2] + 40)
+    assert orange.sum() > 1000
+    assert (np.abs(picture - before).max(axis=-1) > 60).mean() < 0.02, (
+        "the page looks otherwise now"
+    )
