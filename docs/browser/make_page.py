@@ -10,7 +10,6 @@ it holds the code, and what is needed to draw the arm. Both are kept in the repo
 
 import base64
 import json
-import re
 import subprocess
 import sys
 import tempfile
@@ -84,6 +83,17 @@ def pulled_shield() -> tuple[iiwa_dnn.Shield, np.ndarray]:
     return iiwa_dnn.Shield(controller.robot, 1e-3, obstacles=[ball], distance=DISTANCE), q0
 
 
+def opened(code: str) -> str:
+    """Let the page write into the table of constants of exported C.
+
+    Raises:
+        ValueError: The C has no such table.
+    """
+    end = code.index(f"}} {TABLE} = {{")
+    start = code.rindex("static const struct {", 0, end)
+    return code[:start] + code[start:].removeprefix("static const ")
+
+
 def compiled(
     exported: iiwa_dnn.Controller | iiwa_dnn.Shield, q0: np.ndarray, page: str, names: Sequence[str]
 ) -> bytes:
@@ -92,9 +102,8 @@ def compiled(
         folder = iiwa_dnn.export.c99(exported, place, q0)
         result = folder / "page.wasm"
         source = folder / f"{type(exported).__name__.lower()}.c"
-        code, found = re.subn(rf"static const (double {TABLE}\[)", r"\1", source.read_text())
-        assert found == 1 or TABLE not in names, f"{TABLE} is not in the exported C"
-        source.write_text(code)
+        if TABLE in names:
+            source.write_text(opened(source.read_text()))
         sources = (source, HERE / page, HERE / "memory.c")
         linked = (
             "no-entry",
