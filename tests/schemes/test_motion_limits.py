@@ -373,15 +373,6 @@ def test_a_robots_own_rates_are_those_that_it_has() -> None:
     assert own_rate_limits(d.load_robot("iiwa7").with_limits(acceleration=np.inf)) == ()
 
 
-def test_limits_are_the_robots_or_ones_own() -> None:
-    iiwa, panda = d.load_robot("iiwa7"), d.load_robot("panda")
-    own = [8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17]
-    assert d.AccelerationLimits().of(iiwa).tolist() == own
-    assert np.isinf(iiwa.dddq_max).all()
-    assert d.JerkLimits().of(panda)[1] == 3750.0
-    assert d.JerkLimits(50.0).of(panda).tolist() == [50.0] * 7
-
-
 @pytest.mark.parametrize("last", [5e-324, -1e-310, 1e-3])
 def test_a_joint_that_brakes_comes_to_rest_itself(last: float) -> None:
     """In units of a step of jerk above 2, 5e-324 rad/s is 0: it was kept for ever."""
