@@ -123,8 +123,6 @@ def test_settings_are_taken_by_name_or_as_one_object() -> None:
     other = d.simulate(paper_robot(), d.DoubleIndicator(), heart(), PAPER_Q0, **names)
     np.testing.assert_array_equal(one.q, other.q)
     assert one.settings == other.settings
-    with pytest.raises(TypeError, match="polcy"):
-        run(polcy="slow")
 
 
 def test_cyclic_motion_comes_back_and_minimum_energy_drifts() -> None:
