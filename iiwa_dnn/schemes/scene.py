@@ -228,29 +228,19 @@ def make_scene(
         name = robot.joint_names[int(np.argmax(robot.dq_max))]
         problem = f"must have a velocity limit on {name}, or no distance can be kept"
         raise InvalidInputError("robot", problem, robot)
-    capsules = collision_model(robot).capsules
-    links = [each.link for each in capsules]
+    links = [each.link for each in collision_model(robot).capsules]
     names = links + [f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)]
-    bodies = [
-        _body(robot.frame_id(each.link), box_around(each.a, each.b), each.radius, 0.0)
-        for each in capsules
-    ]
-    bodies += [_body(0, each.box, each.thickness, each.speed) for each in obstacles]
+    bodies = _bodies(robot, obstacles)
     numbered = [*collision_model(robot).pairs(robot)] if self_collision else []
-    carried = [k for k in range(len(links)) if robot.support[bodies[k].frame].any()]
-    numbered += itertools.product(range(len(links), len(bodies)), carried)
+    numbered += _obstacle_pairs(robot, bodies, len(links))
     rows = [_pair(robot, bodies, i, k) for i, k in numbered]
     pairs = np.reshape(rows, (-1, Pair.width(robot.dof)))
     frames = tuple(dict.fromkeys(links))
     moved = _moved_ends(robot, frames, _constants(robot, distances, bodies, pairs))
     for row, ends in zip(pairs, moved, strict=True):
         Pair.of(row).unmoved_end = 0 if ends.all() else 1 + ends[0]
-    for name in itertools.chain(*left_out):
-        if name not in names:
-            raise NotFoundError("link or obstacle", name, names)
     named = [(names[i], names[k]) for i, k in numbered]
-    given = [pair in left_out or pair[::-1] in left_out for pair in named]
-    watched = moved.any(axis=1) & ~np.array(given, dtype=bool)
+    watched = moved.any(axis=1) & ~_are_given(named, left_out, names)
     if not watched.any():
         bare = unwatched_links(robot)
         reason = f"; {unwatched(bare)}" if bare else ""
@@ -261,6 +251,31 @@ def make_scene(
     constants = _constants(robot, distances, bodies, pairs[watched])
     moving = [(each, k) for k, each in enumerate(obstacles, len(links)) if each.speed]
     return Scene(robot, [*itertools.compress(named, watched)], frames, moving, constants, left)
+
+
+def _are_given(
+    pairs: list[tuple[str, str]], left_out: Sequence[tuple[str, str]], names: list[str]
+) -> NDArray[np.bool_]:
+    """Test which pairs of names are left out, (pairs,); refuse a name that is no body's."""
+    for name in itertools.chain(*left_out):
+        if name not in names:
+            raise NotFoundError("link or obstacle", name, names)
+    return np.array([pair in left_out or pair[::-1] in left_out for pair in pairs], dtype=bool)
+
+
+def _bodies(robot: Robot, obstacles: Sequence[Obstacle]) -> list[Body]:
+    """Return the bodies of a robot's capsules, then those of the obstacles."""
+    bodies = [
+        _body(robot.frame_id(each.link), box_around(each.a, each.b), each.radius, 0.0)
+        for each in collision_model(robot).capsules
+    ]
+    return bodies + [_body(0, each.box, each.thickness, each.speed) for each in obstacles]
+
+
+def _obstacle_pairs(robot: Robot, bodies: list[Body], links: int) -> list[tuple[int, int]]:
+    """Pair each obstacle with each link that a joint moves; the first `links` bodies are links."""
+    carried = [k for k in range(links) if robot.support[bodies[k].frame].any()]
+    return [*itertools.product(range(links, len(bodies)), carried)]
 
 
 def _body(frame: int, box: PlacedBox, radius: float, speed: float) -> Body:
