@@ -237,8 +237,9 @@ def make_scene(
     pairs = np.reshape(rows, (-1, Pair.width(robot.dof)))
     frames = tuple(dict.fromkeys(links))
     moved = _moved_ends(robot, frames, _constants(robot, distances, bodies, pairs))
-    for row, ends in zip(pairs, moved, strict=True):
-        Pair.of(row).unmoved_end = 0 if ends.all() else 1 + ends[0]
+    unmoved = np.where(moved.all(axis=1), 0, 1 + moved[:, 0])
+    for row, end in zip(pairs, unmoved, strict=True):
+        Pair.of(row).unmoved_end = end
     named = [(names[i], names[k]) for i, k in numbered]
     watched = moved.any(axis=1) & ~_are_given(named, left_out, names)
     if not watched.any():
