@@ -295,6 +295,8 @@ def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> bool:
     arm.reasons[Reason.PERIOD_EXCEEDED] = 1.0 if periods.exceeded else 0.0
     _update_positions(arm, settings, inputs)
     _update_request(arm, settings, inputs)
+    if arm.reason != Reason.NONE:
+        arm.reasons[arm.reason] = 1.0
     arm.period = periods.expected
     arm.answered = Request.VELOCITY
     if arm.reason == Reason.NONE and arm.reasons[Reason.Q_NOT_FINITE] == 0.0:
@@ -397,8 +399,6 @@ def _update_request(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> N
         arm.reason = Reason.NONE if finite else Reason.NOT_FINITE
     if arm.reason == Reason.NONE and arm.age > settings.timeout + 0.5 * arm.period:
         arm.reason = Reason.TIMED_OUT
-    if arm.reason != Reason.NONE:
-        arm.reasons[arm.reason] = 1.0
     before = arm.request.copy()
     for i in range(arm.request.size):
         now = inputs.request[i] if i < count else before[i]
