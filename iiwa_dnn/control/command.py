@@ -1,13 +1,11 @@
 """A command and its answer: the log of one step, which the step writes and records keep."""
 
-from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
-from iiwa_dnn.control.fallback import DAMPING
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.naming import DONE, LimitKind, active_limits, describe
@@ -17,7 +15,7 @@ from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import QPViews, Sizes, data_size, offsets
 from iiwa_dnn.schemes.names import LimitNames
 from iiwa_dnn.schemes.periods import Periods
-from iiwa_dnn.schemes.program import ProgramSizes, program_views
+from iiwa_dnn.schemes.program import ProgramSizes
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 PLACEMENT = 12
@@ -26,24 +24,10 @@ PLACEMENT = 12
 EXCEEDED = "period exceeded"
 
 
-class RankLoss(IntEnum):
-    """Reasons why joints do not fulfil the tasks though no limit is active."""
-
-    NONE = 0
-    SINGULAR = 1
-    FEW = 2
-
-
 SINGULAR = "a singular posture, or tasks that contradict each other"
 
 
-def rank_words(joints: int, rows: int) -> tuple[str, str, str]:
-    """Name each `RankLoss` of a program with so many rows of tasks."""
-    return "", SINGULAR, f"{joints} joints for {rows} rows of the tasks"
-
-
-DAMPED = 4.0
-"""Squared singular value of the tasks' rows below which damping counts, in units of its own."""
+"""Reason of a relaxed program that no bound or row limits."""
 
 STATUSES = tuple(Status)
 """Statuses by their number in a log."""
@@ -131,38 +115,6 @@ def note_command(log: StepLog, next_motion_state: MotionState, dq: Vector, dt: f
 
 
 @compiled
-def eigenvalues_above(P: Matrix, least: float) -> int:
-    """Count the eigenvalues of a symmetric matrix (n, n) above a number, by Sylvester's law."""
-    n = len(P)
-    K = P.copy()
-    count = 0
-    for k in range(n):
-        K[k, k] -= least
-    for k in range(n):
-        count += K[k, k] > 0.0
-        for i in range(k + 1, n):
-            factor = K[i, k] / K[k, k] if K[k, k] != 0.0 else 0.0
-            for j in range(k + 1, n):
-                K[i, j] -= factor * K[k, j]
-    return count
-
-
-@compiled
-def rank_loss(qp: QPViews) -> int:
-    """Return a `RankLoss` of the tasks in a relaxed program, whose rows of A are then zero."""
-    rows = 0
-    for j in range(qp.b.size):
-        size = 0.0
-        for i in range(qp.q.size):
-            size += abs(qp.A[j, i])
-        rows += size == 0.0
-    rank = eigenvalues_above(qp.P, DAMPED * DAMPING * DAMPING)
-    if rank >= rows:
-        return RankLoss.NONE
-    return RankLoss.SINGULAR if rank < min(qp.q.size, rows) else RankLoss.FEW
-
-
-@compiled
 def note_active(log: StepLog, qp: QPViews, tolerance: float) -> None:
     """Note the active bounds and rows of the program that was answered.
 
@@ -216,21 +168,21 @@ class LogLayout(NamedTuple):
         """Sizes ``(n, m, p)`` of the programs."""
         return self.sizes[:3]
 
-    def multipliers(self, logs: Matrix, tol: float) -> tuple[Matrix, Matrix]:
+    def multipliers(self, logs: Matrix) -> tuple[Matrix, Matrix]:
         """Return the multipliers of active bounds, (..., dof), and inequality rows, (..., m).
 
-        They are those of `Solution.z_box` and `Solution.z`, where a bound or row is active: its
-        multiplier z is above `tol`, and min(z, 1) times its slack is not. All others are 0. Without
-        a multiplier up to `tol` the residuals are within the tolerance too. In continuous mode a
-        multiplier of an earlier step takes a while to decay.
+        They are those of `Solution.z_box` and `Solution.z` where `StepLog.limiting` names the bound
+        or row, else 0.
+
+        Args:
+            logs: Logs of steps, (..., width).
         """
         n, m, p = self.qp_sizes
         log = log_of(logs, self.sizes)
-        x, _, of_rows, of_bounds = np.split(log.point, np.cumsum([n, p, m]), axis=-1)
-        lower, upper = np.split(log.program[..., -2 * n :], 2, axis=-1)
-        nearest = np.where(of_bounds > 0.0, upper, lower)
-        at_bounds = _active(of_bounds, np.abs(nearest - x), tol)
-        return at_bounds[..., : self.sizes.joints], _active(of_rows, self._slacks(log), tol)
+        of_rows, of_bounds = np.split(log.point[..., n + p :], [m], axis=-1)
+        of_sides = np.concatenate([of_bounds, of_rows], axis=-1)
+        active = np.where(log.limiting != 0.0, of_sides, 0.0)
+        return active[..., : self.sizes.joints], active[..., n:]
 
     def excess(self, logs: Matrix) -> Vector:
         """Compute by how much commands are beyond the bounds of their steps [rad/s], (k,).
@@ -243,19 +195,14 @@ class LogLayout(NamedTuple):
         """
         log = log_of(logs, self.sizes)
         free = np.asarray(log.kind)[:, np.newaxis] < ProgramKind.RATE_LIMITED
-        of_rows = np.where(free, -self._slacks(log), 0.0)
+        n, m, p = self.qp_sizes
+        _, at_G, at_A, _ = offsets(n, m, p)
+        G, h = np.split(log.program[:, at_G:at_A], [m * n], axis=1)
+        product = np.einsum("kji,ki->kj", G.reshape(*h.shape, n), log.point[:, :n])
+        of_rows = np.where(free, product - h, 0.0)
         sides = [log.lower - log.dq, log.dq - log.upper, of_rows]
         excess: Vector = np.hstack(sides).max(axis=1, initial=0.0)
         return excess
-
-    def _slacks(self, log: StepLog) -> Matrix:
-        """Compute h - G x at the answers x of logs, (..., m)."""
-        n, m, p = self.qp_sizes
-        _, at_G, at_A, _ = offsets(n, m, p)
-        G, h = np.split(log.program[..., at_G:at_A], [m * n], axis=-1)
-        x = log.point[..., :n]
-        slacks: Matrix = h - np.einsum("...ji,...i->...j", G.reshape(*h.shape, n), x)
-        return slacks
 
 
 def lay_out_log(sizes: ProgramSizes, names: LimitNames | None) -> LogLayout:
@@ -263,13 +210,6 @@ def lay_out_log(sizes: ProgramSizes, names: LimitNames | None) -> LogLayout:
     columns = StepLog.columns(*log_sizes(sizes))
     width = columns["targets"].stop
     return LogLayout(sizes, width, columns["dq"], columns["next_q"], names)
-
-
-def _active(multipliers: Matrix, slacks: Matrix, tol: float) -> Matrix:
-    """Put zero in place of the multipliers of inactive bounds or rows."""
-    sizes = np.abs(multipliers)
-    active = (sizes > tol) & (slacks <= tol / np.clip(sizes, tol, 1.0))
-    return np.where(active, multipliers, 0.0)
 
 
 class Command:
@@ -323,8 +263,7 @@ class Command:
         codes = self.log.limiting[: sizes.joints]
         words = [*map(describe, active_limits(settings, codes, self.log.limiting[sizes.n :]))]
         if not words and self.kind is ProgramKind.RELAXED:
-            lost = rank_loss(program_views(self.log.program, sizes))
-            words = [rank_words(sizes.n, sizes.p)[lost]] * bool(lost)
+            words = [SINGULAR]
         return (*self.reasons, *words, *self.conditions)
 
     @property

@@ -96,7 +96,6 @@ class Yielding(NamedTuple):
         weights: Weight of each task row, (p,); 0 for a row that is a limit.
         limits: Acceleration and jerk limits; of no joints where there are none.
         tolerance: Tolerance of the answers.
-        budget: Linear solves after which a program counts as one without a solution.
         rates: Block of these limits; -1: there is none.
         scenes: Blocks of the scenes that braking keeps away from, (scenes,).
         cubic: Whether the jerk of a joint is limited.
@@ -107,7 +106,6 @@ class Yielding(NamedTuple):
     weights: Vector
     limits: MotionConstants
     tolerance: float
-    budget: int
     rates: int
     scenes: IntVector
     cubic: bool
@@ -126,15 +124,12 @@ def fallback_size(sizes: Sizes) -> int:
 
 
 @compiled
-def solve_warm(
-    qp: QPViews, tol: float, budget: int, state: Vector, point: Vector, stats: SolveStats
-) -> bool:
+def solve_warm(qp: QPViews, tol: float, state: Vector, point: Vector, stats: SolveStats) -> bool:
     """Solve the program by the network from its last state or, if need be, from a cold start.
 
     Args:
         qp: The program.
         tol: Tolerance.
-        budget: Largest number of linear solves.
         state: Its state, (size,), advanced; where it does not converge, cold again.
         point: The point that the state stands for, (2 n + m + p,), overwritten.
         stats: Statistics of the step's answer: the linear solves are added, the time is
@@ -144,7 +139,9 @@ def solve_warm(
         Whether the point is the program's solution.
     """
     for _ in range(2):
-        linear_solves, time, primal, dual, gap = solve_within(qp, tol, budget, state, point)
+        linear_solves, time, primal, dual, gap = solve_within(
+            qp, tol, MAX_LINEAR_SOLVES, state, point
+        )
         stats.iterations += linear_solves
         stats.time = time
         if within(primal, dual, gap, tol):
@@ -194,7 +191,7 @@ def largest_factor(
         elif not retreats:
             wider.b[j] = qp.b[j]
     tol = max(yielding.tolerance, RETREAT) if retreats else yielding.tolerance
-    if not solve_warm(wider, tol, yielding.budget, state, point, stats):
+    if not solve_warm(wider, tol, state, point, stats):
         return -1.0
     factor: float = max(point[n] / longest, 0.0)
     return 1.0 if factor >= FEASIBLE else ALMOST * factor
@@ -330,7 +327,7 @@ def _move_within(
     _copy_limits(qp, nearest)
     point = np.empty(2 * n + m + equalities)
     state = np.zeros(3 * n + m + equalities)
-    found = solve_warm(nearest, yielding.tolerance, yielding.budget, state, point, stats)
+    found = solve_warm(nearest, yielding.tolerance, state, point, stats)
     # Bounds that are off by rounding may contradict the equalities: as near as they allow, then.
     if found or (equalities > 0 and all_finite(point, 0, n)):
         copied(x, point[:n])

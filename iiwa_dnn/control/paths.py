@@ -30,8 +30,6 @@ TURNED = 0.2
 """Distance [m] and angle [rad] of a first target above which a warning is given."""
 SAMPLES = 200
 """Number of samples of a path."""
-SLOWEST = 0.1
-"""Control period above which a warning is given [s]."""
 DOUBLINGS = 16
 """Number of samples of a path's start: a control period ahead, two, four, ..."""
 NEAR = 0.02
@@ -85,8 +83,6 @@ def setup_warnings(
     for coupling in LimitNames(program).conditions(start.q, program.least):
         yield f"{coupling} at the start: they come to it within the limits"
     yield from _gain_warnings(program, dt)
-    if dt > SLOWEST:
-        yield f"a control period of {dt:g} s is long: the arm follows each command blindly"
     limits = program.limits
     if program.rate_limits is None and any(isinstance(limit, TipSpeedLimit) for limit in limits):
         yield "TipSpeedLimit holds beside AccelerationLimits alone: a command may be above it"

@@ -353,29 +353,6 @@ def _along(
 
 
 @compiled
-def _write_coefficients(
-    x: Vector, before: Vector, periods: float, vary: bool, coefficient: Vector
-) -> None:
-    """Write b (n,) of the cubics through x (n,) now and before, which end after so many periods."""
-    for i in range(x.size):
-        coefficient[i] = cubic_coefficient(x[i], before[i], periods, vary)
-
-
-@compiled
-def _write_before(dq: Vector, last: Vector, ratio: float, before: Vector) -> None:
-    """Write the command before dq that has, over another period, the acceleration since the last.
-
-    Args:
-        dq: The command [rad/s], (dof,).
-        last: Last command [rad/s], (dof,).
-        ratio: That period in control periods.
-        before: The command before, is written, (dof,).
-    """
-    for i in range(dq.size):
-        before[i] = dq[i] - ratio * (dq[i] - last[i])
-
-
-@compiled
 def stopping_time(
     arrays: ProgramArrays,
     motion_state: MotionState,
@@ -405,14 +382,14 @@ def stopping_time(
     vary = timing.vary
     before = motion_state.last.copy()
     coefficient = np.zeros(dq.size)
-    if vary:
-        _write_before(dq, motion_state.last, ratio, before)
+    for i in range(dq.size if vary else 0):  # of the same acceleration, over the longest period
+        before[i] = dq[i] - ratio * (dq[i] - before[i])
     support = limits.lower.size > 0
     periods = least_periods(dq, before, limits, dt, yielding.cubic, vary) if support else 1.0
     if periods == np.inf:
         return -1.0
-    if yielding.cubic and periods > 0.0:
-        _write_coefficients(dq, before, periods, vary, coefficient)
+    for i in range(dq.size if yielding.cubic and periods > 0.0 else 0):
+        coefficient[i] = cubic_coefficient(dq[i], before[i], periods, vary)
     # Where periods vary, the first may be the longest and the others as short as can be.
     fraction = timing.fraction
     motion = Motion(dq, coefficient, periods + vary, yielding.cubic, vary, fraction < 1.0)

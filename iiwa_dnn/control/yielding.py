@@ -20,7 +20,6 @@ import numpy as np
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.command import NOT_CONVERGED, SOLVED, StepLog, note_active, note_command
 from iiwa_dnn.control.fallback import (
-    MAX_LINEAR_SOLVES,
     REACHED,
     Yielding,
     attained,
@@ -93,7 +92,6 @@ def make_yielding(program: ProgramLayout, tol: float, alike: bool) -> Yielding:
         weights,
         limits,
         tol,
-        MAX_LINEAR_SOLVES,
         [*program.places_of(MotionLimits), -1][0],
         np.array(program.places_of(CollisionAvoidance), dtype=np.int64),
         bool((limits.jerk < np.inf).any()),
@@ -255,6 +253,7 @@ def _answer_fallback(
     """
     n = qp.q.size
     m = qp.h.size
+    tol = yielding.tolerance
     point = np.empty(2 * n + 2 + m + qp.b.size)
     size = 3 * n + 3 + m + qp.b.size
     factor = largest_factor(qp, yielding, fallback[:size], point, log.stats, False)
@@ -263,7 +262,7 @@ def _answer_fallback(
     if factor == 1.0 or (follows and factor >= CREEP):
         asked = qp.b.copy()
         scale_task(qp, yielding.weights, factor)
-        if _solve_fallback(log, qp, yielding, fallback[size:]):
+        if solve_warm(qp, tol, fallback[size:], log.point, log.stats):
             return SCALED, factor
         copied(qp.b, asked)
     if action == STOP:
@@ -273,15 +272,9 @@ def _answer_fallback(
         retreat = largest_factor(qp, yielding, np.zeros(size), point, log.stats, True)
         retreat = max(retreat, 0.0)  # what cannot be said to retreat may come no nearer
     relax_task(qp, yielding.weights, retreat)
-    found = _solve_fallback(log, qp, yielding, fallback[size:])
+    found = solve_warm(qp, tol, fallback[size:], log.point, log.stats)
     note_limiting(log.point, n, m, 0, log.limiting)
     return RELAXED if found else STOPPED, 0.0
-
-
-@compiled
-def _solve_fallback(log: StepLog, qp: QPViews, yielding: Yielding, state: Vector) -> bool:
-    """Answer a fallback program from a network's state (size,)."""
-    return solve_warm(qp, yielding.tolerance, yielding.budget, state, log.point, log.stats)
 
 
 @compiled

@@ -33,7 +33,7 @@ from iiwa_dnn.control.arms import (
     step_arm,
     stopping_time_of,
 )
-from iiwa_dnn.control.command import RankLoss, log_of, rank_loss, rank_words
+from iiwa_dnn.control.command import SINGULAR, log_of
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.cycle import ControlPlan, PathColumn, Paths, sample_targets, take_step
 from iiwa_dnn.control.paths import by_frame
@@ -59,7 +59,7 @@ from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
-from iiwa_dnn.schemes.program import Column, ProgramArrays, program_views
+from iiwa_dnn.schemes.program import Column, ProgramArrays
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -145,8 +145,7 @@ def controller_code(controller: Controller) -> dict[str, Any]:
     texts: dict[str, Any] = {
         "plan": _nested(code.initializer("plan", code.numbered(step.given))),
         "model": _nested(code.initializer("model", model)),
-        **code.kernels(take_step, log_of, write_kinematics, program_views),
-        **code.kernels(rank_loss, count_as_sent),
+        **code.kernels(take_step, log_of, write_kinematics, count_as_sent),
         "target_function": "",
         "target_declaration": "\n",
     }
@@ -168,11 +167,10 @@ def controller_code(controller: Controller) -> dict[str, Any]:
         "has_reference": step.plan.samples,
         "actions": _members("CONTROLLER", Action),
         "programs": _members("CONTROLLER", ProgramKind),
-        "rank_losses": _members("CONTROLLER_RANK", RankLoss),
         "action_names": ", ".join(json.dumps(ACTIONS.get(k, "")) for k in range(1 + max(Action))),
         "action_count": 1 + max(Action),
     }
-    return _about("controller", controller, texts, code, rank_words(n, p), program)
+    return _about("controller", controller, texts, code, ("", SINGULAR), program)
 
 
 def _nested(initializer: str) -> str:

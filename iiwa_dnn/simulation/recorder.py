@@ -88,8 +88,7 @@ class Recorder:
         self._look_for_infeasible(first)
         placements = np.array([each.placement for each in outcomes])
         self._add_samples(self._done, placements, logs.targets.reshape(count, -1))
-        tol = self._controller.solver.tol
-        of_bounds, of_rows = self.layout.multipliers(first, tol)
+        of_bounds, of_rows = self.layout.multipliers(first)
         kinds = np.where(of_bounds > 0.0, logs.upper_kind, -np.asarray(logs.lower_kind))
         for name, values in (
             ("bound_multiplier", of_bounds),

@@ -81,7 +81,7 @@ def test_a_command_that_is_rate_limited_is_within_its_bounds(limits: str, policy
     assert layout.excess(rows).max() <= 1e-9
 
 
-def test_the_excess_of_an_answer_counts_its_rows_and_a_multiplier_needs_its_bound() -> None:
+def test_the_excess_of_an_answer_counts_its_rows() -> None:
     qp = d.QP(np.eye(2), np.zeros(2), G=[[1.0, 1.0]], h=[0.5], lb=[-1.0] * 2, ub=[1.0] * 2)
     layout = lay_out_log(ProgramSizes(*qp.sizes, 2, 0, 0), None)
     row = np.zeros((1, layout.width))
@@ -94,4 +94,3 @@ def test_the_excess_of_an_answer_counts_its_rows_and_a_multiplier_needs_its_boun
         log.kind = kind
         counts = kind < ProgramKind.RATE_LIMITED
         np.testing.assert_allclose(layout.excess(row), 1.0 if counts else 0.0)
-    np.testing.assert_array_equal(layout.multipliers(row, 1e-9)[0], [[0.0, 3.0]])

@@ -11,10 +11,10 @@ from iiwa_dnn.control.fallback import Yielding
 from iiwa_dnn.qp import QP
 
 
-def settling(tol: float = 1e-9, budget: float = 60.0) -> Yielding:
+def settling(tol: float = 1e-9) -> Yielding:
     """What a controller knows of how its network converges."""
     own = d.Controller(d.load_robot("ur5"), d.DoubleIndicator()).control_layout.plan.yielding
-    return own._replace(tolerance=tol, budget=int(budget))
+    return own._replace(tolerance=tol)
 
 
 def limited(G: object = None, h: object = None, n: int = 3) -> QP:
@@ -23,12 +23,12 @@ def limited(G: object = None, h: object = None, n: int = 3) -> QP:
     return QP(3.0 * np.eye(n), np.full(n, 7.0), G=G, h=h, lb=-ub, ub=ub)
 
 
-@pytest.mark.parametrize(("speed", "budget"), [(np.nan, 60.0), (1.0, 0.0)])
-def test_without_a_number_or_an_answer_it_is_the_bound_nearest_to_rest(speed, budget) -> None:
-    qp = limited(G=[[1.0, 1.0, 1.0]], h=[0.5])
+@pytest.mark.parametrize(("speed", "most"), [(np.nan, 0.5), (1.0, -99.0)])
+def test_without_a_number_or_an_answer_it_is_the_bound_nearest_to_rest(speed, most) -> None:
+    qp = limited(G=[[1.0, 1.0, 1.0]], h=[most])
     qp.lb[1] = 0.5
     qp.ub[2] = -0.25
-    clipped, which = clip_command(qp, np.full(3, speed), settling(budget=budget))
+    clipped, which = clip_command(qp, np.full(3, speed), settling())
     assert_array_equal(clipped, [0.0, 0.5, -0.25])
     assert_array_equal(which, [1, 1, 1])
 

@@ -6,9 +6,9 @@ from numpy.testing import assert_array_equal
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, run
-from iiwa_dnn.control.command import lay_out_log, log_of
+from iiwa_dnn.control.command import lay_out_log, log_of, note_active
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.schemes.program import ProgramSizes
+from iiwa_dnn.schemes.program import ProgramSizes, program_views
 
 
 def test_a_decision_is_noted_at_its_step_with_the_bound_limiting() -> None:
@@ -67,7 +67,9 @@ def test_an_active_limit_has_a_multiplier_and_no_slack() -> None:
         log = log_of(row, layout.sizes)
         log.program[:] = qp.data
         log.point[:] = point
-        of_bounds, of_rows = layout.multipliers(row, 1e-9)
+        log.lower_kind[:] = log.upper_kind[:] = 2.0
+        note_active(log, program_views(log.program, layout.sizes), 1e-9)
+        of_bounds, of_rows = layout.multipliers(row)
         assert_array_equal(of_rows, active_rows)
         assert_array_equal(of_bounds, active_bounds)
 

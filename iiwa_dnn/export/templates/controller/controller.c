@@ -121,14 +121,10 @@ int controller_program(const struct controller *c)
 
 int controller_active_limits(const struct controller *c, int *codes)
 {
-    CONTROLLER_ARENA;
-    const control_cycle_ControlPlan plan = controller_plan((struct controller *)c);
-    const control_command_StepLog log = controller_log(c);
-    const qp_layout_QPViews qp = @program_views@log.program, &plan.arrays.sizes);
-    const int count = controller_codes(log.limiting, codes);
+    const int count = controller_codes(controller_log(c).limiting, codes);
     if (count == 0 && controller_program(c) == CONTROLLER_RELAXED) {
-        codes[0] = (int)@rank_loss@&qp);
-        return codes[0] != CONTROLLER_RANK_NONE;
+        codes[0] = CONTROLLER_SINGULAR;
+        return 1;
     }
     return count;
 }

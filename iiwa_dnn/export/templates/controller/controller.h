@@ -26,10 +26,8 @@ enum controller_action {
 @actions@
 };
 
-/* Reasons why joints do not fulfil the tasks though no limit is active; further codes are bounds and rows. */
-enum controller_rank {
-@rank_losses@
-};
+/* Code among the active limits of a relaxed program that no limit is active in; further codes are bounds and rows. */
+#define CONTROLLER_SINGULAR 1
 
 /* Programs that a step answers. */
 enum controller_program {
