@@ -133,6 +133,14 @@ def _limited(arguments: Arguments) -> Robot:
     return robot.with_limits(**rates)
 
 
+def _warn_of_range(robot: Robot) -> None:
+    """Warn if position limits lie beyond those of the robot's model."""
+    lower, upper, _ = model_limits(robot.model)
+    if (robot.q_lower < lower).any() or (robot.q_upper > upper).any():
+        line = "position limits lie beyond the robot's own"
+        print(f"{line}; for a real arm take --joint-limit datasheet", file=sys.stderr)
+
+
 def export(options: ExportWords) -> int:
     """Write the controller of a run as C99: one file without dependencies, and its tests.
 
@@ -151,14 +159,11 @@ def export(options: ExportWords) -> int:
         further: Any = {"platforms": options.platforms, "cuda": options.cuda}
         exports.python(made, folder, options.python, q0=q0, overwrite=True, **further)
     write_settings(folder, tables)
-    robot = made.robot
-    lower, upper, _ = model_limits(robot.model)
-    if not is_shield and ((robot.q_lower < lower).any() or (robot.q_upper > upper).any()):
-        line = "position limits lie beyond the robot's own"
-        print(f"{line}; for a real arm take --joint-limit datasheet", file=sys.stderr)
     unlimited = tables["limits"].get("acceleration") == "none"
     if is_shield:
-        unlimited = not np.isfinite(robot.ddq_max).all()
+        unlimited = not np.isfinite(made.robot.ddq_max).all()
+    else:
+        _warn_of_range(made.robot)
     if unlimited:
         line = "accelerations are not limited; for a real arm take --acceleration-limit robot"
         print(line, file=sys.stderr)

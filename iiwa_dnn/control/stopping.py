@@ -353,6 +353,23 @@ def _along(
 
 
 @compiled
+def write_cubic_coefficients(
+    dq: Vector, before: Vector, periods: float, vary: bool, coefficient: Vector
+) -> None:
+    """Compute the coefficient of each joint's motion to rest, as `cubic_coefficient`.
+
+    Args:
+        dq: The command that the motion begins with [rad/s], (dof,).
+        before: The command before it [rad/s], (dof,).
+        periods: Periods until rest.
+        vary: Whether periods vary.
+        coefficient: The coefficients, (dof,), overwritten.
+    """
+    for i in range(dq.size):
+        coefficient[i] = cubic_coefficient(dq[i], before[i], periods, vary)
+
+
+@compiled
 def stopping_time(
     arrays: ProgramArrays,
     motion_state: MotionState,
@@ -388,8 +405,8 @@ def stopping_time(
     periods = least_periods(dq, before, limits, dt, yielding.cubic, vary) if support else 1.0
     if periods == np.inf:
         return -1.0
-    for i in range(dq.size if yielding.cubic and periods > 0.0 else 0):
-        coefficient[i] = cubic_coefficient(dq[i], before[i], periods, vary)
+    if yielding.cubic and periods > 0.0:
+        write_cubic_coefficients(dq, before, periods, vary, coefficient)
     # Where periods vary, the first may be the longest and the others as short as can be.
     fraction = timing.fraction
     motion = Motion(dq, coefficient, periods + vary, yielding.cubic, vary, fraction < 1.0)

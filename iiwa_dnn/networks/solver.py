@@ -169,13 +169,10 @@ class DNNSolver:
 
     def _solve(self, qp: QP, state: Vector, sharpen: bool) -> Solution:
         """Make the attempts of a `solve` from a state (size,), and keep the state of a solution."""
-        plan = _COSTS if is_projection(self.network) else _COSTS[:1]
-        if not is_ordinary(qp.data, *qp.sizes):
-            qp = QP(*qp.views)  # P becomes symmetric
-            plan = plan[1:] or plan
+        qp, costs = self._attempts(qp)
         taken = 0
         time = 0.0
-        for cost in plan:
+        for cost in costs:
             if cost == LARGE and taken > 0:
                 state[:] = 0.0
             scaling = scaled(qp, cost) if cost else None
@@ -193,6 +190,13 @@ class DNNSolver:
         if solution.found:
             self._keep(qp.sizes, state)
         return solution
+
+    def _attempts(self, qp: QP) -> tuple[QP, tuple[float | None, ...]]:
+        """Return a program, and the largest entry of the cost in each attempt (`scaled`)."""
+        costs = _COSTS if is_projection(self.network) else _COSTS[:1]
+        if is_ordinary(qp.data, *qp.sizes):
+            return qp, costs
+        return QP(*qp.views), costs[1:] or costs  # P becomes symmetric
 
     def _attempt(
         self, qp: QP, scaling: Scaling | None, state: Vector, tol: float, budget: int
