@@ -398,7 +398,7 @@ class Controller:
             warn_caller(message)
 
     def reset(self) -> None:
-        """Reset the network's state, the last commands and the path lag; the home stays."""
+        """Reset the network's state, the last commands, the path lag and a halt; the home stays."""
         with self._turn():
             self.solver.reset()
             self._state.rest()

@@ -186,7 +186,7 @@ class RequestCost(Cost):
 
 @compiled
 def falls_short(qp: QPViews, twist: Vector) -> bool:
-    """Test whether a twist v (6,) is missed by more than `SHORT` |v| though no limit is active.
+    """Test whether even without limits a twist v (6,) is missed by more than `SHORT` |v|.
 
     The error is |W (J x - v)| at the unconstrained minimum x of the twist's program `qp`, whose P
     is (W J)^T W J + DAMPING^2 I.

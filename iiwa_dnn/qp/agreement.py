@@ -127,9 +127,12 @@ def feasibility_gaps(block: QPViews, x: Matrix) -> Vector:
 
 @np.errstate(invalid="ignore")
 def objective_gaps(block: QPViews, x: Matrix, steps: Matrix) -> Matrix:
-    """Compute the difference of the objectives at x (N, n) and at x - steps (N, k, n), (N, k).
+    """Compute the absolute differences of the objectives at x (N, n) and at x - steps (N, k, n).
 
-    Each difference is relative to the largest sum of absolute terms of the objective at x.
+    Returns:
+        The differences, (N, k), each divided by the largest of three numbers: the sums of the
+        absolute quadratic and of the absolute linear terms at x, and the largest coefficient's
+        `units`, at most 1, which keep it finite at x = 0.
     """
     size = np.abs(x)
     curved = 0.5 * np.einsum("ki,kij,kj->k", size, np.abs(block.P), size)
@@ -143,9 +146,9 @@ def objective_gaps(block: QPViews, x: Matrix, steps: Matrix) -> Matrix:
 
 
 def solution_gap(qp: QP, reference: Vector, x: Vector, tolerance: float) -> float:
-    """Compute the largest entry of x - x_r, (n,), where x is unique.
+    """Compute the largest absolute entry of x - x_r in the directions in which x is unique.
 
-    A difference that is within the tolerance everywhere is not split: its largest entry counts.
+    If no entry of x - x_r exceeds the tolerance, all directions count.
 
     Args:
         qp: The program, normalised.

@@ -262,7 +262,10 @@ def _polished_multipliers(qp: QPViews, multipliers: Vector) -> Vector:
 
 
 def _polished_direction(qp: QPViews, direction: Vector) -> Vector:
-    """Find the nearest direction, along the same rows, whose residuals are zero to rounding."""
+    """Project a direction (n,) on the null space of P, A and the rows of G that it does not lower.
+
+    Its entries that are nearly zero become zero.
+    """
     moves = np.abs(direction) > _SLIGHT
     polished = np.where(moves, direction, 0.0)
     falls = qp.G @ polished < -_SLIGHT * np.abs(qp.G).sum(axis=1)

@@ -34,7 +34,7 @@ Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
 
 @entry
 def enter_path(address: int, t: float, constants: Array, target: TargetData) -> None:
-    """Call a path's function by its address, to move a target at the origin to time t [s].
+    """Move `target`, which is at the path's origin, to time t [s] by the function at `address`.
 
     The path's constants are (c,).
     """

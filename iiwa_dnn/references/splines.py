@@ -137,15 +137,15 @@ def _excursions(pieces: Array, lengths: Array) -> Array:
 
 
 def check_noise(argument: str, rows: Array, noise: float) -> None:
-    """Refuse a noise of which smoothing would make a point or a line of rows (m, k) that are none.
+    """Refuse a standard deviation of noise that would smooth rows (m, k) to a point or a line.
 
     The length and the width of the rows are their largest and their second standard deviation along
-    principal axes. Noise that is as large as the length leaves a point, noise that is twice the
-    width a line; noise of that size would have made them longer and wider. Rows that are all equal
-    pass, and so do those that are a line already, with a width below a hundredth of the length.
+    principal axes. Noise from the length on would leave a point, noise above twice the width a
+    line. Rows that are all equal pass; of rows with a width below a hundredth of the length, a line
+    already, the length alone counts.
 
     Raises:
-        InvalidInputError: The noise is that large. The message has length and width.
+        InvalidInputError: The noise is too large. The message has length and width.
     """
     deviations = rows - rows.mean(axis=0)
     length, width = np.linalg.svd(deviations, compute_uv=False)[:2] / np.sqrt(len(rows))

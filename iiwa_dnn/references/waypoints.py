@@ -306,7 +306,16 @@ class Waypoints(Reference):
 
 
 def _displacement(done: str, changes: Array, unit: str) -> list[str]:
-    """Report changes of rows (m, k) [m, rad] by smoothing, in thousandths; nothing if all are 0."""
+    """Report the mean and the largest change (m, k) of rows by smoothing, times 1,000.
+
+    Args:
+        done: What smoothing has done, a participle.
+        changes: The changes [m] or [rad].
+        unit: Thousandth of their unit.
+
+    Returns:
+        One message, or none if no change is above rounding.
+    """
     sizes = 1e3 * np.linalg.norm(changes, axis=1)
     if not sizes.max() > 1e-6:  # rounding
         return []

@@ -124,7 +124,8 @@ def write_kinematics(
         model: The robot's tables.
         q: Joint positions, (n,).
         jacobian: Joint Jacobian, (n, 6), overwritten.
-        placements: Frame placements by frame index, (frames, 12): rows of the model's frames.
+        placements: Frame placements by frame index, (frames, 12); the rows of `model.frames` are
+            overwritten.
         inertia: Joint-space inertia matrix [kg m^2], (n, n), overwritten if the model has bodies.
     """
     placed = np.zeros((q.size + 1, Placement.width()))

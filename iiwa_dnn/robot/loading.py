@@ -201,7 +201,12 @@ def _limits(
     root: ET.Element,
     rates: Mapping[str, tuple[float, ...]],
 ) -> tuple[Array, Array]:
-    """Return `Robot.limits`, (5, n), and `Robot.position_dependent_velocity`, (2, n)."""
+    """Return `Robot.limits`, (5, n), and `Robot.position_dependent_velocity`, (2, n).
+
+    Raises:
+        InvalidInputError: A joint follows another one, or has no axis.
+        FileError: A joint of the file at `path` has no range.
+    """
     joints = {joint.get("name"): joint for joint in root.findall("joint")}
     limits = np.full((5, model.nv), np.inf)
     position_dependent_velocity = np.array([[0.0], [np.inf]]) * np.ones(model.nv)

@@ -172,7 +172,10 @@ class HalfSpace(Obstacle):
 
     @property
     def box(self) -> PlacedBox:
-        """A cube of `BEYOND` below the point of the boundary that is nearest to the origin."""
+        """A cube with edges of 2 `BEYOND`, on the half-space's side of the boundary.
+
+        The middle of one face is the boundary's point that is nearest to the origin.
+        """
         normal = np.array(self.normal)
         _, rotation, _ = box_around(np.zeros(3), normal)
         return PlacedBox((self.offset - BEYOND) * normal, rotation, np.full(3, BEYOND))

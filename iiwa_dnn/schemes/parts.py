@@ -112,7 +112,10 @@ class Part(Checked):
         return self.copies or type(self).refresh is not Part.refresh
 
     def _check(self, arrays: dict[str, Matrix]) -> None:
-        """Raise InvalidInputError if the arrays that numpy methods returned are inconsistent."""
+        """Raise InvalidInputError if a part cannot have these arrays of its numpy methods.
+
+        Their shapes are checked already. By default all are accepted; a cost needs a convex P.
+        """
 
     def frame_name(self, robot: Robot) -> str:
         """Return the name of the part's frame: its attribute `frame`, or the robot's tip."""
