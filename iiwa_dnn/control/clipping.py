@@ -1,7 +1,7 @@
-"""Clipping of a command that noise, a filter or an estimator has altered, to the program's limits.
+"""Clipping of an altered command to the limits of a program.
 
-The network's own answer is within them. A drive that watches its own limits does the same at the
-joints' true positions, so that no disturbance breaks a limit.
+Noise, a filter or an estimator may move a command out of the limits that the network's answer
+keeps. A simulated drive clips it to the limits at the joints' true positions.
 """
 
 import numpy as np
@@ -13,32 +13,33 @@ from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.qp.layout import qp_views
 
 TOLERANCE = 1e-12
-"""A command beyond its bound by no more [rad/s] is clipped and not counted: that is rounding."""
+"""Change of a velocity up to which a joint does not count as clipped [rad/s]: rounding."""
 
 ROW_TOLERANCE = 1e-9
-"""Inequality rows that are broken by no more are left alone: the network's own tolerance."""
+"""Violation of an inequality row that is tolerated, as by the network."""
 
 
 def clip_command(qp: QP, dq: Vector, yielding: Yielding) -> tuple[Vector, NDArray[np.int8]]:
     """Clip joint velocities to the bounds and inequality rows of a program.
 
-    A velocity that is NaN becomes zero, clipped to the bounds. If an inequality row is broken, the
-    nearest velocity within all limits is taken; if there is none, zero, clipped to the bounds.
+    A velocity that is NaN counts as zero. If the velocities clipped to the bounds break an
+    inequality row, they are projected on bounds and rows; if no velocity keeps both, the result is
+    zero, clipped to the bounds. Rows with slack variables are ignored.
 
     Args:
-        qp: The program at the joints' true positions; its first variables are the joints.
+        qp: The program at the joints' true positions; its first n variables are the joints'.
         dq: Joint velocities [rad/s], (n,).
-        yielding: How the network converges.
+        yielding: Tolerance of the projection, and whether joints are coupled.
 
     Returns:
-        The velocities within the limits [rad/s], (n,), and 1 for each joint that was clipped.
+        The clipped velocities [rad/s], (n,), and for each joint 1 if it was changed, else 0, (n,).
     """
     n = dq.size
     lb = qp.lb[:n]
     ub = qp.ub[:n]
     clipped: Vector = np.clip(np.where(np.isnan(dq), 0.0, dq), lb, ub)
     rows = qp.G[:, :n]
-    # Rows on slack variables are the scheme's own affair.
+    # Rows with slack variables are soft.
     of_joints = ~qp.G[:, n:].any(axis=1)
     if (rows @ clipped > qp.h + ROW_TOLERANCE)[of_joints].any():
         of_limits = QP(np.eye(n), np.zeros(n), G=rows[of_joints], h=qp.h[of_joints], lb=lb, ub=ub)

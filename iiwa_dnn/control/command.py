@@ -1,4 +1,4 @@
-"""A command and its answer: the log of one step, which the step writes and records keep."""
+"""Commands of control steps, and the log in which a step writes its program and answer."""
 
 from typing import Any, NamedTuple
 
@@ -22,41 +22,41 @@ PLACEMENT = 12
 """Numbers of a frame's placement, as `Kinematics.placements` has them."""
 
 EXCEEDED = "period exceeded"
-
+"""Reason of a step whose stated period is above the longest."""
 
 SINGULAR = "a singular posture, or tasks that contradict each other"
-
-
 """Reason of a relaxed program that no bound or row limits."""
 
 STATUSES = tuple(Status)
-"""Statuses by their number in a log."""
+"""Statuses of an answer; the index of each is its code in a log."""
 SOLVED, ADVANCED, NOT_CONVERGED, NOT_FINITE, *_ = range(len(STATUSES))
 
 
 class StepLog(Record):
-    """Log of one step, for a program of n variables, m and p rows, and dof joints.
+    """Log of one control step of dof joints.
+
+    Its program has n variables, m inequality and p equality rows.
 
     Attributes:
         fraction: Fraction of the period by which the reference's clock advances.
-        status: Number of the answer's status in `STATUSES`.
-        kind: `ProgramKind` of the program.
-        stats: Statistics of the answer.
+        status: Index of the answer's status in `STATUSES`.
+        kind: `ProgramKind` of the program that was answered.
+        stats: Iterations, network time and residuals of the answer.
         placement: Placement of the first tracked frame, (12,).
-        q: Joint positions that the program was built at [rad], (dof,).
-        last: Last command [rad/s], (dof,).
-        before: Command before it [rad/s], (dof,).
-        dq: Command [rad/s], (dof,).
+        q: Joint positions at which the program was built [rad], (dof,).
+        last: Command of the step before [rad/s], (dof,).
+        before: Command of the step before `last` [rad/s], (dof,).
+        dq: Command of this step [rad/s], (dof,).
         next_q: Joint positions at the end of the period, q + dt dq [rad], (dof,).
-        lower: Lower bounds of the step that the command keeps [rad/s], (dof,). Those of the program
-            are others where limits of acceleration or jerk limit the command.
-        upper: Upper bounds, (dof,).
-        lower_kind: `LimitKind` of each lower bound of the program, (dof,).
-        upper_kind: The same of the upper bounds, (dof,).
-        program: The program, `QP.data`, (size,).
-        point: The answer, `Solution.point`, (2 n + m + p,).
-        limiting: For each joint the `LimitKind` of the bound that limits the solution, negative for
-            a lower bound, or 0; after all variables for each inequality row 1 or 0, (n + m,).
+        lower: Lower bounds of the nominal program [rad/s], (dof,). If a fallback program was
+            answered, its bounds may be wider.
+        upper: Upper bounds of the nominal program [rad/s], (dof,).
+        lower_kind: `LimitKind` of each lower bound of `program`, (dof,).
+        upper_kind: `LimitKind` of each upper bound of `program`, (dof,).
+        program: The program that was answered, `QP.data`, (size,).
+        point: The primal-dual answer, `Solution.point`, (2 n + m + p,).
+        limiting: For each variable the `LimitKind` of the bound that limits it, negative for a
+            lower bound, or 0; then for each inequality row 1 if it limits, else 0, (n + m,).
         least: Distance that each watched pair has to keep [m], (pairs,), as in `MotionState`.
         targets: Targets of the tracked frames, (k, 18).
     """
@@ -84,7 +84,7 @@ class StepLog(Record):
 
 @compiled
 def log_sizes(sizes: ProgramSizes) -> tuple[int, int, int, int, int, int]:
-    """Return the sizes of `StepLog`, in the order of their names."""
+    """Return ``(joints, program, point, sides, pairs, frames)``, the sizes of a `StepLog`."""
     program = data_size(sizes.n, sizes.m, sizes.p)
     sides = sizes.n + sizes.m
     point = sides + sizes.n + sizes.p
@@ -93,19 +93,19 @@ def log_sizes(sizes: ProgramSizes) -> tuple[int, int, int, int, int, int]:
 
 @compiled
 def log_of(data: Vector, sizes: ProgramSizes) -> StepLog:
-    """View the log of a step, (width,)."""
+    """View the numbers of a step log, (width,), as a `StepLog`."""
     joints, program, point, sides, pairs, frames = log_sizes(sizes)
     return StepLog.of(data, joints, program, point, sides, pairs, frames)
 
 
 @compiled
 def note_command(log: StepLog, next_motion_state: MotionState, dq: Vector, dt: float) -> None:
-    """Note the command of a step, and where the arm is after it.
+    """Write the command of a step into its log and the next state.
 
     Args:
-        log: The step's log.
-        next_motion_state: State for the next step.
-        dq: The command [rad/s], (dof,) or longer.
+        log: The step's log; `dq` and `next_q` are overwritten.
+        next_motion_state: State for the next step; `last` is overwritten.
+        dq: The command [rad/s], (dof,); further entries are ignored.
         dt: Control period [s].
     """
     for i in range(log.dq.size):
@@ -116,10 +116,12 @@ def note_command(log: StepLog, next_motion_state: MotionState, dq: Vector, dt: f
 
 @compiled
 def note_active(log: StepLog, qp: QPViews, tolerance: float) -> None:
-    """Note the active bounds and rows of the program that was answered.
+    """Find the active bounds and inequality rows at the answer of a program (`is_active`).
 
-    One is active if its multiplier is above the tolerance, and its part of the duality gap,
-    multiplier times slack, is not; of a multiplier above one, the slack itself.
+    Args:
+        log: The step's log, with the answer in `point`; `limiting` (n + m,) is overwritten.
+        qp: The program, n variables and m inequality rows.
+        tolerance: Tolerance of the answer.
     """
     n = qp.q.size
     of_rows = log.point[n + qp.b.size :]
@@ -136,20 +138,23 @@ def note_active(log: StepLog, qp: QPViews, tolerance: float) -> None:
 
 @compiled
 def is_active(multiplier: float, slack: float, tolerance: float) -> bool:
-    """Test whether a bound or row of some slack is active."""
+    """Test whether a bound or row with this multiplier and slack is active.
+
+    It is if the multiplier's size |z| is above the tolerance, and slack times min(|z|, 1) is not.
+    """
     size = abs(multiplier)
     return size > tolerance and slack <= tolerance / min(size, 1.0)
 
 
 class LogLayout(NamedTuple):
-    """Layout of the logs of a scheme's steps.
+    """Layout of the step logs of a scheme.
 
     Attributes:
         sizes: Sizes of the programs.
-        width: Length of a log.
-        dq: Columns of the command.
-        next_q: Columns of the joint positions after it.
-        names: Names of the limits; None where nobody asks for them.
+        width: Number of floats in a log.
+        dq: Slice of the command in a log.
+        next_q: Slice of the joint positions at the end of the period in a log.
+        names: `LimitNames` of the scheme; None if limits are not to be named.
     """
 
     sizes: ProgramSizes
@@ -159,23 +164,24 @@ class LogLayout(NamedTuple):
     names: Any
 
     def targets(self, data: Vector) -> Matrix:
-        """Return the targets of a log, (k, 18), its last numbers, a view."""
+        """Return the targets of the k tracked frames in a log (width,), a view, (k, 18)."""
         frames = self.sizes.frames
         return data[self.width - frames * TARGET_SIZE :].reshape(frames, TARGET_SIZE)
 
     @property
     def qp_sizes(self) -> Sizes:
-        """Sizes ``(n, m, p)`` of the programs."""
+        """Numbers ``(n, m, p)`` of variables, inequality and equality rows of the programs."""
         return self.sizes[:3]
 
     def multipliers(self, logs: Matrix) -> tuple[Matrix, Matrix]:
-        """Return the multipliers of active bounds, (..., dof), and inequality rows, (..., m).
-
-        They are those of `Solution.z_box` and `Solution.z` where `StepLog.limiting` names the bound
-        or row, else 0.
+        """Return the multipliers of the bounds and inequality rows that limit the answers.
 
         Args:
             logs: Logs of steps, (..., width).
+
+        Returns:
+            Entries of `Solution.z_box` (..., dof) and `Solution.z` (..., m); 0 for a bound or row
+            that does not limit, whose `StepLog.limiting` is 0.
         """
         n, m, p = self.qp_sizes
         log = log_of(logs, self.sizes)
@@ -185,13 +191,13 @@ class LogLayout(NamedTuple):
         return active[..., : self.sizes.joints], active[..., n:]
 
     def excess(self, logs: Matrix) -> Vector:
-        """Compute by how much commands are beyond the bounds of their steps [rad/s], (k,).
+        """Compute the largest violation of each command's limits, (k,); 0 if there is none.
 
-        Of a command that is not rate-limited, the excess over the inequality rows
-        counts too.
+        Limits are the bounds `StepLog.lower` and `StepLog.upper` [rad/s] and, unless the program is
+        `RATE_LIMITED` or `STOPPED`, the inequality rows G x <= h, in the unit of h.
 
         Args:
-            logs: Logs of the commands, (k, width).
+            logs: Logs of k steps, (k, width).
         """
         log = log_of(logs, self.sizes)
         free = np.asarray(log.kind)[:, np.newaxis] < ProgramKind.RATE_LIMITED
@@ -206,26 +212,26 @@ class LogLayout(NamedTuple):
 
 
 def lay_out_log(sizes: ProgramSizes, names: LimitNames | None) -> LogLayout:
-    """Lay out the logs of steps."""
+    """Lay out the step logs for programs of some sizes, with the names of their limits."""
     columns = StepLog.columns(*log_sizes(sizes))
     width = columns["targets"].stop
     return LogLayout(sizes, width, columns["dq"], columns["next_q"], names)
 
 
 class Command:
-    """Decision of one control step.
+    """Command of one control step of n joints, with the program that was answered.
 
     Attributes:
-        data: The numbers of its `log`, (width,), which the properties are views of.
-        dq: Joint velocity [rad/s], (n,), within the limits.
-        action: The action taken; ``Action.NONE`` where the network's answer was taken.
-        periods: Periods of the step.
+        data: Numbers of the step's `log`, (width,).
+        dq: Commanded joint velocity [rad/s], (n,), a view of `data`.
+        action: Action of the policy; ``Action.NONE`` if the task was followed at full velocity.
+        periods: Control periods for which the limits of the step were computed.
     """
 
     __slots__ = ("_layout", "action", "data", "dq", "periods")
 
     def __init__(self, data: Vector, layout: LogLayout, action: Action, periods: Periods) -> None:
-        """Take a log (width,), which is not copied, its layout, the action and the periods."""
+        """Wrap the numbers of a log (width,), which are not copied, and their layout."""
         self.data = data
         self.dq = data[layout.dq]
         self.action = action
@@ -234,17 +240,17 @@ class Command:
 
     @property
     def log(self) -> StepLog:
-        """The log of the step, a view."""
+        """Log of the step, a view of `data`."""
         return log_of(self.data, self._layout.sizes)
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Reasons beside limits for a command that need not be what is asked."""
+        """Warnings of the step: ``("period exceeded",)`` if its period is too long, else ()."""
         return (EXCEEDED,) if self.periods.exceeded else ()
 
     @property
     def next_q(self) -> Vector:
-        """Joint positions at the end of the period, q + dt dq [rad], (n,), a view."""
+        """Joint positions at the end of the period, q + dt dq [rad], (n,), a view of `data`."""
         return self.data[self._layout.next_q]
 
     @property
@@ -254,9 +260,10 @@ class Command:
 
     @property
     def active_limits(self) -> tuple[str, ...]:
-        """Reasons, bounds and rows that keep the command from what tasks and cost ask, in words.
+        """Names of the bounds and inequality rows that limit the command.
 
-        The `conditions` are among them.
+        The `reasons` come before them, and the `conditions` after. If the relaxed program is
+        limited by none, a singular posture or contradicting tasks are named.
         """
         sizes = self._layout.sizes
         settings = self._layout.names.settings
@@ -268,14 +275,14 @@ class Command:
 
     @property
     def conditions(self) -> tuple[str, ...]:
-        """Pairs that began nearer than they have to be, and relations that joints do not fulfil."""
+        """Texts on pairs that keep less than the scheme's distance, and unmet joint couplings."""
         log = self.log
         found: tuple[str, ...] = self._layout.names.conditions(log.q, log.least)
         return found
 
     @property
     def qp(self) -> QP:
-        """The program that was answered; `kind` says how it differs from the nominal one."""
+        """Program that was answered; `kind` says how it differs from the nominal one."""
         return QP.from_data(self.log.program, self._layout.qp_sizes)
 
     @property
@@ -285,13 +292,13 @@ class Command:
 
     @property
     def bounds(self) -> Matrix:
-        """Lower and upper bounds of the command [rad/s], those of the step, (2, n)."""
+        """Lower and upper bounds of the nominal program on the command [rad/s], (2, n)."""
         log = self.log
         return np.array([log.lower, log.upper])
 
     @property
     def limits(self) -> QP:
-        """The program that was answered, with the bounds of the step: what the command keeps."""
+        """Program that was answered, a copy, with the nominal `bounds` on the joint velocities."""
         qp = QP.from_data(self.log.program.copy(), self._layout.qp_sizes)
         qp.lb[: self.dq.size], qp.ub[: self.dq.size] = self.bounds
         return qp
@@ -303,7 +310,7 @@ class Command:
 
     @property
     def solution(self) -> Solution:
-        """The network's answer to `qp`, which a rate-limited command is on its way to."""
+        """Answer to `qp`; if `kind` is `RATE_LIMITED`, `dq` is a step towards it."""
         log = self.log
         stats = log.stats
         residuals = (stats.primal, stats.dual, stats.gap)
@@ -313,15 +320,15 @@ class Command:
 
     @property
     def ok(self) -> bool:
-        """True if the command does all that the tasks ask."""
+        """True if no policy acted and the answer converged or, in continuous mode, was advanced."""
         return self.action is Action.NONE and self.log.status <= ADVANCED
 
     @property
     def limited(self) -> bool:
-        """True if acceleration and jerk limits alone keep it from all that the tasks ask.
+        """True if a policy other than ``stop`` acted and only rate limits are active.
 
-        Then the arm is on its way there, or noise asks for more than it may follow; a command that
-        is neither `ok` nor limited cannot do it.
+        Rate limits are those of acceleration and jerk; at least one of them is active. The arm is
+        then on its way to the task velocity, or the targets are too noisy to be followed.
         """
         sizes = self._layout.sizes
         rows = self.log.limiting[sizes.n :]

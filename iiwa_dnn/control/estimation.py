@@ -1,19 +1,19 @@
-r"""A Kalman filter for joint angles that are measured with noise and driven with a bias.
+r"""Kalman filter of joint angles, for noisy encoders and drives with a velocity bias.
 
-For each joint by itself, with q the angle, d an unknown and nearly constant disturbance of its
-velocity, and u the velocity that was commanded:
+The model of each joint has its angle q, an unknown and nearly constant disturbance d of its
+velocity, the commanded velocity u, the measured angle z, and white noise n_1, n_2, n_3:
 
 .. math::
 
     q^+ = q + dt\,(u + d + \sigma n_1), \qquad d^+ = d + \sqrt{dt}\,\beta\,n_2, \qquad
     z = q + \sigma_m n_3
 
-All joints share the covariance, so the gains are computed once a step, two numbers. Feeding back
-the estimated q instead of z keeps the encoders' noise out of the command; taking the estimated d
-off the command removes a bias in the joints themselves, whatever the posture, which an integral
-term of the tip's error cannot do in motion. If the drives carry a command out some periods late,
-the velocity above is the one that they carry out, and the estimated angles are those at which the
-next command begins, since all commands until then are known.
+All joints share one covariance, so a step computes two gains, not two per joint. Feeding back the
+estimated q instead of z reduces the encoders' noise in the command. Subtracting the estimated d
+from the command compensates a joint's bias in every posture, which an integral term of the tip's
+error cannot do in motion. If the drives execute commands some periods late, u is the command that
+they execute now, and the estimated angles are predicted to the time at which the next command
+begins; all commands until then are known.
 
 Source: R. E. Kalman, "A new approach to linear filtering and prediction problems", Journal of Basic
 Engineering 82 (1960).
@@ -29,15 +29,15 @@ from iiwa_dnn.qp.program import Vector
 
 @dataclass(frozen=True)
 class NoiseModel:
-    """Noise that the filter assumes.
+    """Noise model of a `JointEstimator`.
 
     Attributes:
         velocity: Standard deviation sigma of white noise on each velocity command [rad/s].
-        measurement: sigma_m, of white noise on each measured angle [rad]; above 0.
-        bias_walk: beta, how fast the disturbance may change [rad/s per sqrt(s)]; with 0 there is
-            none, and nothing is taken off the command.
+        measurement: Standard deviation sigma_m of white noise on each measured angle [rad]; > 0.
+        bias_walk: Random walk beta of the disturbance [rad/s per sqrt(s)]; if 0, the disturbance is
+            assumed and estimated to be 0.
         bias: Standard deviation of the disturbance at the start [rad/s].
-        delay_periods: Number of control periods by which the drives carry a command out late.
+        delay_periods: Number of control periods by which the drives execute a command late.
     """
 
     velocity: float = 0.01
@@ -47,7 +47,7 @@ class NoiseModel:
     delay_periods: int = 0
 
     def __post_init__(self) -> None:
-        """Check the numbers; raises InvalidInputError naming the one that is wrong."""
+        """Validate the settings; raises InvalidInputError with the name of one out of range."""
         checks.positive("measurement", self.measurement)
         for name in ("velocity", "bias_walk", "bias"):
             checks.not_negative(name, getattr(self, name))
@@ -55,16 +55,16 @@ class NoiseModel:
 
 
 class JointEstimator:
-    """Kalman filter of n joints.
+    """Kalman filter of the angles and velocity disturbances of n joints.
 
     Attributes:
-        model: Standard deviations of the noise.
+        model: Noise model, with the delay of the drives.
         dt: Control period [s].
-        bias: Estimated disturbance of the velocity [rad/s], (n,).
+        bias: Estimated disturbance of the velocity [rad/s], (n,); (0,) before the first `update`.
     """
 
     def __init__(self, model: NoiseModel, dt: float) -> None:
-        """Start without an estimate.
+        """Create a filter without a reading.
 
         Raises:
             InvalidInputError: `dt` is not a positive time.
@@ -76,9 +76,13 @@ class JointEstimator:
         self._late: tuple[Vector, ...] = ()
 
     def update(self, reading: Vector) -> Vector:
-        """Take in measured angles (n,) [rad]; return estimated ones, a new array.
+        """Correct the estimate by measured angles [rad], (n,).
 
-        With a delay they are those at which the next command begins.
+        The first reading initialises the estimate.
+
+        Returns:
+            Estimated angles [rad], (n,), a new array; with a delay of the drives, predicted to the
+            time at which the next command begins.
         """
         model = self.model
         noise = model.measurement**2
@@ -104,7 +108,10 @@ class JointEstimator:
         return self._q + self.dt * (sum(self._late) + model.delay_periods * self.bias)
 
     def predict(self, command: Vector) -> None:
-        """Predict one control period with a command (n,) [rad/s] to the drives."""
+        """Predict the estimate by one control period, after a command [rad/s], (n,), was sent.
+
+        With a delay, the angles move by the command that was sent `delay_periods` periods earlier.
+        """
         assert self._q is not None, "predict comes after update"
         command, *late = (*self._late, command)
         self._late = tuple(late)

@@ -1,4 +1,4 @@
-r"""Filters of the joint velocity.
+r"""Filters of joint velocities.
 
 The moving average is the paper's anti-noise mechanism, equation (9):
 
@@ -16,14 +16,14 @@ from iiwa_dnn.qp import Vector
 
 
 class MovingAverage:
-    """Mean of the last samples; before the window is full, of those that there are.
+    """Moving average over the last N samples; over all samples while there are fewer than N.
 
     Attributes:
         window: Number of samples N; 1 passes every sample unchanged.
     """
 
     def __init__(self, window: int) -> None:
-        """Start empty.
+        """Create a filter without samples.
 
         Raises:
             InvalidInputError: `window` is below 1.
@@ -32,7 +32,7 @@ class MovingAverage:
         self._samples = deque[Vector](maxlen=self.window)
 
     def __call__(self, sample: Vector) -> Vector:
-        """Take one sample (n,) [rad/s] and return the mean of the window (n,)."""
+        """Add a sample (n,) [rad/s]; return the mean of the window [rad/s], (n,), a new array."""
         self._samples.append(sample.copy())
         # A running sum would be quicker and would drift by its rounding.
         mean: Vector = np.sum(self._samples, axis=0) / len(self._samples)

@@ -1,4 +1,4 @@
-"""References of a control loop by frame, and start-up diagnostics."""
+"""References of a controller by tracked frame, and warnings before its first step."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -26,25 +26,26 @@ from iiwa_dnn.schemes.tip_speed import TipSpeedLimit
 References = Reference | Mapping[str, Reference]
 
 FAR = 0.05
+"""Distance of a first target from its frame above which a warning is given [m]."""
 TURNED = 0.2
-"""Distance [m] and angle [rad] of a first target above which a warning is given."""
+"""Angle of a first target from its frame above which a warning is given [rad]."""
 SAMPLES = 200
-"""Number of samples of a path."""
+"""Number of samples of a path in the test of its reach."""
 DOUBLINGS = 16
-"""Number of samples of a path's start: a control period ahead, two, four, ..."""
+"""Number of samples in the rank test: the path 1, 2, 4, ... control periods after its start."""
 NEAR = 0.02
-"""Distance [m] and change of the entries of a rotation in which a path is nearly straight."""
+"""Largest change of position [m] and rotation entries of the samples that the rank test keeps."""
 MISSING = 0.2
-"""Relative residual of a task velocity that such a curvature does not explain."""
+"""Relative residual of a task velocity above which the rank test gives a warning."""
 ZERO = 1e-3
-"""Ratio of singular values below which they count as zero."""
+"""Singular values below this part of the largest count as zero in the rank test."""
 
 
 def by_frame(reference: References | None, tip: str) -> Mapping[str, Reference]:
-    """Return references by frame name: one alone is the tip's; none where there is none.
+    """Return references by frame name; a single reference is that of frame `tip`, None gives {}.
 
     Raises:
-        InvalidInputError: One of them is no reference.
+        InvalidInputError: A value is not a `Reference`.
     """
     one = not isinstance(reference, Mapping) and reference is not None
     given: Any = {tip: reference} if one else reference or {}
@@ -52,10 +53,12 @@ def by_frame(reference: References | None, tip: str) -> Mapping[str, Reference]:
 
 
 def paths_of(reference: References | None, tip: str, frames: Sequence[str]) -> dict[str, Reference]:
-    """Return the reference of each frame, in their order.
+    """Return the reference of each tracked frame, in the order of `frames`.
+
+    A single reference is that of frame `tip`.
 
     Raises:
-        InvalidInputError: One of the frames has no reference, or another one has.
+        InvalidInputError: A tracked frame has no reference, or a frame that is not tracked has one.
     """
     given = by_frame(reference, tip)
     for name in {*frames} ^ {*given}:
@@ -68,12 +71,12 @@ def paths_of(reference: References | None, tip: str, frames: Sequence[str]) -> d
 def setup_warnings(
     program: ProgramLayout, start: Configuration, t: float, dt: float, mode: str
 ) -> Iterator[str]:
-    """Report settings of a loop, or a place where it begins, that are most likely wrong.
+    """Yield warnings of settings or a start configuration that are most likely wrong.
 
     Args:
-        program: The program of its steps.
-        start: Where it begins.
-        t: Time at which it begins [s].
+        program: Layout of the programs of a controller.
+        start: Configuration at its first step.
+        t: Time of the first step [s].
         dt: Control period [s].
         mode: ``"converged"`` or ``"continuous"``.
     """
@@ -98,7 +101,7 @@ def setup_warnings(
 
 
 def _gain_warnings(program: ProgramLayout, dt: float) -> Iterator[str]:
-    """Report a gain that is too high for the limits on acceleration and jerk at dt [s]."""
+    """Yield a warning if a task's gain is unstable with the rate limits at a period of dt [s]."""
     if program.rate_limits is None:
         return
     gains = [min(task.gain, 1.0 / dt) for task in program.tasks if isinstance(task, GainTask)]
@@ -117,16 +120,17 @@ def rank_warnings(
     dt: float,
     sample: Callable[[float], Matrix],
 ) -> Iterator[str]:
-    """Report hard tasks that no joint velocity at the start fulfils.
+    """Yield a warning if no joint velocity at the start fulfils the hard tasks.
 
-    The path is looked at as long as it is near to where it begins.
+    The task velocities are those of the path's samples near its start; bounds and inequality rows
+    are ignored.
 
     Args:
-        program: The program of its steps.
-        start: Where a loop begins.
-        t: Time at which it begins [s].
+        program: Layout of the programs of a controller.
+        start: Configuration at its first step.
+        t: Time of the first step [s].
         dt: Control period [s].
-        sample: Returns the targets of a time [s], (k, 18).
+        sample: Function of a time [s] that returns the targets of k frames, (k, 18).
     """
     rest = np.zeros(start.q.size)
     targets = np.array([sample(t), *(sample(t + dt * 2.0**k) for k in range(DOUBLINGS))])
@@ -145,7 +149,7 @@ def rank_warnings(
 
 
 def pair_warnings(program: ProgramLayout, start: Configuration, t: float) -> Iterator[str]:
-    """Report pairs that are nearer than their distance where a loop begins, at time t [s]."""
+    """Yield a warning for each watched pair that is too near in a configuration at time t [s]."""
     parts = [part for part in program.limits if isinstance(part, CollisionAvoidance)]
     for part in parts:
         scene = part.scene(program.robot)
@@ -159,7 +163,7 @@ def pair_warnings(program: ProgramLayout, start: Configuration, t: float) -> Ite
 
 
 def beyond_reach(reference: References | None, robot: Robot) -> float:
-    """Compute how far the tip's path leads beyond the robot's reach [m], 0 if it does not."""
+    """Compute how far the tip's path exceeds the robot's reach [m]; 0 if it does not."""
     path = by_frame(reference, robot.tip).get(robot.tip)
     if path is None:
         return 0.0
@@ -174,13 +178,13 @@ def target_warnings(
     start: Configuration,
     targets: Matrix,
 ) -> Iterator[str]:
-    """Report first targets that are far from their frames in a configuration.
+    """Yield a warning for each frame that starts far from its first target.
 
     Args:
-        scheme: The scheme, of which only an orientation task looks at angles.
-        frames: Names of the frames of the targets.
-        start: The configuration.
-        targets: The targets, (k, 18).
+        scheme: The scheme; angles are compared only if it has an orientation or pose task.
+        frames: Names of the k tracked frames.
+        start: Configuration at the first step.
+        targets: First targets of the frames, `Target.data`, (k, 18).
     """
     turns = any(isinstance(task, OrientationTask | PoseTask) for task in scheme.tasks)
     for name, data in zip(frames, targets, strict=True):

@@ -1,31 +1,33 @@
 r"""Policies for a step whose program has no solution, or one that the network did not find.
 
-A program without a solution asks for a task velocity b that no joint velocity within the limits
-gives. A policy that goes on answers a fallback program (`iiwa_dnn.control.fallback`), which keeps
-the bounds and the inequality rows. It is handed out, recorded and checked as it was answered
-(`ProgramKind`).
+A program has no solution if no joint velocity within the limits gives its task velocity b. The
+policies ``slow`` and ``relax`` then answer a fallback program (`iiwa_dnn.control.fallback`), which
+keeps the bounds and the inequality rows; ``stop`` brakes. `Command.qp` and the record hold the
+program that was answered (`ProgramKind`).
 
 ``slow``
-    Along a path, the scaled program: the task velocity becomes s b with the largest feasible
-    :math:`s \in [0, 1]`, less a thousandth of it. The reference's clock advances by s dt, so
-    without limits on acceleration or jerk the arm follows the same path, later. The task is
-    relaxed where the reference rests, where s is below a tenth, and where the joints race while
-    the tip hardly moves, as in a singular pose.
-    Along a path the clock then advances by the fraction of the task velocity that is reached, at
-    least by a tenth, so that the path leads out of it.
+    If the reference moves, answer the scaled program: the task velocity becomes s b, with s a
+    thousandth below the largest feasible factor in [0, 1]. The reference's clock advances by s dt,
+    so without limits on acceleration or jerk the arm follows the same path, later.
+    If the reference rests, if s is below a tenth, or if joint velocities are large while the tip
+    hardly moves, as in a singular pose, answer the relaxed program. The clock of a moving reference
+    then advances by the fraction of the task velocity that is reached, at least by a tenth, so that
+    the reference leaves the singular pose.
 ``relax``
-    The relaxed program: the task rows are violated least, damped. The clock runs on.
+    Answer the relaxed program, which minimises the damped squared error of the task rows. The
+    reference's clock advances by dt.
 ``stop``
-    A stopping motion to zero. A run ends there; a loop goes on once the task has a solution.
+    Brake to rest. `simulate` ends there; a controller that is stepped again follows the task once
+    its program has a solution.
 
-The multipliers of the fallback programs name the bounds and rows that limit the solution. A row
-that asks for more than all joints together can give is followed as far as they can. If the limits
-contradict each other nevertheless, the arm stops.
+The multipliers of the fallback programs name the bounds and rows that limit the solution. An
+inequality row that asks for a larger velocity than the joints can give is scaled down to the
+largest feasible one. If the limits contradict each other even then, the arm brakes.
 
 With limits on acceleration or jerk the fallback programs have the bounds of position and velocity
-alone, and the command is a point on the way to their answer, within the bounds of the step: each
-joint goes there as quickly as it may, so that ``slow`` leaves the path, and comes back to it;
-``stop`` brakes until the arm is at rest (`iiwa_dnn.control.yielding`).
+alone. The command is then a step from the last command towards their answer, within the bounds of
+the nominal program. Each joint changes its velocity as quickly as its limits allow, so that
+``slow`` may leave the path and return to it (`iiwa_dnn.control.yielding`).
 
 Sources: J. M. Hollerbach, "Dynamic scaling of manipulator trajectories", Journal of Dynamic
 Systems, Measurement, and Control 106 (1984); for velocity limits, F. Flacco, A. De Luca, O. Khatib,
@@ -40,31 +42,31 @@ POLICIES: tuple[Policy, ...] = ("slow", "relax", "stop")
 
 
 class Action(IntEnum):
-    """Action at a step in place of the network's answer; its code in a record."""
+    """Action of a policy at one step; the number is its code in a record."""
 
     NONE = 0
-    """The network's answer was taken."""
+    """No action: the task velocity is not reduced."""
     SLOW = 2
-    """A part of the task velocity."""
+    """A fraction of the task velocity is followed."""
     RELAX = 3
-    """The task rows hold as far as they can."""
+    """The task rows are fulfilled with the least squared error."""
     STOP = 4
-    """A stopping motion to zero."""
+    """The arm brakes to rest."""
     EULER = 5
     """A later stage of midpoint or RK4 had no solution: an Euler step was taken."""
 
 
 class ProgramKind(IntEnum):
-    """Program of a step that is handed out, recorded and checked; its code in a record."""
+    """Kind of the program that a step answered; the number is its code in a record."""
 
     NOMINAL = 0
-    """The program of the step, as the scheme builds it."""
+    """The program that the scheme builds."""
     SCALED = 1
     """The scaled program, A x = s b (`iiwa_dnn.control.fallback`)."""
     RELAXED = 2
     """The relaxed program, with the task in its cost."""
     RATE_LIMITED = 3
-    """One of these: acceleration, jerk or the stopping motion limit the command on its way to the
-    answer, within the bounds and rows of the step."""
+    """The scaled or relaxed program; acceleration, jerk or the need to be able to stop keep the
+    command from reaching its answer in this step."""
     STOPPED = 4
-    """The nominal program, which has no answer: the command brakes."""
+    """The nominal program, not answered: the command brakes."""

@@ -1,4 +1,4 @@
-"""The state of a controller: all that one step leaves behind for the next."""
+"""State that a controller keeps from one control step to the next."""
 
 from typing import Any
 
@@ -10,18 +10,20 @@ from iiwa_dnn.qp import Vector
 
 
 class MotionState(Record):
-    """State of the motion of n joints, as one step leaves it behind for the next.
+    """State of the motion of n joints, kept from one control step to the next.
 
     Attributes:
-        stopping_periods: Periods until the stopping motion that is available rests; 0 if none is.
-        path_lag: Time by which the reference's clock is behind [s].
-        spacing: Period over which the last change of the command counts [s]; 0 before the first.
-        yields: Whether the task yielded at the last step.
-        halts: Whether the arm brakes, whatever has a solution.
-        q: Joint positions of this step [rad], (n,).
+        stopping_periods: Control periods that the stored stopping motion takes from the last
+            command to rest; 0 if no stopping motion is stored.
+        path_lag: Time by which the reference's clock is behind the time of the loop [s].
+        spacing: Period by which `last` - `before` is divided for the acceleration [s]; 0 before
+            the first step.
+        yields: Whether a policy replaced the nominal program at the last step.
+        halts: Whether the arm brakes at this step, even if the nominal program has a solution.
+        q: Joint positions of the step [rad], (n,).
         last: Last command [rad/s], (n,).
-        before: Command before it [rad/s], (n,).
-        wanted: Velocity that a yielding task wanted at the last step [rad/s], (n,).
+        before: Command before the last one [rad/s], (n,).
+        wanted: Answer of the last fallback program, before rate limits [rad/s], (n,).
         least: Distance that each watched pair has to keep [m], (pairs,); 0 before the first step.
     """
 
@@ -39,7 +41,10 @@ class MotionState(Record):
 
 @compiled
 def change_spacing(motion: MotionState, dt: float) -> None:
-    """Count changes of the command over another period [s]; acceleration and time to rest stay."""
+    """Convert the state to a control period of dt [s]; acceleration and time to rest stay.
+
+    Overwrites `before`, `stopping_periods` and `spacing`; before the first step only `spacing`.
+    """
     if motion.spacing > 0.0 and dt != motion.spacing:
         ratio = dt / motion.spacing
         for i in range(motion.last.size):
@@ -50,7 +55,10 @@ def change_spacing(motion: MotionState, dt: float) -> None:
 
 @compiled
 def count_as_sent(motion: MotionState, dq: Vector, dt: float) -> None:
-    """Count a velocity dq (n,) [rad/s] as the last command, held for a period [s]."""
+    """Write a velocity dq (n,) [rad/s] to `last`, and the last command to `before`.
+
+    Sets `stopping_periods` to 0, and `spacing` to dt [s] if it is 0.
+    """
     for i in range(motion.last.size):
         motion.before[i] = motion.last[i]
         motion.last[i] = dq[i]
@@ -63,14 +71,16 @@ class ControllerState:
 
     Attributes:
         sizes: Numbers of joints and of watched pairs.
-        numbers: Those of `MotionState`, (k,). A step makes new ones, which count from when the
-            controller returns its command.
-        next_numbers: Those after the last command that was computed.
-        slowed: Fraction of the last period by which the reference's clock fell behind in it, and
-        booked: that period [s], where periods vary.
-        halted: Whether the arm brakes from now on; each step writes it into its state.
-        warned: What was warned of: the start once it was looked at, a period above the longest.
-        pairs: The watched pairs, each with its names.
+        numbers: Numbers of the current `MotionState`, (k,), replaced by `next_numbers` as the
+            controller returns a command.
+        next_numbers: Numbers of the `MotionState` after the last command that was computed, (k,).
+        slowed: If periods vary, fraction of the last period by which the reference's clock fell
+            behind; else 0.
+        booked: If periods vary, length of the last period as `path_lag` counts it [s]; else 0.
+        halted: Whether the arm brakes at every step from now on.
+        warned: Names of the warnings that are not given again: ``"start"`` for those at the start,
+            and that of a period above the longest.
+        pairs: Names of the two bodies of each watched pair.
     """
 
     __slots__ = (
@@ -88,7 +98,7 @@ class ControllerState:
     next_numbers: Vector
 
     def __init__(self, dof: int) -> None:
-        """Begin with an arm of n joints that has had no command."""
+        """Create the state of an arm of `dof` joints at rest, without watched pairs."""
         self.warned: set[str] = set()
         self.pairs: Any = []
         self.sizes = (dof, 0)
@@ -96,18 +106,19 @@ class ControllerState:
 
     @property
     def motion(self) -> MotionState:
-        """The state of the motion, a view."""
+        """`MotionState` in `numbers`, a view."""
         return MotionState.of(self.numbers, *self.sizes)
 
     @property
     def next_motion(self) -> MotionState:
-        """The state after the last command that was computed, a view."""
+        """`MotionState` in `next_numbers`, a view."""
         return MotionState.of(self.next_numbers, *self.sizes)
 
     def watch(self, pairs: Any) -> None:
-        """Allocate the distances of the watched pairs; new pairs begin at the next step.
+        """Set the watched pairs, each the names of its two bodies.
 
-        The same pairs keep theirs: an obstacle that is elsewhere in a new scheme has moved.
+        If they differ from `pairs`, the distances of all pairs are set to 0, so that the next step
+        initialises them; else nothing changes, even if an obstacle is elsewhere.
         """
         if pairs != self.pairs:
             dof, before = self.sizes
@@ -118,7 +129,7 @@ class ControllerState:
             self.next_numbers = self.numbers
 
     def rest(self) -> None:
-        """Forget all commands."""
+        """Set the state of an arm at rest: all numbers 0 and no halt; `warned` and pairs stay."""
         self.numbers = np.zeros(MotionState.width(*self.sizes))
         self.next_numbers = self.numbers
         self.slowed = 0.0
@@ -126,6 +137,6 @@ class ControllerState:
         self.halted = False
 
     def book(self, elapsed: float) -> None:
-        """Correct the path lag for a last command that was held for `elapsed` [s]."""
+        """Correct the path lag, given that the last command was held for `elapsed` [s]."""
         self.motion.path_lag += self.slowed * (elapsed - self.booked)
         self.booked = elapsed
