@@ -202,6 +202,7 @@ def _about(
         program: Layout of the program that a step answers.
     """
     names = [json.dumps(name) for name in [*reasons, *limit_words(program)]]
+    limits = made.limits if isinstance(made, Shield) else made.scheme.limits
     robot = made.robot
     n, m, p = program.sizes
     texts = texts | {
@@ -213,6 +214,8 @@ def _about(
         "n": n,
         "m": m,
         "p": p,
+        "kept": ", ".join(type(each).__name__ for each in limits) or "none",
+        "watched": len(program.pairs) or "none, not even links",
         "joint_names": ", ".join(robot.joint_names),
         "dt": repr(made.dt),
         "code": code.text(),

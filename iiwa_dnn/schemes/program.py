@@ -72,6 +72,8 @@ class Column(IntEnum):
 class ProgramArrays(NamedTuple):
     """Arrays from which `assemble` writes programs; it changes none of them.
 
+    At the desk those of the kinematics are `Kinematics`' own, overwritten by each of its updates.
+
     Attributes:
         sizes: Sizes of the programs.
         table: A row for each part, (parts, 7), by `Column`.

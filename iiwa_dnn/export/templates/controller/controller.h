@@ -46,7 +46,7 @@ CONTROLLER_API void controller_init(struct controller *c);
 CONTROLLER_API void controller_halt(struct controller *c);
 
 /* Count a velocity dq (CONTROLLER_DOF) as sent for a period, in place of a step's command; the path's clock goes
- * on by a fraction of the period. */
+ * on by a fraction of the period, from 0 to 1, which is not checked; neither is dq. */
 CONTROLLER_API void controller_send(struct controller *c, const double *dq, double fraction);
 
 /* Compute the command dq (CONTROLLER_DOF) [rad/s] for measured joint positions q [rad].

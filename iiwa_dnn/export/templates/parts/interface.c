@@ -1,5 +1,7 @@
 #ifndef @KIND@_SCRATCH
 #define @KIND@_SCRATCH @scratch@ /* numbers that a step takes for itself, on the stack */
+#elif @KIND@_SCRATCH < 5 * @scratch@ / 8
+#error "@KIND@_SCRATCH is too small for a step"
 #endif
 
 /* Memory that kernels take from the stack; if it ever were too little, the step is refused. */

@@ -33,7 +33,7 @@ enum shield_request {
 
 /* Reasons beside limits for another command than the request; those to rest come first. */
 enum shield_reason {
-    SHIELD_INVALID = -1, /* an argument is none: nothing is changed, the command is zero */
+    SHIELD_INVALID = -1, /* a period is invalid: nothing is changed, dq is 0 whatever the limits */
 @reasons@
 };
 
@@ -63,7 +63,8 @@ SHIELD_API void shield_halt(struct shield *s);
 /* Say where the obstacles' centres are (3 SHIELD_OBSTACLES). */
 SHIELD_API void shield_place(struct shield *s, const double *centers);
 
-/* Count a velocity dq (SHIELD_JOINTS) as sent for a period, in place of a step's command. */
+/* Count a velocity dq (SHIELD_JOINTS) as sent for a period above 0, in place of a step's command;
+ * neither is checked. */
 SHIELD_API void shield_send(struct shield *s, const double *dq, double period);
 
 /* Compute the command dq (SHIELD_JOINTS) [rad/s]; return the first reason beside limits.
