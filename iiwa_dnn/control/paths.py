@@ -31,6 +31,8 @@ TURNED = 0.2
 """Angle of a first target from its frame above which a warning is given [rad]."""
 SAMPLES = 200
 """Number of samples of a path in the test of its reach."""
+SLOWEST = 0.1
+"""Control period above which a warning is given [s]."""
 DOUBLINGS = 16
 """Number of samples in the rank test: the path 1, 2, 4, ... control periods after its start."""
 NEAR = 0.02
@@ -86,6 +88,8 @@ def setup_warnings(
     for coupling in LimitNames(program).conditions(start.q, program.least):
         yield f"{coupling} at the start: they come to it within the limits"
     yield from _gain_warnings(program, dt)
+    if dt > SLOWEST:
+        yield f"a control period of {dt:g} s is long: the arm follows each command blindly"
     limits = program.limits
     if program.rate_limits is None and any(isinstance(limit, TipSpeedLimit) for limit in limits):
         yield "TipSpeedLimit holds beside AccelerationLimits alone: a command may be above it"

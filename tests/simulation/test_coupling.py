@@ -84,7 +84,7 @@ def test_joints_that_begin_off_a_relation_come_to_it(name: str, off: float, jerk
     assert breaches(path, DT, *robot.limits) == []
     avoidance = controller.scheme.limits[-1]
     assert avoidance.scene(robot).nearest(path, np.zeros(len(path)))[0].min() > 0.02 - 1e-9
-    lacking = [controller.scheme.tasks[1].missing(robot, each) for each in path]
+    lacking = [controller.scheme.tasks[1].error(robot, each) for each in path]
     assert lacking[0] == pytest.approx(off)
     assert abs(lacking[-1]) < 1e-6
     said = [words for words in commands[0].active_limits if "off their JointCouplingTask" in words]
