@@ -1,19 +1,19 @@
-r"""Fallback programs, which have a solution where a step's nominal program has none.
+r"""Fallback programs: changes of a step's nominal program that relax its task, not its limits.
 
-Each is the nominal program (P, q, G, h, A, b, lb, ub) with a stated change, and is handed out,
-recorded and checked as it was answered (docs/robustness.md builds both from `Scheme.build_qp`).
+Both start from the nominal program (P, q, G, h, A, b, lb, ub). `Command.qp` and the record hold the
+changed program, in which the answer is checked (docs/robustness.md builds both programs from
+`Scheme.build_qp`).
 
-The **scaled program** asks for a fraction of the task velocity, the limits and the cost as they
-are:
+The **scaled program** scales the task velocity b by s and keeps the limits and the cost:
 
 .. math::
 
     \min_x \; \tfrac12 x^T P x + q^T x \quad \text{with} \quad
     A x = s\,b, \quad G x \le h, \quad lb \le x \le ub .
 
-The largest feasible s is the scaling factor. It is found with one more variable, the speed
-:math:`\sigma` along :math:`b / \beta`, :math:`\beta = \|b\|_\infty`: with the cost
-:math:`-\sigma` plus w times the step's own, and :math:`0 \le \sigma \le \beta`.
+The largest feasible s in [0, 1] is the scaling factor. It is computed by a program with one more
+variable, the speed :math:`\sigma = s \beta` with :math:`\beta = \|b\|_\infty`, whose cost is
+:math:`-\sigma` plus w times the nominal cost, for :math:`0 \le \sigma \le \beta`.
 
 The **relaxed program** moves the task into the cost, with the weights W of its rows,
 
@@ -23,12 +23,13 @@ The **relaxed program** moves the task into the cost, with the weights W of its 
         + \tfrac12 \varepsilon\, x^T P x \quad \text{with} \quad
     G x \le h', \quad lb \le x \le ub ,
 
-damped by :math:`\lambda` towards a slow drift :math:`v_0` along -q. Its task rows are zero, so that
-the sizes stay. A scheme without a task keeps its cost. A row that asks for motion, h < 0, asks
-for :math:`h' = \tau h` with the largest feasible :math:`\tau \le 1`, found as s is.
+damped by :math:`\lambda` towards a slow drift :math:`v_0` along -q. Its task rows are set to zero,
+so that the sizes stay. A scheme without a task keeps its cost. If the limits contradict each other,
+a retreat is scaled: an inequality row with h < 0, which zero velocity breaks, gets
+:math:`h' = \tau h` with the largest feasible :math:`\tau \le 1`, computed as s is; else h' = h.
 
-Rows of joints that follow others have the weight 0: they are limits, and both programs keep them.
-Where the joints are off their relation and the way back is too quick, it is :math:`\tau` of it.
+Equality rows of coupled joints (`JointCouplingTask`) have the weight 0. They are limits, which both
+programs keep; the relaxed program scales their right-hand sides by :math:`\tau` too.
 
 Sources: O. L. Mangasarian, R. R. Meyer, "Nonlinear perturbation of linear programs", SIAM J.
 Control and Optimization 17 (1979), for the exactness of the factors; Y. Nakamura, H. Hanafusa,
@@ -55,52 +56,51 @@ MAX_LINEAR_SOLVES = 60
 """Linear solves after which a program counts as one without a solution."""
 
 PENALTY = 1e-5
-"""w, for a cost whose largest entry is one."""
+"""Weight w of the nominal cost in the search of a factor, if its largest entry is one."""
 
 FEASIBLE = 1.0 - 1e-9
-"""Factor from which on the whole task counts as feasible."""
+"""Factor above which the unscaled task counts as feasible."""
 
 ALMOST = 0.999
-"""Fraction of the largest factor that is used: at the boundary of the feasible set the multipliers
-may be unbounded."""
+"""Part of the largest feasible factor that is used: multipliers may be unbounded at the largest."""
 
 RETREAT = 1e-7
-"""Lower bound on the tolerance of the search for tau: if a link's end can hardly retreat, its row
-is nearly
-zero, and full accuracy would exceed the budget of linear solves."""
+"""Lower bound on the tolerance of the search for tau: if a link can hardly retreat, its row is
+nearly zero, and full accuracy would exceed the budget of linear solves."""
 
 DAMPING = 0.05
 """Lambda of the relaxed program [m/rad]."""
 
 BLEND = 1e-4
-"""Epsilon: weight of the scheme's own cost in the relaxed program."""
+"""Epsilon: weight of the nominal cost in the relaxed program."""
 
 DRIFT = 0.02
-"""Largest joint speed [rad/s] of the drift towards the posture that the cost prefers. Without it an
-arm pulled beyond its reach rests exactly stretched, and leaves that posture too late."""
+"""Largest speed of the drift v_0 down the gradient of the cost [rad/s]. Without the drift, an arm
+pulled beyond its reach stays fully stretched, and leaves that posture too late."""
 
 FASTEST = 10.0
-"""Task velocity [m/s] to which a larger one is cut in the relaxed program: no arm is so quick."""
+"""Largest task velocity in the relaxed program [m/s]; a larger one is scaled down to it."""
 
 REACHED = 1e-9
-"""Difference of two velocities that is rounding [rad/s], or of a row's right-hand side from 0."""
+"""Difference of joint velocities, or of rates of equality rows, that is rounding [rad/s]."""
 
 LIMITING = 1e-4
 """Multiplier, relative to the largest, above which a bound or row counts as limiting."""
 
 
 class Yielding(NamedTuple):
-    """Constants of the fallback programs of a scheme.
+    """Constants of the fallback programs and stopping motions of a scheme.
 
     Attributes:
-        weights: Weight of each task row, (p,); 0 for a row that is a limit.
-        limits: Acceleration and jerk limits; of no joints where there are none.
-        tolerance: Tolerance of the answers.
-        rates: Block of these limits; -1: there is none.
-        scenes: Blocks of the scenes that braking keeps away from, (scenes,).
+        weights: Weight of each equality row, (p,); 0 for a row of coupled joints.
+        limits: Limits of the joints on a stopping motion; for no joints if the scheme has neither
+            acceleration nor jerk limits.
+        tolerance: Tolerance of the residuals of an answer.
+        rates: Index of the scheme's part with acceleration and jerk limits; -1 if it has none.
+        scenes: Indices of the scheme's parts that avoid collisions, (scenes,).
         cubic: Whether the jerk of a joint is limited.
-        coupled: Whether joints follow others.
-        alike: Whether the network of the steps is that of the fallback programs.
+        coupled: Whether joints are coupled by a hard `JointCouplingTask`.
+        alike: Whether the network of the nominal program is compiled, as for fallback programs.
     """
 
     weights: Vector
@@ -114,10 +114,10 @@ class Yielding(NamedTuple):
 
 
 def fallback_size(sizes: Sizes) -> int:
-    """Return the size of the network states of a step's fallback programs.
+    """Return the length of the network states of the fallback programs, one after another.
 
-    They are of the search of the scaling factor, which has one variable more, and of the program
-    that is answered.
+    The first is that of the search of the scaling factor, which has one variable more; the second
+    that of the scaled or relaxed program. `sizes` is (n, m, p) of the nominal program.
     """
     n, m, p = sizes
     return (3 * n + 3 + m + p) + (3 * n + m + p)
@@ -125,18 +125,19 @@ def fallback_size(sizes: Sizes) -> int:
 
 @compiled
 def solve_warm(qp: QPViews, tol: float, state: Vector, point: Vector, stats: SolveStats) -> bool:
-    """Solve the program by the network from its last state or, if need be, from a cold start.
+    """Solve a program by the network from a given state and, if that fails, from a cold start.
 
     Args:
-        qp: The program.
-        tol: Tolerance.
-        state: Its state, (size,), advanced; where it does not converge, cold again.
-        point: The point that the state stands for, (2 n + m + p,), overwritten.
-        stats: Statistics of the step's answer: the linear solves are added, the time is
+        qp: The program, of n variables, m inequality and p equality rows.
+        tol: Tolerance of the residuals.
+        state: State of the network, (3 n + m + p,), overwritten by the converged one, or by zeros
+            if both tries fail.
+        point: Primal-dual point [x | y | z | z_box], (2 n + m + p,), overwritten.
+        stats: Statistics of a step: linear solves are added to `iterations`, and `time` is
             overwritten.
 
     Returns:
-        Whether the point is the program's solution.
+        True if the residuals of `point` are within the tolerance.
     """
     for _ in range(2):
         linear_solves, time, primal, dual, gap = solve_within(
@@ -154,22 +155,21 @@ def solve_warm(qp: QPViews, tol: float, state: Vector, point: Vector, stats: Sol
 def largest_factor(
     qp: QPViews, yielding: Yielding, state: Vector, point: Vector, stats: SolveStats, retreats: bool
 ) -> float:
-    """Compute the largest factor of the task, or of the retreat, that the limits allow.
+    """Compute the largest feasible scaling factor s of the task, or tau of a retreat.
 
     Args:
-        qp: The step's program, of n variables, m inequality and p equality rows.
-        yielding: Which rows are the task's, and how the network converges.
-        state: State of the network that solves it, (3 n + 3 + m + p,), advanced.
-        point: Point of the program with the factor as the last variable, (2 n + 2 + m + p,),
-            overwritten.
-        stats: Statistics of the step's answer, as of `solve_warm`.
-        retreats: Whether the factor is that of what limits ask for, negative right-hand sides h and
-            those of joints that follow others, without the task; else it is the scaling factor of
-            the task.
+        qp: The nominal program, of n variables, m inequality and p equality rows.
+        yielding: Weights of the task rows, and the tolerance.
+        state: State of the network, (3 n + 3 + m + p,), overwritten as in `solve_warm`.
+        point: Primal-dual point of the program with one more variable, the last of x,
+            (2 n + 2 + m + p,), overwritten.
+        stats: Statistics of a step, updated as in `solve_warm`.
+        retreats: If True, compute tau, by which negative entries of h and the right-hand sides of
+            coupled joints are scaled, without the task rows; if False, compute s.
 
     Returns:
-        1, or `ALMOST` the factor in [0, 1]; -1 if not even 0 is feasible, or the network does not
-        converge.
+        1.0 if the factor is 1 up to rounding, else `ALMOST` times the factor; -1.0 if 0 is
+        infeasible, or the network does not converge.
     """
     n = qp.q.size
     data = np.zeros(data_size(n + 1, qp.h.size, qp.b.size))
@@ -199,9 +199,10 @@ def largest_factor(
 
 @compiled
 def _longest_asked(qp: QPViews, weights: Vector, retreats: bool) -> float:
-    """Return the largest velocity that tasks, or limits, ask for; 1 if there is none.
+    """Return the largest right-hand side that a factor scales, as the unit of the added variable.
 
-    In this unit the factor's column is near one, though a retreat may be of a nanometre.
+    It is the largest |b_j| for the scaling factor; for a retreat the largest -h_j and |b_j| of
+    rows with the weight 0, of `weights` (p,). If none is above 0, it is 1.
     """
     longest = 0.0
     for j in range(qp.b.size):
@@ -214,7 +215,10 @@ def _longest_asked(qp: QPViews, weights: Vector, retreats: bool) -> float:
 
 @compiled
 def _copy_cost(qp: QPViews, other: QPViews) -> None:
-    """Write w times the cost into a program that has more variables."""
+    """Write the cost of a program times w / max(its largest entry, w) into `other`.
+
+    The first n entries of other.q and other.P are overwritten; `other` has more variables.
+    """
     n = qp.q.size
     weight = PENALTY / max(cost_size(qp), PENALTY)
     for i in range(n):
@@ -225,7 +229,10 @@ def _copy_cost(qp: QPViews, other: QPViews) -> None:
 
 @compiled
 def _copy_limits(qp: QPViews, other: QPViews) -> None:
-    """Write bounds and inequality rows into a program that may have more variables."""
+    """Copy bounds and inequality rows into `other`, which may have more variables.
+
+    The first n entries of other.lb, other.ub and the rows of other.G are overwritten, and other.h.
+    """
     copied(other.lb, qp.lb)
     copied(other.ub, qp.ub)
     copied(other.h, qp.h)
@@ -235,7 +242,7 @@ def _copy_limits(qp: QPViews, other: QPViews) -> None:
 
 @compiled
 def scale_task(qp: QPViews, weights: Vector, factor: float) -> None:
-    """Turn a step's program, with task rows of some weights (p,), into the scaled one."""
+    """Multiply the entries of qp.b with a positive weight, of `weights` (p,), by a factor."""
     for j in range(qp.b.size):
         if weights[j] > 0.0:
             qp.b[j] *= factor
@@ -243,14 +250,17 @@ def scale_task(qp: QPViews, weights: Vector, factor: float) -> None:
 
 @compiled
 def relax_task(qp: QPViews, weights: Vector, retreat: float) -> None:
-    """Turn a step's program, with weights (p,) of its rows, into the relaxed one.
+    """Turn a nominal program into the relaxed program of this module, in place.
 
-    Its tau is `retreat`, for rows h < 0 and those of joints that follow others.
+    Args:
+        qp: The program, of p equality rows; P, q, h, A and b are overwritten.
+        weights: Weights of the equality rows, (p,); 0 for a row of coupled joints.
+        retreat: Factor tau of negative entries of h and of the right-hand sides of coupled joints.
     """
     n = qp.q.size
     shrink = FASTEST / max(FASTEST, largest_entry(qp.b))
     drift = DRIFT / max(largest_entry(qp.q), 1.0)
-    for i in range(n if largest_entry(weights) > 0.0 else 0):  # else the cost is what is asked for
+    for i in range(n if largest_entry(weights) > 0.0 else 0):  # without a task the cost stays
         qp.q[i] *= DAMPING * DAMPING * drift
         for k in range(n):
             qp.P[i, k] *= BLEND
@@ -270,15 +280,18 @@ def relax_task(qp: QPViews, weights: Vector, retreat: float) -> None:
 
 @compiled
 def note_limiting(point: Vector, n: int, m: int, extra: int, limiting: Vector) -> None:
-    """Note which bounds and rows limit a program.
+    """Find the bounds and inequality rows whose multipliers are not negligible.
+
+    A multiplier counts if it is above `LIMITING` times the largest of all.
 
     Args:
-        point: Its solution, ``[x | y | z | z_box]`` with `extra` more variables than n.
-        n: Number of the step's variables.
+        point: Solution [x | y | z | z_box] of a program with n + extra variables, m inequality and
+            p equality rows, (2 n + 2 extra + m + p,).
+        n: Number of variables of the nominal program.
         m: Number of inequality rows.
-        extra: Number of further variables.
-        limiting: For each variable the sign of its bound's multiplier, and for each row 1 where its
-            multiplier counts, (n + m,), overwritten.
+        extra: Number of variables after the first n; their bounds are ignored.
+        limiting: For each of n variables the sign 1 or -1 of its bound's multiplier if that counts,
+            else 0; then for each row 1 if its multiplier counts, else 0, (n + m,), overwritten.
     """
     start = point.size - n - extra - m
     multipliers = point[start : start + m + n]
@@ -290,13 +303,18 @@ def note_limiting(point: Vector, n: int, m: int, extra: int, limiting: Vector) -
 
 @compiled
 def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, stats: SolveStats) -> bool:
-    """Project x (n,) on the bounds of a program and, if that violates rows, on its rows too.
+    """Project x on the bounds of a program and, if that violates inequality rows, on these too.
 
-    The rows of joints that follow others hold as well, if the bounds allow it. The statistics are
-    those of `solve_warm`.
+    Rows of coupled joints are kept as well, if the other limits allow it.
+
+    Args:
+        qp: The program.
+        x: Velocities, (n,), overwritten by the projection.
+        yielding: Weights of the equality rows, and the tolerance.
+        stats: Statistics of a step, updated as in `solve_warm`.
 
     Returns:
-        False if the inequality rows contradict the bounds: x is then within the bounds.
+        False if no point within bounds and inequality rows was found.
     """
     if yielding.coupled and _move_within(qp, x, yielding, stats, qp.b.size):
         return True
@@ -312,7 +330,14 @@ def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, stats: SolveStats
 def _move_within(
     qp: QPViews, x: Vector, yielding: Yielding, stats: SolveStats, equalities: int
 ) -> bool:
-    """Project x (n,) on bounds and rows, and on the limits among the first equalities."""
+    """Project x (n,) on bounds, inequality rows and rows of coupled joints, and overwrite it.
+
+    Only the first `equalities` equality rows are looked at. `stats` is updated as in `solve_warm`.
+
+    Returns:
+        True if the projection converged. If it did not, x stays, or with equality rows is the last
+        finite iterate.
+    """
     n = x.size
     m = qp.h.size
     data = np.zeros(data_size(n, m, equalities))
@@ -328,7 +353,7 @@ def _move_within(
     point = np.empty(2 * n + m + equalities)
     state = np.zeros(3 * n + m + equalities)
     found = solve_warm(nearest, yielding.tolerance, state, point, stats)
-    # Bounds that are off by rounding may contradict the equalities: as near as they allow, then.
+    # Bounds with rounding errors may contradict the equalities; the last iterate is then used.
     if found or (equalities > 0 and all_finite(point, 0, n)):
         copied(x, point[:n])
     return found
@@ -336,7 +361,10 @@ def _move_within(
 
 @compiled
 def _rate_within(qp: QPViews, j: int, x: Vector) -> float:
-    """Return the right-hand side of equality row j; if no bound admits it, the rate of x (n,)."""
+    """Return b_j, or if the bounds do not admit A_j x = b_j, the rate A_j x of the given x (n,).
+
+    The rate is clipped to the values that A_j takes within the bounds.
+    """
     lowest = 0.0
     highest = 0.0
     for i in range(x.size):
@@ -351,7 +379,10 @@ def _rate_within(qp: QPViews, j: int, x: Vector) -> float:
 
 @compiled
 def attained(b: Vector, A: Matrix, weights: Vector, x: Vector) -> float:
-    """Compute the fraction of a task velocity b (p,) that joint velocities x (n,) give."""
+    """Compute the fraction of a task velocity b (p,) that joint velocities x (n,) reach.
+
+    It is b^T W^2 A x / (b^T W^2 b), at most 1, with A (p, n) and W = diag(weights); 1 if W b = 0.
+    """
     asked = 0.0
     given = 0.0
     for j in range(b.size):

@@ -1,19 +1,20 @@
-r"""Straight-line motions to a wanted velocity, and the stopping motion after a command.
+r"""Synchronised motions of all joints to a wanted velocity, and stopping motions after a command.
 
-From the velocities :math:`v_0` of now and :math:`v_{-1}` of the period before, all joints reach the
-wanted velocity w together, in M periods. With :math:`x = v - w` and :math:`u = i / M`,
+All joints reach the wanted velocity w together, in M periods, from the velocities :math:`v_0` of
+the present period and :math:`v_{-1}` of the one before. With :math:`x = v - w` and
+:math:`u = i / M`, in period i
 
 .. math::
 
     x_i = x_0 \,(1 - u)^2 (1 + 2 u) + b\, u\,(1 - u)^2
 
-where a jerk is limited, with b such that :math:`x_{-1}` is on the curve too, and
-:math:`x_i = x_0 (1 - u)` where it is not. The second difference of a cubic is its second derivative
-in the middle, so the jerk is linear in u and largest at an end. M is the least number of periods
-that the limits allow, or with a jerk limit up to about an eighth more; while a motion is executed,
-its remaining length falls by one each period, and it stays on the same curve.
+if a jerk is limited, with b such that the curve goes through :math:`x_{-1}` too; else
+:math:`x_i = x_0 (1 - u)`. The second difference of a cubic is its second derivative in the middle,
+so the jerk is linear in u and largest at an end. M is the least number of periods that the limits
+allow; with a jerk limit up to about an eighth more. While a motion is executed, M falls by one each
+period, and the velocities stay on the same curve.
 
-Where no acceleration is limited, it is one period at the command, then rest.
+Without acceleration limits, a stopping motion is one period at the command, then rest.
 
 A command is **stoppable** if the motion from it to rest keeps all limits of the joints, and all
 distances: a pair at the distance d, with the gradient g of the distance of a link's end and the
@@ -21,12 +22,13 @@ joints' displacement :math:`\Delta q`, still has at least
 
 .. math::  d + g \cdot \Delta q - \tfrac12 B - v_o T
 
-by inequality (1) of docs/theory_braking.md. Along the motion :math:`g \cdot \Delta q` has its least
-value at rest, or where the sum of its terms changes sign. Up to any time the joints have gone at
-most a part :math:`\lambda` of their displacements, that of the curve of :math:`x_0`, and B is at
-most :math:`\lambda^2 B`. Of an end that sets off away from the other body, with
-:math:`x_0 \ge \max(b / 3 M, 0)`, the displacement up to then is at least :math:`\lambda^2` of its
-whole one, where that is away too: the difference is then least at an end of the motion.
+by inequality (1) of docs/theory_braking.md, with the bound B on the curvature of the pair's motion,
+the speed :math:`v_o` of the obstacle and the time T of the motion. Along the motion
+:math:`g \cdot \Delta q` is least at rest, or where its rate changes sign. At any time the joints
+have covered at most a part :math:`\lambda` of their displacements, that of the curve of :math:`x_0`, so
+the curvature term is at most :math:`\lambda^2 B`. If the end of a link starts away from the other
+body, with :math:`x_0 \ge \max(b / 3 M, 0)`, and its whole displacement is away too, it has covered
+at least :math:`\lambda^2` of that: the bound on the distance is then least at the start or at rest.
 """
 
 import math
@@ -56,32 +58,31 @@ from iiwa_dnn.schemes.scene import (
 from iiwa_dnn.schemes.step import rate_along
 
 LONGEST = 1e6
-"""Number of periods above which a motion counts as endless."""
+"""Number of periods above which no motion to rest is searched for."""
 
 GROWTH = 1.1
-"""Factor between the numbers of periods that are tried."""
+"""Factor between successive numbers of periods that `least_periods` tries."""
 
 STRETCH = 1.01
-"""Factor by which a stored stopping motion is stretched where periods vary, until its jerk is
-small."""
+"""Factor between successive numbers of periods that `stretched` tries."""
 
 SLACK = 1e-12
-"""Relative excess of a limit that is rounding."""
+"""Relative excess over a limit that counts as rounding."""
 
 UNEVEN = 0.175
-"""Displacements until rest are below the one that is tested by at most this part of b dt, in
-whatever periods: 0.169, over all signs of velocity and acceleration (docs/theory_limits.md)."""
+"""Bound on how far varying periods lower a displacement to rest, as a part of |b| dt; the largest
+over all signs of velocity and acceleration is 0.169 (docs/theory_limits.md)."""
 
 
 class Motion(NamedTuple):
-    """A motion to rest, or to a wanted velocity, relative to it.
+    """Motion of n joints to rest, all at once (see the module).
 
     Attributes:
-        first: Velocities at its start [rad/s], (n,).
-        coefficient: b of the cubic [rad/s], (n,); zero for straight lines in time.
-        periods: M.
-        cubic: Whether the velocities are cubic in time.
-        varies: Whether periods vary.
+        first: Velocities x_0 at the start [rad/s], (n,).
+        coefficient: Coefficients b of the cubics [rad/s], (n,); 0 if velocities are linear in time.
+        periods: Number M of control periods until rest.
+        cubic: Whether the velocities are cubic in time, else linear.
+        varies: Whether control periods may be shorter than the longest one.
         skips: Whether a velocity may be held for no time at all.
     """
 
@@ -95,9 +96,14 @@ class Motion(NamedTuple):
 
 @compiled
 def cubic_coefficient(x: float, before: float, periods: float, vary: bool) -> float:
-    """Compute b of the cubic through x now and x before, which ends after so many periods.
+    """Compute the coefficient b of a cubic that reaches zero after a number of periods [rad/s].
 
-    Where periods vary, they may be so short that x before is on its tangent.
+    Args:
+        x: Velocity at the start [rad/s].
+        before: Velocity one period earlier [rad/s]; the cubic goes through it or, if `vary`, its
+            tangent at the start does.
+        periods: Number M of periods until zero, above 0.
+        vary: Whether periods vary.
     """
     if vary:
         return periods * (x - before)
@@ -107,7 +113,7 @@ def cubic_coefficient(x: float, before: float, periods: float, vary: bool) -> fl
 
 @compiled
 def velocity_at(x: float, b: float, u: float, cubic: bool) -> float:
-    """Compute the velocity [rad/s] at the fraction u of a motion that begins with x."""
+    """Compute the velocity [rad/s] at the fraction u of a motion to rest from x, coefficient b."""
     left = 1.0 - u
     if not cubic:
         return x * left
@@ -116,8 +122,15 @@ def velocity_at(x: float, b: float, u: float, cubic: bool) -> float:
 
 @compiled
 def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float:
-    """Compute the velocity after the first of so many periods on the way to zero [rad/s]."""
-    if periods <= 1.0:  # a part of one where the control period has changed
+    """Compute the velocity after the first period of a motion to rest [rad/s].
+
+    Args:
+        x: Velocity at the start [rad/s].
+        before: Velocity one period earlier [rad/s].
+        periods: Number of periods until rest.
+        cubic: Whether the velocities are cubic in time, else linear.
+    """
+    if periods <= 1.0:  # below 1 if the control period has grown
         return 0.0
     b = cubic_coefficient(x, before, periods, False) if cubic else 0.0
     return velocity_at(x, b, 1.0 / periods, cubic)
@@ -127,21 +140,21 @@ def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float
 def least_periods(
     x: Vector, before: Vector, limits: MotionConstants, dt: float, cubic: bool, vary: bool
 ) -> float:
-    """Compute the number of periods in which velocities go to zero together.
+    """Compute the number of periods in which all joints can come to rest together.
 
-    It is the least number. With a jerk limit, a lower bound is raised by a tenth and rounded up
-    until the motion keeps the limits.
+    Without a jerk limit it is the least number. With one, the number is raised by a tenth and
+    rounded up until every joint keeps its limits, so it may be larger than the least.
 
     Args:
-        x: Velocities of now [rad/s], (n,).
-        before: Velocities of the period before [rad/s], (n,).
-        limits: Acceleration and jerk limits.
+        x: Present velocities [rad/s], (n,).
+        before: Velocities one period earlier [rad/s], (n,).
+        limits: Limits of the joints, of which acceleration and jerk are read.
         dt: Control period [s].
         cubic: Whether a jerk is limited.
-        vary: Whether the periods may be shorter.
+        vary: Whether the later periods may be shorter.
 
     Returns:
-        M, 0 at rest; inf if no number is enough.
+        Number M of periods, 0 at rest; inf if it would be above `LONGEST`.
     """
     accelerations = limits.acceleration
     jerks = limits.jerk
@@ -166,9 +179,17 @@ def least_periods(
 def stretched(
     x: Vector, before: Vector, limits: MotionConstants, dt: float, periods: float
 ) -> float:
-    """Stretch a motion to rest of so many periods until its next velocities keep all limits.
+    """Raise the number of periods of a motion to rest until its next period keeps the rate limits.
 
-    They are those of acceleration and jerk. Arguments as of `least_periods`.
+    Args:
+        x: Present velocities [rad/s], (n,).
+        before: Velocities one period earlier [rad/s], (n,).
+        limits: Limits of the joints, of which acceleration and jerk are read.
+        dt: Control period [s].
+        periods: Number of periods to begin with.
+
+    Returns:
+        Number of periods, not rounded; at least `LONGEST` if no smaller one was found.
     """
     i = 0
     while i < x.size and periods < LONGEST:
@@ -187,13 +208,22 @@ def stretched(
 def within_rates(
     x: float, before: float, periods: float, accel: float, jerk: float, vary: bool
 ) -> bool:
-    """Test whether a cubic keeps its limits per period of acceleration and jerk [rad/s]."""
+    """Test whether the cubic motion of a joint to rest keeps its acceleration and jerk limits.
+
+    Args:
+        x: Present velocity [rad/s].
+        before: Velocity one period earlier [rad/s].
+        periods: Number of periods until rest.
+        accel: Largest change of velocity in a period [rad/s].
+        jerk: Largest change of that change in a period [rad/s].
+        vary: Whether the later periods may be shorter.
+    """
     if periods < 0.5:
         return x == 0.0 and before == 0.0
     b = cubic_coefficient(x, before, periods, vary)
     u = 1.0 / periods
     end = 0.0 if vary else u
-    # The first jerk, that of the last period, and that with which the joint is at rest for good.
+    # The first jerk, that of the last period, and that of the period after it, at rest.
     largest = max(abs(6.0 * x + 4.0 * b), abs(x * (6.0 - 12.0 * end) + b * (2.0 - 6.0 * end)))
     largest = max(largest, abs(x * (3.0 - 2.0 * u) + b * (1.0 - u)))
     if largest * u * u > jerk * (1.0 + SLACK):
@@ -209,7 +239,11 @@ def within_rates(
 
 @compiled
 def displacement_after(motion: Motion, x: float, b: float, count: float, dt: float) -> float:
-    """Sum the velocities of a motion with x and b over its first `count` periods of dt [s]."""
+    """Compute the displacement over the first `count` periods of a motion to rest [rad].
+
+    `motion` states the number of periods and the kind of curve; x and b [rad/s] are a joint's
+    first velocity and coefficient, or in [m/s] those of a point, for a displacement in [m].
+    """
     M = max(motion.periods, 1.0)
     first = 0.5 * count * (count - 1.0) / M
     if not motion.cubic:
@@ -221,7 +255,10 @@ def displacement_after(motion: Motion, x: float, b: float, count: float, dt: flo
 
 @compiled
 def least_displacement(motion: Motion, x: float, b: float, dt: float) -> float:
-    """Compute the least displacement along a motion with x and b, at most 0, as at its start."""
+    """Compute the least displacement along a motion to rest, at most 0, its value at the start.
+
+    Arguments and unit are those of `displacement_after`.
+    """
     M = motion.periods
     least = min(0.0, displacement_after(motion, x, b, M, dt))
     turn = 2.0 * x + b
@@ -232,29 +269,31 @@ def least_displacement(motion: Motion, x: float, b: float, dt: float) -> float:
 
 @compiled
 def end_displacement(motion: Motion, x: float, b: float, dt: float) -> float:
-    """Compute the displacement of an end along the normal, with its x and b, that may be least.
+    """Compute the displacement with which a limit on a joint or a distance is tested.
 
-    Where the end sets off away from the other body it is the one at rest, as the joints' own
-    displacements count with their squares; else the least. Where periods vary, no sequence of
-    them makes it less.
+    If the motion starts fast enough in the positive direction, with x >= max(b / 3 M, 0), it is the
+    displacement at rest; else the least along the motion. If periods vary, a bound on their effect
+    is subtracted. Arguments and unit are those of `displacement_after`.
     """
     displacement = displacement_after(motion, x, b, motion.periods, dt)
     if x < max(b / (3.0 * motion.periods), 0.0):
         displacement = least_displacement(motion, x, b, dt)
     if motion.skips and x > 0.0 and 2.0 * x + b < 0.0:
-        displacement += least_displacement(motion, -x, -b, dt)  # none of what leads away
+        displacement += least_displacement(motion, -x, -b, dt)  # the positive part may be skipped
     return displacement - UNEVEN * dt * abs(b) if motion.varies else displacement
 
 
 @compiled
 def keeps_joint_limits(motion: Motion, q: Vector, limits: MotionConstants, dt: float) -> bool:
-    """Test whether joints at q (n,) [rad] keep position and velocity limits on a motion to rest."""
+    """Test whether joints at q (n,) [rad] keep position and velocity limits on a motion to rest.
+
+    A joint outside its position limits must not move further out. `dt` is the control period [s].
+    """
     for i in range(q.size):
         x = motion.first[i]
         b = motion.coefficient[i]
         top = q[i] - min(end_displacement(motion, -x, -b, dt), 0.0)
         bottom = q[i] + min(end_displacement(motion, x, b, dt), 0.0)
-        # A joint that is outside already may come back.
         if top > max(limits.upper[i], q[i]) or bottom < min(limits.lower[i], q[i]):
             return False
         steepest = 6.0 * x + 3.0 * b
@@ -271,12 +310,15 @@ def keeps_joint_limits(motion: Motion, q: Vector, limits: MotionConstants, dt: f
 def keeps_varying_limit(
     motion: Motion, q: Vector, limits: MotionConstants, dt: float, i: int
 ) -> bool:
-    """Test whether joint i of those at q (n,) [rad] keeps its position-dependent velocity limit."""
+    """Test whether joint i keeps its position-dependent velocity limit on a motion to rest.
+
+    The joints are at q (n,) [rad]; `dt` is the control period [s].
+    """
     at = q[i]
     for k in range(int(motion.periods)):
         x = velocity_at(motion.first[i], motion.coefficient[i], k / motion.periods, motion.cubic)
         left = limits.upper[i] - at if x > 0.0 else at - limits.lower[i]
-        if motion.varies:  # it may be held for once more
+        if motion.varies:  # the velocity may be held for one period more
             left -= dt * abs(x)
         needed = x * x / (2.0 * limits.slope[i]) + abs(x) * limits.lag[i]
         if needed > max(left, 0.0) * (1.0 + SLACK):
@@ -291,14 +333,15 @@ def keeps_distances(
 ) -> bool:
     """Test whether all pairs of a scene keep their distance on a motion to rest.
 
-    A pair that is nearer than it has to be, or that a moving obstacle comes too near while the arm
-    brakes, must not come nearer by the arm's own motion.
+    If a pair is nearer than the distance that it has to keep, or a moving obstacle may bring it
+    that near while the arm brakes, the motion of the arm must not reduce its distance.
 
     Args:
-        motion: The motion.
-        arrays: Arrays of the loop, with the kinematics at its beginning.
-        constants: `Scene.constants`, (k,).
-        least: Distance that each watched pair has to keep [m], (pairs,).
+        motion: The motion, of n joints.
+        arrays: Arrays of the scheme's programs, with the kinematics at the start of the motion.
+        constants: Numbers of the scene, `Scene.constants`, (k,).
+        least: Distance that each watched pair of all scenes has to keep [m], (pairs,); 0 stands for
+            that of the scene.
         dt: Control period [s].
     """
     n = motion.first.size
@@ -341,7 +384,18 @@ def keeps_distances(
 def _along(
     motion: Motion, jacobian: Matrix, pair: Pair, point: Vector3, normal: Vector3
 ) -> tuple[float, float]:
-    """Compute first velocity and b along a normal (3,) of a point (3,) of a pair's second body."""
+    """Compute the velocity of a point along a normal (3,), relative to the pair's first body.
+
+    Args:
+        motion: A motion of n joints to rest.
+        jacobian: Joint Jacobian, `Kinematics.jacobian`, (n, 6).
+        pair: The pair; the point is of its second body.
+        point: Position of the point [m], (3,).
+        normal: Unit normal from the first to the second body, (3,).
+
+    Returns:
+        Its first velocity and its coefficient b [m/s].
+    """
     x = 0.0
     b = 0.0
     for j in range(motion.first.size):
@@ -378,18 +432,19 @@ def stopping_time(
     timing: Periods,
     dq: Vector,
 ) -> float:
-    """Compute the periods of the motion to rest from a command.
+    """Compute the number of control periods of the stopping motion after a command.
 
     Args:
-        arrays: Arrays of the loop; the kinematics are at the joint positions.
-        motion_state: State of the motion, with these and the last command.
+        arrays: Arrays of the scheme's programs, with the kinematics at the joint positions.
+        motion_state: State of the motion, with the joint positions and the last command.
         least: Distance that each watched pair has to keep [m], (pairs,).
-        yielding: Limits and scenes.
+        yielding: Limits of the joints, and the scheme's collision avoidance.
         timing: Periods of the step.
-        dq: The command [rad/s], (dof,).
+        dq: The command, held for one period before the joints stop [rad/s], (dof,).
 
     Returns:
-        M; -1 if the motion breaks a limit, or brings a pair too near; 0 where none is to be kept.
+        Number of periods of `timing.dt` until rest; -1.0 if the motion breaks a limit of a joint or
+        a distance; 0.0 if the scheme does not avoid collisions, so that no test is needed.
     """
     if len(yielding.scenes) == 0:
         return 0.0
@@ -399,7 +454,7 @@ def stopping_time(
     vary = timing.vary
     before = motion_state.last.copy()
     coefficient = np.zeros(dq.size)
-    for i in range(dq.size if vary else 0):  # of the same acceleration, over the longest period
+    for i in range(dq.size if vary else 0):  # same acceleration, longest period
         before[i] = dq[i] - ratio * (dq[i] - before[i])
     support = limits.lower.size > 0
     periods = least_periods(dq, before, limits, dt, yielding.cubic, vary) if support else 1.0
@@ -407,7 +462,7 @@ def stopping_time(
         return -1.0
     if yielding.cubic and periods > 0.0:
         write_cubic_coefficients(dq, before, periods, vary, coefficient)
-    # Where periods vary, the first may be the longest and the others as short as can be.
+    # If periods vary, the first may be the longest and the others arbitrarily short.
     fraction = timing.fraction
     motion = Motion(dq, coefficient, periods + vary, yielding.cubic, vary, fraction < 1.0)
     dt = dt / fraction
