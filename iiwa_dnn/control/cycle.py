@@ -1,7 +1,7 @@
-"""A whole control step in one compiled call: targets, program and the network's answer.
+"""Control step in one compiled call: sample the targets, build the program and solve it.
 
-For seven joints the entry into compiled code is a large part of the cost of a call, so a control
-loop enters it once a step.
+For seven joints the call of compiled code from Python takes a large part of a step's time, so there
+is one call per step.
 """
 
 import math
@@ -61,14 +61,14 @@ from iiwa_dnn.schemes.rate_limits import MotionConstants, check_ranges, state_pe
 from iiwa_dnn.schemes.step import StepViews
 
 FEASIBLE_BUDGET = 60.0
-"""Linear solves after which a program with acceleration or jerk limits counts as infeasible."""
+"""Largest number of linear solves for a nominal program with acceleration or jerk limits."""
 
 INVALID = -1
-"""Action if targets are not finite or joint positions out of range: nothing is changed."""
+"""Result of a step whose time, targets or joint positions are invalid, so no command is given."""
 
 
 class PathColumn(IntEnum):
-    """Columns of the table of paths: address, feed-forward or not, bounds of the constants."""
+    """Columns of `Paths.table`: function address, feed-forward flag, slice of the constants."""
 
     ADDRESS = 0
     FEED_FORWARD = 1
@@ -80,8 +80,8 @@ class Paths(NamedTuple):
     """Compiled paths of the tracked frames.
 
     Attributes:
-        table: A row for each, (k, 4), by `PathColumn`.
-        constants: Base and constants of each, (size,).
+        table: A row for each of k paths, (k, 4), with the columns of `PathColumn`.
+        constants: Base target and constants of each path, one path after another, (size,).
     """
 
     table: IntMatrix
@@ -89,16 +89,17 @@ class Paths(NamedTuple):
 
 
 class ControlPlan(NamedTuple):
-    """Layout of a control step.
+    """Constants, settings and work arrays of a control step, as compiled code reads them.
 
     Attributes:
-        arrays: Arrays with which the program is written.
-        network: The network's answer.
-        paths: Paths that are sampled.
-        yielding: What fallback programs need beside them.
-        fallback: States of the networks of fallback programs, (`fallback_size`,), warm starts.
-        policy: Action that the policy asks for at a step without a solution; `BRAKE`: none.
-        samples: Whether the paths are asked for the targets.
+        arrays: Arrays from which the nominal program is assembled.
+        network: Function that answers the nominal program, with its settings.
+        paths: Paths of the tracked frames.
+        yielding: Constants of the fallback programs and stopping motions.
+        fallback: Network states of the fallback programs, (`fallback_size`,), their warm starts;
+            changed by steps.
+        policy: Action of the policy at a step without a solution; `BRAKE` in continuous mode.
+        samples: Whether a step samples its targets from `paths`; else they are in its log.
         timing: Periods of the step.
     """
 
@@ -113,19 +114,19 @@ class ControlPlan(NamedTuple):
 
 
 class ControlLayout:
-    """A control step laid out for a scheme, references and a network.
+    """Layout of the control steps for a scheme, references and a network.
 
     Attributes:
         program: The scheme laid out for the robot.
-        log_layout: Layout of the logs that are written.
+        log_layout: Layout of the step logs.
         shape: Shape of joint positions, (dof,).
-        width: Length of the states from step to step, `MotionState`.
-        varies: Whether periods vary, or the network advances by them.
-        lag: Part of a period by which the network advances in continuous mode; 0 where it solves.
-        plan: Arrays and settings of a step; the states of the fallback programs within are
-            advanced. Its paths are sampled if all references are compiled, and no part is refreshed
-            by the targets of a step.
-        given: The same for steps that are given targets.
+        width: Number of floats in a `MotionState`.
+        varies: Whether the settings of a step depend on its period: periods vary, or the network
+            advances by the period (continuous mode).
+        lag: Network time of a step per control period in continuous mode; 0 if the network solves.
+        plan: Constants and work arrays of a step. It samples the targets if all references are
+            compiled and no part of the scheme reads targets in Python.
+        given: `plan` for steps whose targets are given, which sample none.
         has_network: Whether the network is compiled.
     """
 
@@ -208,7 +209,10 @@ def _asked(solver: DNNSolver, sizes: Sizes, duration: float) -> CompiledAnswer:
 def _compiled_paths(
     references: Mapping[str, Reference], frames: Sequence[str], dt: float
 ) -> Paths | None:
-    """Return the paths of all frames, if all of them are compiled; else None."""
+    """Return the compiled paths of all frames, for a control period of dt [s].
+
+    None if a frame has no reference or one in Python, or feed-forward of another period.
+    """
     seen = [references[name] for name in frames if name in references]
     paths = [path.reference if isinstance(path, FeedForward) else path for path in seen]
     if len(paths) < len(frames) or not all(path.compiled for path in paths):
@@ -219,7 +223,7 @@ def _compiled_paths(
 
 
 def _laid_out(paths: Sequence[Reference], seen: Sequence[Reference]) -> Paths:
-    """Lay out compiled paths, with or without feed-forward."""
+    """Lay out compiled paths; `seen` has each path itself, or the feed-forward that wraps it."""
     constants = [np.concatenate([path.base, path.constants]) for path in paths]
     stops = np.cumsum([own.size for own in constants])
     rows = [
@@ -238,9 +242,10 @@ def ask(
     state: Vector,
     point: Vector,
 ) -> Progress:
-    """Answer a program of some sizes by a solver that is not compiled (`enter_answer`).
+    """Answer a program by a solver that is not compiled, called back as `enter_answer`.
 
-    It keeps its state itself, and its duration is in seconds.
+    `solver` keeps its own state, so `rates` and `state` are ignored. If `settings.duration` [s] is
+    above 0, the solver advances by it, else it solves. `point` (2 n + m + p,) is overwritten.
     """
     program = QP.from_data(np.concatenate([part.ravel() for part in qp]), sizes)
     if settings.duration > 0.0:
@@ -263,19 +268,20 @@ def take_step(
     state: Vector,
     t: float,
 ) -> int:
-    """Take a control step: its nominal program, or what the policy asks for.
+    """Take a control step: answer the nominal program, else a fallback program, else brake.
 
-    The network is not asked if the task yielded at the last step, or the arm brakes. If targets
-    or the time are not finite, or joint positions beyond 2^20 rad, nothing but the log is written.
+    If a policy acted at the last step, or the arm is halted, the nominal program is not answered.
+    If targets or time are not finite, or joint positions beyond 2^20 rad, nothing but the sampled
+    targets is written.
 
     Args:
-        data: The log, (width,), with the targets unless they are sampled.
-        plan: What the step is laid out with.
-        q: Joint positions [rad], (dof,), that the kinematics are at.
-        numbers: The state of the motion, `MotionState`, (k,), to which these positions and periods
-            are written.
-        next_numbers: The same for the next step, (k,), overwritten.
-        state: The network's state, (size,), advanced.
+        data: The step's log, (width,), overwritten; with the targets unless they are sampled.
+        plan: Constants, settings and work arrays; network states of fallback programs are changed.
+        q: Joint positions of the kinematics [rad], (dof,).
+        numbers: Numbers of the `MotionState`, (k,); q is written to it, and it is converted to the
+            step's period (`change_spacing`).
+        next_numbers: Numbers of the next `MotionState`, (k,), overwritten.
+        state: State of the network, (size,), overwritten if the network has an answer.
         t: Time [s].
 
     Returns:
@@ -330,7 +336,7 @@ def take_step(
 
 @compiled
 def _is_valid(t: float, q: Vector, data: Vector, targets: int) -> bool:
-    """Check the time [s], joint positions [rad], (n,), and the targets, which end a log."""
+    """Test whether t [s], q (n,) [rad] and the targets, from data[targets] on, are valid."""
     for i in range(q.size):
         if not abs(q[i]) <= LARGEST:
             return False
@@ -341,7 +347,7 @@ def _is_valid(t: float, q: Vector, data: Vector, targets: int) -> bool:
 def _note_instant(
     log: StepLog, arrays: ProgramArrays, motion_state: MotionState, next_motion_state: MotionState
 ) -> None:
-    """Log the state at which a program was built, and that it has no answer yet."""
+    """Write the state and bounds of a step's nominal program into its log, and reset its answer."""
     qp = program_views(log.program, arrays.sizes)
     copied(log.q, motion_state.q)
     copied(log.last, motion_state.last)
@@ -359,10 +365,11 @@ def _note_instant(
 
 @compiled
 def _answer(log: StepLog, arrays: ProgramArrays, network: CompiledAnswer, state: Vector) -> bool:
-    """Ask the network for the answer to the program of a log, and note it.
+    """Answer the program of a log by the network, and write point, stats and status into the log.
 
     Returns:
-        False if it did not converge or diverged; its state (size,) is then as it was.
+        True if the network converged or, in continuous mode, was advanced; `state` (size,) is then
+        overwritten, else unchanged.
     """
     qp = program_views(log.program, arrays.sizes)
     before = state.copy()
@@ -380,9 +387,10 @@ def _answer(log: StepLog, arrays: ProgramArrays, network: CompiledAnswer, state:
 
 @compiled
 def status_of(stats: SolveStats, settings: AnswerSettings, state: Vector) -> int:
-    """Judge an answer by its residuals; one that was advanced by its state (size,) too.
+    """Return the status of an answer, its index in `STATUSES`, from its residuals.
 
-    The point of an infinite state is finite, since it is clipped to the bounds.
+    If the network was advanced by a duration, its state (size,) has to be finite too: the point of
+    an infinite state may be finite, since it is clipped to the bounds.
     """
     size = stats.primal + stats.dual + stats.gap
     if settings.duration > 0.0:
@@ -398,9 +406,9 @@ def status_of(stats: SolveStats, settings: AnswerSettings, state: Vector) -> int
 
 @compiled
 def sample_targets(paths: Paths, t: float, dt: float, targets: Matrix) -> None:
-    """Write the targets (k, 18) of all paths at time t [s], for a control period of dt [s].
+    """Sample all paths at time t [s] into `targets` (k, 18), which is overwritten.
 
-    The constants of each begin with its base.
+    With feed-forward, the velocity of a target is the mean one over the period of dt [s].
     """
     for k in range(len(paths.table)):
         entry = paths.table[k]

@@ -1,4 +1,4 @@
-r"""Postures for a pose: inverse kinematics by programs of the same parts as a control step.
+r"""Inverse kinematics of a pose, by QPs with the tasks and limits of a control step.
 
 Each iteration linearizes the pose of the tip and the distances of all pairs of bodies at the
 posture :math:`q`, and asks for the step :math:`\Delta q` of
@@ -52,13 +52,13 @@ from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
 
 _STEP = 0.5
-"""Largest change of a joint in an iteration, in its unit (`_units`)."""
+"""Largest change of a joint in an iteration, as a part of its scale (`_units`)."""
 
 _MOST = 100
-"""Iterations from one start."""
+"""Largest number of iterations from one start."""
 
 _DAMPING = 0.1
-"""Least ratio of the damping to the squared error."""
+"""Least ratio mu of the damping to the squared error."""
 
 _STILL = 1e-7
 """Relative change of the error that ends the iterations away from the pose."""
@@ -67,7 +67,7 @@ _ACTS = 1e-3
 """Least ratio of a multiplier to the error for which a limit counts as active."""
 
 _SECOND = 1e-2
-"""Weight of the orientation where the position comes first [m/rad]."""
+"""Weight of the orientation error if the pose is not reached [m/rad]."""
 
 
 @dataclass(frozen=True)
@@ -98,16 +98,16 @@ class PoseSolution:
 
 
 class _Point(NamedTuple):
-    """An iterate: a posture and its program.
+    """Iterate of the search for a posture.
 
     Attributes:
         q: Joint positions [rad], (n,).
-        qp: Program of a step at `q`, whose equalities begin with the pose: the Jacobian of the tip,
-            linear over angular, and position [m] over rotation vector [rad] from it to the goal,
-            the angular rows times the orientation's weight.
-        missing: Squared error, the distances by which pairs are too near, and how far mimic joints
-            are from where their leaders put them.
-        far: Largest of the errors of the pose [m], weighed [rad], and of those distances.
+        qp: Program of a step at `q`. The first six equality rows are the tip's Jacobian, linear
+            over angular, and the error from the tip to the goal, position [m] over rotation vector
+            [rad]; the angular rows are multiplied by the weight of the orientation.
+        missing: Merit of the iterate: squared norm of the pose error, plus the violations of
+            distances [m] and of mimic couplings [rad].
+        far: Largest of the position error [m], the weighted angle [rad], and these violations.
     """
 
     q: Vector
@@ -180,7 +180,7 @@ def solve_pose(
 
 
 def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -> ProgramLayout:
-    """Lay out a program whose step of 1 s is an iteration: velocities are changes of joints."""
+    """Lay out the program of an iteration, in which velocities are changes of the joints."""
     slowed = robot.with_limits(velocity=_STEP * _units(robot))
     limits: list[Limit] = [JointLimits(gain=1.0)]
     if not isinstance(obstacles, CollisionAvoidance) and obstacles != ():
@@ -192,7 +192,7 @@ def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -
 
 
 def _units(robot: Robot) -> Vector:
-    """Return the unit of each joint's step, (n,): 1 rad, of a slide 1 m or a tenth of its range."""
+    """Return the scale of each joint's step, (n,): 1 rad; if prismatic, max(1 m, range / 10)."""
     slides = np.isin(np.arange(robot.dof), list(robot.slides))
     return np.where(slides, np.maximum(1.0, 0.1 * (robot.q_upper - robot.q_lower)), 1.0)
 
@@ -205,7 +205,7 @@ def _descend(
     start: Vector,
     weight: float,
 ) -> _Point:
-    """Iterate from a start (n,) [rad] until the error from the goal (1, 18) does not decrease."""
+    """Iterate from a start (n,) [rad] until the goal (1, 18) is reached or the error stalls."""
     damping = _DAMPING
     point = _at(program, start, goal, weight)
     for _ in range(_MOST):
@@ -227,7 +227,7 @@ def _descend(
 
 
 def _at(program: ProgramLayout, q: Vector, goal: Matrix, weight: float) -> _Point:
-    """Build the program at q (n,) [rad] for a goal (1, 18), with its orientation rows weighted."""
+    """Evaluate the iterate at q (n,) [rad] for a goal (1, 18), with a weight of its orientation."""
     qp = program.qp_at(q, 0.0 * q, 0.0 * q, goal, np.inf)
     qp.A[3:6] *= weight
     qp.b[3:6] *= weight
@@ -241,7 +241,7 @@ def _at(program: ProgramLayout, q: Vector, goal: Matrix, weight: float) -> _Poin
 
 
 def _solve(program: ProgramLayout, solver: DNNSolver, point: _Point, damping: float) -> Solution:
-    """Solve the program of an iteration, of which the damping is a ratio to the squared error."""
+    """Solve for the step of an iteration; `damping` is mu, the ratio to the squared pose error."""
     qp = point.qp
     jacobian = qp.A[:6]
     error = qp.b[:6]
@@ -253,9 +253,10 @@ def _solve(program: ProgramLayout, solver: DNNSolver, point: _Point, damping: fl
 def _active_limits(
     program: ProgramLayout, solver: DNNSolver, point: _Point, weight: float
 ) -> tuple[str, ...]:
-    """Name the limits that keep a posture from the goal, by their multipliers.
+    """Name the limits whose multipliers are active at an iterate that misses the goal.
 
-    The velocity limits of the program limit an iteration's step, not a posture.
+    Velocity limits are left out: in this program they limit the step of an iteration, not a
+    posture.
     """
     step = _solve(program, solver, point, _DAMPING)
     least = _ACTS * math.hypot(*point.qp.b[:3], *weight * point.qp.b[3:6])

@@ -25,10 +25,11 @@ joints' displacement :math:`\Delta q`, still has at least
 by inequality (1) of docs/theory_braking.md, with the bound B on the curvature of the pair's motion,
 the speed :math:`v_o` of the obstacle and the time T of the motion. Along the motion
 :math:`g \cdot \Delta q` is least at rest, or where its rate changes sign. At any time the joints
-have covered at most a part :math:`\lambda` of their displacements, that of the curve of :math:`x_0`, so
-the curvature term is at most :math:`\lambda^2 B`. If the end of a link starts away from the other
-body, with :math:`x_0 \ge \max(b / 3 M, 0)`, and its whole displacement is away too, it has covered
-at least :math:`\lambda^2` of that: the bound on the distance is then least at the start or at rest.
+have covered at most a part :math:`\lambda` of their displacements, that of the curve of
+:math:`x_0`, so the curvature term is at most :math:`\lambda^2 B`. If the end of a link starts away
+from the other body, with :math:`x_0 \ge \max(b / 3 M, 0)`, and its whole displacement is
+away too, it has covered at least :math:`\lambda^2` of that: the bound on the
+distance is then least at the start or at rest.
 """
 
 import math

@@ -1,16 +1,16 @@
-"""Answers of steps without a solution, in one compiled call: limits hold, the task yields.
+"""Commands of steps whose nominal program is not answered: the task is relaxed, not the limits.
 
-`iiwa_dnn.control.policies` says what each policy means. The nominal program came first, unless
-the task yielded at the last step; then
+`iiwa_dnn.control.policies` defines the policies. The nominal program is tried before, unless a
+policy acted at the last step. Then the first of these programs that has a solution is answered:
 
-1. the scaling factor of the task is computed, by position and velocity limits alone. If it is 1,
-   the task as it is; with ``slow``, along a path, the scaled program;
-2. else the relaxed program;
-3. else the next command of a motion to rest.
+1. The scaled program, with the scaling factor of the task; its bounds are those of position and
+   velocity limits. It needs a factor of 1, or the policy ``slow`` and a moving reference.
+2. The relaxed program, unless the policy is ``stop``.
+3. If there is none, the next command of a motion to rest is taken.
 
-With acceleration or jerk limits the command is a point on the way to the answer of that program,
-within the bounds of the step; where collisions are avoided too, one from which the arm can stop
-(`iiwa_dnn.control.stopping`), in the end the next command of the stored stopping motion.
+With acceleration or jerk limits the command is a step from the last command towards the answer,
+within the bounds of the nominal program. If collisions are avoided too, the command is blended
+towards the stored stopping motion until the arm can stop after it (`iiwa_dnn.control.stopping`).
 """
 
 import math
@@ -55,25 +55,24 @@ from iiwa_dnn.schemes.scene import scene_views
 
 NONE, SLOW, RELAX, STOP, _ = map(int, Action)
 BRAKE = -1
-"""No policy: the arm goes to rest."""
+"""Code of no policy: the arm brakes to rest."""
 
 NOMINAL, SCALED, RELAXED, RATE_LIMITED, STOPPED = map(int, ProgramKind)
 
 CREEP = 0.1
-"""Scaling factor below which the task is relaxed, and fraction of a period by which the clock then
-advances: an arm that rests in a singular or unreachable pose does not hold its target there."""
+"""Scaling factor below which the task is relaxed, and least fraction of a period by which the clock
+then advances, so that the target leaves a singular or unreachable pose."""
 
 SINGULAR = 0.05
 """Tip motion for a unit of joint velocity [m/rad] below which a pose counts as singular."""
 
 POSITION_GAIN = 20.0
-"""Rate at which the wanted velocity falls towards a position limit [1/s]."""
+"""Velocity bound per distance to a position limit in fallback programs [1/s]."""
 
 HALVINGS = 4
 HALVINGS_NEAR = 12
-"""Fractions of the way from the stored stopping motion to the wanted command that are tried, each
-half
-of the one before: where a pair began nearer, there is but a micrometre for the motion's curve."""
+"""Numbers of blends of the stopping motion with a command that are tried, each with half the
+command's part of the one before; HALVINGS_NEAR if a pair keeps less than its scene's distance."""
 
 
 def make_yielding(program: ProgramLayout, tol: float, alike: bool) -> Yielding:
@@ -81,8 +80,8 @@ def make_yielding(program: ProgramLayout, tol: float, alike: bool) -> Yielding:
 
     Args:
         program: The scheme.
-        tol: Tolerance of the answers.
-        alike: Whether the network of the steps is that of the fallback programs.
+        tol: Tolerance of the residuals of an answer.
+        alike: Whether the network of the nominal program is compiled.
     """
     limits = MotionConstants.zeros(0)
     if program.rate_limits is not None:
@@ -111,21 +110,21 @@ def yield_step(
     fallback: Vector,
     action: int,
 ) -> int:
-    """Answer a step whose nominal program was not answered, by the policy or the stopping motion.
+    """Compute the command of a step without a nominal answer, by a fallback program or by braking.
 
-    The network had no answer, or one that is not safe; or it was not asked, since the task yielded
-    at the last step or the arm is halted.
+    Called if the network has no answer or an unsafe one, if a policy acted at the last step, or if
+    the arm is halted.
 
     Args:
-        log: The log, with the nominal program and what it was built at.
-        arrays: Arrays of the loop; the kinematics are at the joint positions of the state.
+        log: The step's log, with the nominal program and its joint positions; program, answer and
+            command are overwritten.
+        arrays: Arrays of the scheme's programs, with the kinematics at the joint positions.
         motion_state: State of the motion.
-        next_motion_state: The same for the next step, overwritten.
-        yielding: Weights, limits and settings of the fallback programs.
+        next_motion_state: State for the next step, overwritten.
+        yielding: Constants of the fallback programs and stopping motions.
         timing: Periods of the step.
-        fallback: States of the networks of fallback programs, (`fallback_size`,), advanced.
-        action: Action that the policy asks for; `BRAKE`: the arm goes to rest, whatever has a
-            solution.
+        fallback: Network states of the fallback programs, (`fallback_size`,), overwritten.
+        action: Action of the policy, or `BRAKE` to brake even if a program has a solution.
 
     Returns:
         The action that was taken.
@@ -181,7 +180,10 @@ def yield_step(
 
 @compiled
 def _note_kinds(log: StepLog, lower_kind: Vector, upper_kind: Vector) -> None:
-    """Put the kinds (dof,) of the step's bounds in place of the sides that limit the solution."""
+    """Multiply the signs of the joints in log.limiting by the `LimitKind` of their bounds.
+
+    A positive sign takes `upper_kind` (dof,), another `lower_kind` (dof,).
+    """
     for i in range(lower_kind.size):
         log.limiting[i] *= upper_kind[i] if log.limiting[i] > 0.0 else lower_kind[i]
 
@@ -196,19 +198,21 @@ def _note_decision(
     factor: float,
     action: int,
 ) -> int:
-    """Note how far the reference's clock advances, status and kind of the program.
+    """Write fraction, kind and status of a step into its log, and find the action that was taken.
 
     Args:
-        log: The step's log.
+        log: The step's log; fraction, kind and status are overwritten. If the network of the
+            nominal program failed and is not compiled, the primal residual of a nominal answer is
+            set to inf.
         nominal: The nominal program.
-        yielding: Weights of its task rows, and whose the network is.
-        x: The command, (n,).
-        kind: Kind of the program that was answered.
-        factor: Scaling factor of the task in it.
-        action: Action that the policy asks for.
+        yielding: Weights of its equality rows, and whether its network is compiled.
+        x: The command, with slack variables if any, (n,).
+        kind: `ProgramKind` of the program that was answered.
+        factor: Scaling factor of the task in the program.
+        action: Action of the policy, or `BRAKE`.
 
     Returns:
-        The action that was taken.
+        The action that was taken: `NONE`, `SLOW`, `RELAX` or `STOP`.
     """
     taken = STOP
     fraction = 0.0
@@ -226,14 +230,18 @@ def _note_decision(
         log.status = max(log.status, NOT_CONVERGED)
     elif kind != NOMINAL or yielding.alike:
         log.status = SOLVED
-    elif log.status >= NOT_CONVERGED:  # the answer is not that of the network that failed
+    elif log.status >= NOT_CONVERGED:  # another network than the failed one answered
         log.stats.primal = np.inf
     return taken
 
 
 @compiled
 def _widen_bounds(log: StepLog, qp: QPViews, limits: MotionConstants) -> None:
-    """Replace bounds that acceleration limits have narrowed by those of position and velocity."""
+    """Replace the joints' bounds in a program by those of position and velocity limits alone.
+
+    Overwrites the first entries of qp.lb and qp.ub [rad/s], and their kinds in the log; nothing
+    without acceleration or jerk limits.
+    """
     for i in range(limits.velocity.size):
         fastest = limits.velocity[i]
         qp.lb[i] = min(max(POSITION_GAIN * (limits.lower[i] - log.q[i]), -fastest), fastest)
@@ -246,10 +254,18 @@ def _widen_bounds(log: StepLog, qp: QPViews, limits: MotionConstants) -> None:
 def _answer_fallback(
     log: StepLog, qp: QPViews, yielding: Yielding, fallback: Vector, action: int
 ) -> tuple[float, float]:
-    """Turn a step's program into the first fallback program that has a solution, and answer it.
+    """Turn a program into the first fallback program that has a solution, and solve it.
+
+    Args:
+        log: The step's log; point, limiting and stats are overwritten.
+        qp: The program with widened bounds, overwritten by the fallback program.
+        yielding: Constants of the fallback programs.
+        fallback: Network states of the fallback programs, (`fallback_size`,), overwritten.
+        action: Action of the policy.
 
     Returns:
-        Its kind, and the scaling factor of the task in it.
+        `SCALED`, `RELAXED` or, if no program has a solution, `STOPPED`; and the scaling factor of
+        the task, 0 unless `SCALED`.
     """
     n = qp.q.size
     m = qp.h.size
@@ -270,7 +286,7 @@ def _answer_fallback(
     retreat = 1.0
     if factor < 0.0:
         retreat = largest_factor(qp, yielding, np.zeros(size), point, log.stats, True)
-        retreat = max(retreat, 0.0)  # what cannot be said to retreat may come no nearer
+        retreat = max(retreat, 0.0)  # without a factor, the distance must not shrink
     relax_task(qp, yielding.weights, retreat)
     found = solve_warm(qp, tol, fallback[size:], log.point, log.stats)
     note_limiting(log.point, n, m, 0, log.limiting)
@@ -279,7 +295,7 @@ def _answer_fallback(
 
 @compiled
 def _is_path(targets: Matrix) -> bool:
-    """Test whether a target (k, 18) has a velocity."""
+    """Test whether any of the targets (k, 18) moves, by a linear or angular velocity."""
     fastest = 0.0
     for k in range(targets.shape[0]):
         target = TargetData.of(targets[k])
@@ -290,7 +306,7 @@ def _is_path(targets: Matrix) -> bool:
 
 @compiled
 def _races(qp: QPViews, x: Vector) -> bool:
-    """Test whether joints are fast in x (n,) while the tip hardly moves."""
+    """Test whether joint velocities x (n,) are large while the rates A x of the task are small."""
     tip = 0.0
     for j in range(qp.b.size):
         tip = max(tip, abs(row_dot(qp.A, j, x)))
@@ -299,7 +315,10 @@ def _races(qp: QPViews, x: Vector) -> bool:
 
 @compiled
 def _note_missing(log: StepLog, dq: Vector) -> int:
-    """Note the joints whose command dq (dof,) is short of the answer; return how many are."""
+    """Count the joints whose command dq (dof,) [rad/s] differs from the answer in log.point.
+
+    For each, log.limiting becomes the sign of the answer minus the command.
+    """
     count = 0
     for i in range(dq.size):
         missing = log.point[i] - dq[i]
@@ -319,21 +338,23 @@ def _approach_answer(
     stats: SolveStats,
     x: Vector,
 ) -> None:
-    """Turn a wanted velocity x (n,) into the next command on the way to it.
+    """Replace the answer x of a fallback program by the next command towards it, within limits.
+
+    Without acceleration and jerk limits nothing changes.
 
     Args:
-        limits: The program that was answered, with the bounds of the step.
+        limits: The program that was answered, with the nominal bounds.
         motion_state: State of the motion.
-        next_motion_state: State for the next step: the wanted velocity is noted.
-        yielding: Weights, limits and settings.
+        next_motion_state: State for the next step; the answer is written to `wanted`.
+        yielding: Constants of the fallback programs, with the rate limits.
         timing: Periods of the step.
-        stats: Statistics of the answer, as of `solve_warm`.
-        x: The velocity, overwritten.
+        stats: Statistics of the step, updated as in `solve_warm`.
+        x: The answer, overwritten by the command [rad/s], (n,).
     """
     if yielding.limits.velocity.size == 0:
         return
     copied(next_motion_state.wanted, x[: motion_state.q.size])
-    # Joints that follow others have to go with them, on a straight line.
+    # A straight line keeps the ratios of coupled joints.
     if yielding.coupled:
         _approach_together(motion_state, yielding, timing, x)
     else:
@@ -345,10 +366,11 @@ def _approach_answer(
 def _approach_each(
     limits: QPViews, motion_state: MotionState, yielding: Yielding, timing: Periods, x: Vector
 ) -> None:
-    """Replace the wanted velocity x (n,) by the next command, joint by joint.
+    """Replace the wanted velocity x (n,) [rad/s] by the next command, joint by joint.
 
-    Each joint goes as quickly as its limits allow, without passing a velocity that goes on changing
-    as it has done since the last step.
+    Each joint approaches its wanted velocity as quickly as its limits allow. It does not overshoot
+    a wanted velocity that keeps changing as since the last step (`motion_state.wanted`). Bounds are
+    those of the program `limits`.
     """
     dof = motion_state.q.size
     for i in range(dof):
@@ -363,7 +385,10 @@ def _approach_each(
 def _approach_together(
     motion_state: MotionState, yielding: Yielding, timing: Periods, x: Vector
 ) -> None:
-    """Replace the wanted velocity x (n,) by the next command on the straight line to it."""
+    """Replace the wanted velocity x (n,) [rad/s] by the next command on a straight line to it.
+
+    All joints reach it together; if no number of periods is enough, x stays.
+    """
     dof = motion_state.q.size
     now = np.empty(dof)
     before = np.empty(dof)
@@ -388,10 +413,21 @@ def _make_stoppable(
     log: StepLog,
     x: Vector,
 ) -> float:
-    """Blend a command x (n,) towards the stored stopping motion until the arm can stop from it.
+    """Blend a command towards the stored stopping motion until the arm can stop after it.
+
+    Args:
+        limits: The program that was answered, with the nominal bounds.
+        arrays: Arrays of the scheme's programs, with the kinematics at the joint positions.
+        motion_state: State of the motion, with the stored stopping motion.
+        next_motion_state: State for the next step; `least` is overwritten if the stopping motion
+            itself is taken.
+        yielding: Constants of the fallback programs and stopping motions.
+        timing: Periods of the step.
+        log: The step's log, with the answer; its stats are updated.
+        x: The command, overwritten [rad/s], (n,).
 
     Returns:
-        Periods until it rests; 0 where none is asked for.
+        Periods until the arm rests after the command; 0 if no stopping motion has to be verified.
     """
     dof = motion_state.q.size
     rest = stopping_time(arrays, motion_state, log.least, yielding, timing, x[:dof])
@@ -418,7 +454,10 @@ def _make_stoppable(
 
 @compiled
 def _is_near(arrays: ProgramArrays, yielding: Yielding, least: Vector) -> bool:
-    """Test whether a pair keeps less than the least distance of its scene, `least` (pairs,) [m]."""
+    """Test whether the distance that a pair has to keep, of `least` (pairs,) [m], is reduced.
+
+    It is if it is below the least distance of the pair's scene.
+    """
     found = False
     for k in range(len(yielding.scenes)):
         own = block_constants(arrays, yielding.scenes[k])
@@ -430,7 +469,7 @@ def _is_near(arrays: ProgramArrays, yielding: Yielding, least: Vector) -> bool:
 
 @compiled
 def _keep_verified_distances(motion_state: MotionState, next_motion_state: MotionState) -> None:
-    """Keep the distances of pairs for which the stored stopping motion was verified."""
+    """If a stopping motion is stored, copy its verified distances `least` to the next state."""
     if motion_state.stopping_periods > 0.0:
         copied(next_motion_state.least, motion_state.least)
 
@@ -445,14 +484,23 @@ def _brake(
     log: StepLog,
     dq: Vector,
 ) -> float:
-    """Write the next command (n,) of the stored stopping motion, or of the quickest one.
+    """Compute the next command of the stored stopping motion or, if none is stored, of a new one.
 
-    It is zero without acceleration limits. The quickest one keeps the bounds as far as they do not
-    lead away from rest; no row asks it for motion.
+    Without acceleration and jerk limits the command is zero. A new motion takes the number of
+    periods of `least_periods`; its command keeps the bounds, widened so that it may go to rest, and
+    the inequality rows are ignored.
+
+    Args:
+        limits: A program with the nominal bounds.
+        arrays: Arrays of the scheme's programs, with the kinematics at the joint positions.
+        motion_state: State of the motion.
+        yielding: Constants of the fallback programs and stopping motions.
+        timing: Periods of the step.
+        log: The step's log; its stats are updated.
+        dq: The command [rad/s], (n,), overwritten.
 
     Returns:
-        Periods that are left afterwards. If no stopping motion is stored, those of one from the new
-        command, 0 if there is none.
+        Periods until rest after the command; 0 if no stopping motion from it is verified.
     """
     dq[:] = 0.0
     if yielding.limits.velocity.size == 0:
@@ -476,7 +524,7 @@ def _brake(
     for i in range(dq.size if periods < np.inf else 0):
         lb[i] = min(lb[i], max(dq[i], 0.0))
         ub[i] = max(ub[i], min(dq[i], 0.0))
-    # Joints that follow others go on to, as they brake.
+    # Coupled joints keep their ratios as they brake.
     rates = np.zeros(limits.b.size)
     idle = np.empty(limits.h.size)
     idle[:] = np.inf
@@ -490,14 +538,17 @@ def _brake(
 def _slow_down(
     motion_state: MotionState, yielding: Yielding, timing: Periods, periods: float, dq: Vector
 ) -> None:
-    """Write the next command (n,) on the straight path to rest in so many periods."""
+    """Compute the next command of a motion that comes to rest after a number of periods.
+
+    The command dq [rad/s], (n,), is overwritten, within velocity and acceleration limits.
+    """
     dof = motion_state.q.size
     for i in range(dof):
         last = motion_state.last[i]
         fastest = max(yielding.limits.velocity[i], abs(last))
         change = yielding.limits.acceleration[i] * timing.dt
         dq[i] = next_velocity(last, motion_state.before[i], periods, yielding.cubic)
-        # Where the control period has changed, the curve has too.
+        # After a change of the control period the curve may exceed a limit.
         dq[i] = min(max(dq[i], last - change), last + change)
         dq[i] = min(max(dq[i], -fastest), fastest)
 
@@ -510,13 +561,14 @@ def guard_step(
     yielding: Yielding,
     timing: Periods,
 ) -> bool:
-    """Test whether the arm can stop from the next state's command, and note in how many periods.
+    """Test whether the arm can stop after a step's command without breaking a limit or distance.
 
     Args:
-        arrays: Arrays of the loop.
+        arrays: Arrays of the scheme's programs, with the kinematics at the joint positions.
         motion_state: State of the motion.
-        next_motion_state: State for the next step.
-        yielding: Limits and scenes.
+        next_motion_state: State for the next step, with the command in `last`; `stopping_periods`
+            is overwritten.
+        yielding: Limits of the joints, and the scheme's collision avoidance.
         timing: Periods of the step.
     """
     rest = stopping_time(
