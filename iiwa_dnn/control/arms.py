@@ -425,18 +425,20 @@ def finish_step(
     placements: Matrix,
     data: Vector,
 ) -> int:
-    """Compute the command of a step: the part of a step after the kinematics.
+    """Compute the command of a step, and advance the arm by it: the part after the kinematics.
 
     Args:
         plan: Layout of the step.
-        memory: The arm's memory after `begin_step`, (k,).
+        memory: The arm's memory after `begin_step`, (k,); the command, and positions and time after
+            it, are written to it.
         inputs: The inputs of the step.
         jacobian: `Kinematics.jacobian` at the commanded positions, (n, 6).
         placements: `Kinematics.placements` there, (frames, 12).
         data: The log of the control step, overwritten, (width,).
 
     Returns:
-        The `Action` that was taken, or `INVALID`; `NONE` if the positions are not known.
+        The `Action` that was taken; `NONE`, without a log, if the positions are not known;
+        `INVALID`, with a command of 0, if they are beyond `LARGEST`.
     """
     arm = arm_state(plan, memory)
     action = NONE

@@ -132,7 +132,10 @@ class OneLayerNetwork(PrimalDualNetwork):
 
 
 def variational(qp: QP) -> tuple[Matrix, Vector, Vector, Vector]:
-    """Return H (k, k), c, and the lower and upper limits of Omega, (k,), with k = n + p + m."""
+    """Return H (k, k), c, and the lower and upper limits of Omega, (k,), with k = n + p + m.
+
+    They are those of the variational inequality at the head of this module, for u = [x; y; z].
+    """
     _, m, p = qp.sizes
     rows = np.vstack([qp.A, qp.G])
     H = np.block([[qp.P, rows.T], [-rows, np.zeros((p + m, p + m))]])

@@ -119,7 +119,7 @@ class ProjectionConstants(Record):
 
 @compiled
 def projection_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
-    """Write the rates (size,) of `ProjectionNetwork` at a state (size,)."""
+    """Write rho ds/dt of `ProjectionNetwork` at a state s, both (size,), into `rates`."""
     unprojected_rates(qp, state, rates)
     if ProjectionConstants.of(constants).projects:
         for i in range(qp.q.size):

@@ -130,9 +130,9 @@ def objective_gaps(block: QPViews, x: Matrix, steps: Matrix) -> Matrix:
     """Compute the absolute differences of the objectives at x (N, n) and at x - steps (N, k, n).
 
     Returns:
-        The differences, (N, k), each divided by the largest of three numbers: the sums of the
-        absolute quadratic and of the absolute linear terms at x, and the largest coefficient's
-        `units`, at most 1, which keep it finite at x = 0.
+        The differences, (N, k), each divided by the largest of three numbers at x: the sum of the
+        absolute quadratic terms, that of the linear ones, and the unit (`units`) of the largest
+        coefficient, at most 1. The third keeps the quotient finite at x = 0.
     """
     size = np.abs(x)
     curved = 0.5 * np.einsum("ki,kij,kj->k", size, np.abs(block.P), size)

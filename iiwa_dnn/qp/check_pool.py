@@ -24,8 +24,8 @@ _QUEUED = 2
 class CheckPool:
     """Worker processes that check blocks of programs while a run makes others.
 
-    A block goes to a worker process that is free; if none is, the caller's own process
-    judges it at once.
+    A block goes to the workers as long as they have fewer than two each, in work or waiting; else
+    the caller's own process judges it at once.
 
     Attributes:
         check: The references and the tolerances.

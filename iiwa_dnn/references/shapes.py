@@ -26,7 +26,7 @@ class HeartConstants(Record):
 
 @compiled
 def heart_path(t: float, constants: Array, target: TargetData) -> None:
-    """Move a target along `Heart`."""
+    """Move a target, at rest at the path's origin, to time t [s] of `Heart`, in place."""
     own = HeartConstants.of(constants)
     p = own.rate * t
     s1, c1 = sin_cos(p)
@@ -93,7 +93,7 @@ class LissajousConstants(Record):
 
 @compiled
 def lissajous_path(t: float, constants: Array, target: TargetData) -> None:
-    """Move a target along a `Lissajous`, a `Circle` or a `Line`."""
+    """Move a target, at rest at the origin, to time t [s] of a `Lissajous`, `Circle` or `Line`."""
     own = LissajousConstants.of(constants)
     inner, pace = soft_clock(t, own.begin)
     for i in range(3):

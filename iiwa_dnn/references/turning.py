@@ -32,7 +32,7 @@ class ConeConstants(Record):
 
 @compiled
 def cone_path(t: float, constants: Array, target: TargetData) -> None:
-    """Turn a target along `Cone`."""
+    """Turn a target, at rest at the path's origin, to time t [s] of `Cone`, in place."""
     own = ConeConstants.of(constants)
     inner, pace = soft_clock(t, own.begin)
     rate = own.rate * pace
@@ -112,7 +112,10 @@ class TiltingConstants(Record):
 
 @compiled
 def tilting_path(t: float, constants: Array, target: TargetData) -> None:
-    """Move a target along `Tilting`; `TiltingConstants` come before the path's constants."""
+    """Move a target, at rest at the path's origin, to time t [s] of `Tilting`, in place.
+
+    The constants are `TiltingConstants`, then those of the path along which the tool tilts.
+    """
     own = TiltingConstants.of(constants[: TiltingConstants.width()])
     along = constants[TiltingConstants.width() :]
     kind = int(own.along)

@@ -87,7 +87,7 @@ def _piece(pieces: Matrix, t: float) -> int:
 
 @compiled
 def waypoints_path(t: float, constants: Array, target: TargetData) -> None:
-    """Move a target along `Waypoints`."""
+    """Move a target, at rest at the path's origin, to time t [s] of `Waypoints`, in place."""
     own = WaypointsConstants.of(constants)
     pieces = own.pieces.reshape(own.pieces.size // Piece.width(), Piece.width())
     repeats = own.period < np.inf

@@ -184,7 +184,10 @@ def kept_distance(scene: SceneViews, contact: Contact, kept: float) -> float:
 
 @compiled
 def _rank(slacks: Vector, k: int) -> int:
-    """Count the candidates whose slacks (c,) are less than that of candidate k."""
+    """Return the place of candidate k in ascending order of the slacks (c,), from 0.
+
+    Of equal slacks the one with the lower index comes first, so that no two share a place.
+    """
     rank = 0
     for i in range(slacks.size):
         rank += slacks[i] < slacks[k] or (slacks[i] == slacks[k] and i < k)

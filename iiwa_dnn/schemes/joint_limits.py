@@ -64,12 +64,12 @@ def joint_limits(
 
 @compiled
 def _speed_kind(bound: float, speed: float, fastest: float) -> int:
-    """Return the `LimitKind` of a bound, in the direction in which it is positive [rad/s].
+    """Tell which limit sets a joint's bound towards one side, its `LimitKind`.
 
     Args:
-        bound: The bound.
-        speed: Velocity limit at the joint's position.
-        fastest: Velocity limit far from the position limits.
+        bound: The bound [rad/s], positive towards that side: ub, or -lb.
+        speed: Velocity limit towards that side at the joint's position [rad/s].
+        fastest: Velocity limit far from the position limits [rad/s].
     """
     if bound < speed:
         return LimitKind.POSITION
