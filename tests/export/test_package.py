@@ -206,6 +206,9 @@ def test_a_library_that_is_missing_or_another_is_said_in_a_line(tmp_path: Path) 
 def test_its_wheel_runs_its_own_vectors_without_this_package(tmp_path: Path) -> None:
     pytest.importorskip("hatchling")
     project = export.python(Shield(SMOOTH, DT, [BALL]), tmp_path / "project", "alone", q0=START)
+    # A repository around that ignores the project's folder would leave the package out.
+    (tmp_path / ".git").mkdir()
+    (tmp_path / ".gitignore").write_text("/alone/", encoding="utf-8")
     run(sys.executable, "-m", "hatchling", "build", "-t", "wheel", cwd=project)
     [wheel] = (project / "dist").glob("alone-0.1.0-py3-none-*.whl")
     assert wheel.stat().st_size < 400_000

@@ -35,6 +35,9 @@ NEWEST = QoSProfile(depth=1)
 REST = 1e-9
 """Velocity of a joint at rest [rad/s]: at a position limit it may back off by rounding."""
 
+FORGOTTEN = 1.0
+"""Time constant with which a velocity-controlled arm's following error is forgotten [s]."""
+
 REPORT = 0.1
 """Period of the diagnostics [s]."""
 
@@ -143,7 +146,7 @@ class ShieldNode(Node):
         self._held = ""  # why the arm brakes until ~/reset
         self._command: Any = None  # the last one
         self._seen: Any = None  # joint positions of the last period (1, n) [rad]
-        self._unseen: Any = 0.0  # commanded since each joint was last seen to move (1, n) [rad]
+        self._due: Any = None  # those to which the commands lead (1, n) [rad]
 
     # ---- Messages
 
@@ -256,18 +259,17 @@ class ShieldNode(Node):
         measured = self._states.value.get("q")
         command = self._command
         if command is None:
-            self._seen = measured
+            self._seen = self._due = measured
             return measured
         q = measured + (now - self._states.time) * command.dq
-        unseen = self._unseen + elapsed * command.dq
+        self._due = self._due + elapsed * command.dq if self._takes_velocity else command.next_q
         if not blind and measured is not self._seen:
-            unseen = np.where(measured == self._seen, unseen, 0.0)
             self._seen = measured
-            error = np.abs(unseen if self._takes_velocity else command.next_q - q)[0]
+            error = np.abs(self._due - q)[0]
+            self._due = self._due + min(elapsed / FORGOTTEN, 1.0) * (q - self._due)
             if error.max() > self._set["following_error"]:
                 name = self._package.JOINT_NAMES[error.argmax()]
                 self._held = self._held or f"joint {name!r} does not follow its commands"
-        self._unseen = unseen
         if not self._takes_velocity:
             return command.next_q
         return np.nan * q if blind else q
