@@ -42,7 +42,7 @@ POLICIES: tuple[Policy, ...] = ("slow", "relax", "stop")
 
 
 class Action(IntEnum):
-    """Action of a policy at one step; the number is its code in a record."""
+    """Action of a policy, or of an integrator, at one step; the number is its code in a record."""
 
     NONE = 0
     """No action: the task velocity is not reduced."""

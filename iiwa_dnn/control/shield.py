@@ -126,7 +126,10 @@ class ArmLayout(NamedTuple):
         return (*reasons_of(arm), *words, *names.conditions(motion.q, motion.least))
 
     def margin(self, memory: Vector) -> Margin:
-        """Compute the distances at the joint positions that an arm's last command starts from."""
+        """Compute the least distances of joints from their limits, and of pairs from theirs.
+
+        They are those at the joint positions that an arm's last command starts from.
+        """
         return Margin(*margin_of(self.plan, memory))
 
     def stopping_time(self, memory: Vector) -> float:
@@ -232,7 +235,7 @@ class ShieldCommand(Command):
 
     @property
     def margin(self) -> Margin:
-        """Distances at the joint positions that the command starts from."""
+        """Distances from the limits at the joint positions that the command starts from."""
         return self.layout.margin(self.memory)
 
     @property

@@ -332,8 +332,9 @@ def keeps_varying_limit(
 def keeps_distances(
     motion: Motion, arrays: ProgramArrays, constants: Vector, least: Vector, dt: float
 ) -> bool:
-    """Test whether all pairs of a scene keep their distance on a motion to rest.
+    """Test whether all pairs of a scene surely keep their distance on a motion to rest.
 
+    The test is by bounds: False may be returned for a motion that would keep all of them.
     If a pair is nearer than the distance that it has to keep, or a moving obstacle may bring it
     that near while the arm brakes, the motion of the arm must not reduce its distance.
 

@@ -137,11 +137,11 @@ class PredefinedTime(Activation):
 
 @dataclass(frozen=True, kw_only=True)
 class ActivatedNetwork(Network):
-    """A network whose clock runs at a speed that an activation sets by the norm of the rates.
+    """A network whose rates F are scaled to the norm Phi(|F|): rho ds/dt = Phi(|F|) F / |F|.
 
     Attributes:
-        network: The network; its own time constant is not used.
-        activation: Phi.
+        network: The network that gives F; its own time constant is not used.
+        activation: Phi; with `Linear` the rates stay as they are.
     """
 
     network: Network = field(default_factory=DualNetwork)

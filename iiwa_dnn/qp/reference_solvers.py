@@ -55,7 +55,7 @@ def reference_solver(name: str, sizes: Sizes) -> Callable[[QP], Vector]:
 
 
 def _solve(name: str, qp: QP) -> Vector:
-    """Solve a program with a solver of qpsolvers."""
+    """Solve a program with a solver of qpsolvers; return its point (2 n + m + p,), or NaN."""
     import qpsolvers  # with scipy.sparse, 0.2 s that not every run needs
 
     solution = qpsolvers.solve_problem(qp.to_qpsolvers(), name, **OPTIONS.get(name, {}))

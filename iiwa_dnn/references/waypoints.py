@@ -306,11 +306,11 @@ class Waypoints(Reference):
 
 
 def _displacement(done: str, changes: Array, unit: str) -> list[str]:
-    """Report the mean and the largest change (m, k) of rows by smoothing, times 1,000.
+    """Report the root mean square and the maximum of the norms of changes, times 1,000.
 
     Args:
         done: What smoothing has done, a participle.
-        changes: The changes [m] or [rad].
+        changes: The changes of the rows by smoothing [m] or [rad], (m, k).
         unit: Thousandth of their unit.
 
     Returns:

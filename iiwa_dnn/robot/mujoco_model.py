@@ -148,7 +148,8 @@ def compile_model(
 ) -> Any:
     """Compile MuJoCo's ``MjModel`` of a robot (`build_spec`) with an implicit method for damping.
 
-    Joints have Coulomb friction (n,) [N m]; masses and inertias of the links that each joint
+    Contacts are off. A step lasts `timestep` [s]. Joints have the damping and the rotor inertia of
+    `dynamics`, and Coulomb friction (n,) [N m]; masses and inertias of the links that each joint
     carries are multiplied by `mass_factors` (n,).
 
     Raises:

@@ -245,13 +245,14 @@ class Robot:
         return best_start(self, self._inside(ratios))
 
     def draw(self, random: np.random.Generator, count: int) -> checks.Array:
-        """Draw joint positions inside the limits, evenly, (count, n) [rad]."""
+        """Draw joint positions evenly within the limits, at most 2 pi from 0, (count, n) [rad]."""
         return self._inside(random.uniform(0.0, 1.0, (count, self.dof)))
 
     def _inside(self, ratios: checks.Array) -> checks.Array:
-        """Return postures (..., n) [rad] at ratios (..., n) of the ranges.
+        """Return postures (..., n) [rad] at ratios (..., n) of the ranges, cut to 2 pi each way.
 
-        An infinite limit counts as 2 pi beyond 0, or beyond the other limit.
+        A limit, finite or not, that is more than 2 pi from 0, or from the limit nearest to 0 where
+        0 is outside of the range, counts as 2 pi from there.
         """
         nearest = np.clip(0.0, self.q_lower, self.q_upper)
         lower = np.maximum(self.q_lower, nearest - 2.0 * np.pi)

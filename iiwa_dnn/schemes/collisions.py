@@ -266,7 +266,7 @@ class CollisionAvoidance(Limit):
         return make_scene(robot, self.obstacles, self.self_collision, distances, self.left_out)
 
     def pairs(self, robot: Robot) -> list[tuple[str, float]]:
-        """Return for each watched pair its name in words and the least distance [m]."""
+        """Return for each watched pair its name in words and the distance it has to keep [m]."""
         return [(f"{b} and {a}", self.distance) for a, b in self.scene(robot).pairs]
 
     def row_count(self, robot: Robot) -> int:
