@@ -305,12 +305,13 @@ def note_limiting(point: Vector, n: int, m: int, extra: int, limiting: Vector) -
 def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, stats: SolveStats) -> bool:
     """Project x on the bounds of a program and, if that violates inequality rows, on these too.
 
-    Rows of coupled joints are kept as well, if the other limits allow it.
+    Rows of coupled joints, the equality rows of weight 0, are kept as well if the other limits
+    allow it; rows of tasks do not count.
 
     Args:
         qp: The program.
         x: Velocities, (n,), overwritten by the projection.
-        yielding: Weights of the equality rows, and the tolerance.
+        yielding: Weights, which tell the rows of coupled joints, and the tolerance.
         stats: Statistics of a step, updated as in `solve_warm`.
 
     Returns:

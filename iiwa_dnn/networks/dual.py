@@ -52,7 +52,7 @@ class DualNetwork(Network):
     simplified: ClassVar[bool] = False
 
     def state_size(self, qp: QP) -> int:
-        """Count the states: one for each row and each variable."""
+        """Count the states: one a variable and one a row, without those of A if `simplified`."""
         n, m, p = qp.sizes
         return n + m + (0 if self.simplified else p)
 

@@ -106,7 +106,15 @@ class ImplicitEuler(Integrator):
 
 @compiled
 def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -> int:
-    """Advance a state `s` (size,) in place by one backward Euler step of a program, `QP.data`.
+    """Advance the projection network, without its primal projection, by one backward Euler step.
+
+    Args:
+        data: The program, `QP.data`.
+        n: Number of variables.
+        m: Number of inequality rows.
+        p: Number of equality rows.
+        s: State of the network, (3n + m + p,), advanced in place.
+        step: Length of the step [rho].
 
     Returns:
         Number of linear solves; 0, with a state of NaN, if a matrix is not positive definite.
