@@ -137,7 +137,7 @@ class PredefinedTime(Activation):
 
 @dataclass(frozen=True, kw_only=True)
 class ActivatedNetwork(Network):
-    """A network whose rates F are scaled to the norm Phi(|F|): rho ds/dt = Phi(|F|) F / |F|.
+    """A network whose rates F are scaled to the norm Phi(f), f that of F: Phi(f) / f F.
 
     Attributes:
         network: The network that gives F; its own time constant is not used.
