@@ -101,7 +101,7 @@ class Arm(Node):
 
     def turn(self, request=None, periods=1, patience=PATIENCE, is_silent=False, **shown):
         """Hold the last command for some periods, publish, wait for the next command."""
-        self.t += periods * self.dt
+        self.t = round(self.t + periods * self.dt, 9)  # /clock has nanoseconds
         if request is not None:
             self.publish(request)
         if not self.is_timed:
