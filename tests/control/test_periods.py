@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -80,26 +81,38 @@ def slides(folder: Path, acceleration: float, jerk: float = 60.0, most: float = 
     return d.Shield(robot, 6e-3, [wall], 0.02, timeout=np.inf, longest_period=0.037)
 
 
+Draw = Callable[[np.random.Generator], Any]
+
+
+def path_at_the_wall(made: d.Shield, said: str, seed: int, steps: int, draw: Draw) -> np.ndarray:
+    """Return positions (steps, 2) after periods, stated as `said`, that vary at random."""
+    random = np.random.default_rng(seed)
+    q = np.zeros(2)
+    wanted = np.zeros(2)
+    last = 6e-3
+    path = []
+    for _ in range(steps):
+        long = random.random() < 0.5
+        period = 0.037 * (1.0 if long else random.choice([0.01, 0.1, 0.3]))
+        if random.random() < 0.1:
+            wanted = draw(random)
+        q = q + period * made.step(q, wanted, **{said: period if said == "dt" else last}).dq
+        last = period
+        path.append(q)
+    return np.array(path)
+
+
 @pytest.mark.parametrize(("said", "seed"), [("dt", 22), ("elapsed", 4), ("elapsed", 10)])
 def test_no_wall_comes_too_near_beside_a_jerk_limit_whatever_period_comes(
     tmp_path: Path, said: str, seed: int
 ) -> None:
     """The ball came 17 to 243 micrometres too near."""
-    made = slides(tmp_path, 5.0)
-    random = np.random.default_rng(seed)
-    q = np.zeros(2)
-    wanted = np.zeros(2)
-    last = 6e-3
-    nearest = np.inf
-    for _ in range(700):
-        long = random.random() < 0.5
-        period = 0.037 * (1.0 if long else random.choice([0.01, 0.1, 0.3]))
-        if random.random() < 0.1:
-            wanted = random.uniform(-1.0, 1.0, 2) * 2.0 * random.choice([1.0, 0.1])
-        q = q + period * made.step(q, wanted, **{said: period if said == "dt" else last}).dq
-        last = period
-        nearest = min(nearest, 0.53 - q @ [1.0, 0.8])
-    assert nearest >= 0.0
+
+    def draw(random: np.random.Generator) -> Any:
+        return random.uniform(-1.0, 1.0, 2) * 2.0 * random.choice([1.0, 0.1])
+
+    path = path_at_the_wall(slides(tmp_path, 5.0), said, seed, 700, draw)
+    assert (0.53 - path @ [1.0, 0.8]).min() >= 0.0
 
 
 @pytest.mark.parametrize(("said", "seed"), [("dt", 23), ("elapsed", 32)])
@@ -107,24 +120,14 @@ def test_a_slide_that_its_own_limit_stops_leaves_the_other_no_nearer_to_a_wall(
     tmp_path: Path, said: str, seed: int
 ) -> None:
     """The slide that led away was braked before the other: 0.25 and 0.16 mm too near."""
-    made = slides(tmp_path, 5.0, 200.0, 0.3)
-    random = np.random.default_rng(seed)
-    q = np.zeros(2)
-    wanted = np.zeros(2)
-    last = 6e-3
-    nearest = np.inf
-    for _ in range(450):
-        long = random.random() < 0.5
-        period = 0.037 * (1.0 if long else random.choice([0.01, 0.1, 0.3]))
-        if random.random() < 0.1:
-            wanted = random.uniform(-1.0, 1.0, 2) * [2.0, 1.0] * random.choice([1.0, -1.0])
-            if random.random() < 0.7:
-                wanted = np.abs(wanted) * [1.0, -2.0]
-        q = q + period * made.step(q, wanted, **{said: period if said == "dt" else last}).dq
-        last = period
-        nearest = min(nearest, 0.53 - q @ [1.0, 0.8])
-        assert abs(q[1]) <= 0.3
-    assert nearest >= 0.0
+
+    def draw(random: np.random.Generator) -> Any:
+        wanted = random.uniform(-1.0, 1.0, 2) * [2.0, 1.0] * random.choice([1.0, -1.0])
+        return np.abs(wanted) * [1.0, -2.0] if random.random() < 0.7 else wanted
+
+    path = path_at_the_wall(slides(tmp_path, 5.0, 200.0, 0.3), said, seed, 450, draw)
+    assert (np.abs(path[:, 1]) <= 0.3).all()
+    assert (0.53 - path @ [1.0, 0.8]).min() >= 0.0
 
 
 @pytest.mark.parametrize("seed", [1, 3, 9])
