@@ -109,4 +109,4 @@ static inline bool keep(PyObject *object, PyObject **seen, const void *value, vo
 }
 
 
-struct kernel { const char *name; void *address; const char *code; };
+struct kernel { const char *name, *code; long number; };

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from .kinds import FLOAT, VOID, Kind
-from .sources import ENTRY
 from .translator import Function, Translator
 
 _READERS = {"double": "read_double", "int64_t": "read_int", "bool": "read_bool"}
@@ -45,16 +44,16 @@ def extension(translator: Translator) -> str:
         "    {NULL, NULL, 0, NULL}\n};",
         "static const struct kernel kernels[] = {",
         *map(_kernel, functions),
-        "    {NULL, NULL, NULL}\n};",
+        "    {NULL, NULL, 0}\n};",
         prelude("module.c"),
     ]
     return "\n".join(parts) + "\n"
 
 
 def _kernel(own: Function) -> str:
-    """Write a kernel's row in the C table of names, function pointers and type codes."""
-    address = "NULL" if own.decoration == ENTRY else f"(void *){own.name}"
-    return f'    {{"{own.name}", {address}, "{own.code}"}},'
+    """Write a kernel's row in the C table of names, type codes and, of parts, numbers."""
+    number = own.translator.numbers.get(own.name, 0)
+    return f'    {{"{own.name}", "{own.code}", {number}}},'
 
 
 def _method(own: Function) -> str:

@@ -1,4 +1,4 @@
-"""Load kernels; call kernels and callbacks by function pointer."""
+"""Load kernels; call kernels and callbacks by their addresses."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _loaded() -> Any:
 
 _LIBRARY = _loaded()
 _SOURCES: dict[int, Callable[..., Any]] = {}
-_FAILED = ctypes.c_int64.from_address(_LIBRARY.addresses["failed"])
+_FAILED = ctypes.c_int64.from_address(_LIBRARY.failed)
 _CFunction: Any = type(ctypes.pythonapi.Py_IncRef).__mro__[1]
 _ERRORS: dict[int, BaseException] = {}
 _KEPT: list[Any] = []
@@ -71,15 +71,16 @@ def raise_failure() -> None:
 
 
 class Entry(Generic[P, R]):
-    """Decorator of a prototype: calls functions with the prototype's types by function pointer.
+    """Decorator of a prototype: calls functions with the prototype's types by their addresses.
 
     A function may be a kernel of the package; a function of C with the flat arguments that
     CONTRIBUTING.md describes (given as an address, by `numba.cfunc` or by ctypes); or any Python
-    function, which is called back. Function pointers of kernels are positive, others negative.
+    function, which is called back. The address of a kernel is its number among the parts, that of
+    another function its function pointer, negative.
 
     Attributes:
-        functions: The Python function, or the object that was given, of each function pointer.
-        prototypes: The prototype of each function pointer.
+        functions: The Python function, or the object that was given, of each address.
+        prototypes: The prototype of each address.
     """
 
     functions: ClassVar[dict[int, Any]] = {}
@@ -93,14 +94,14 @@ class Entry(Generic[P, R]):
         self._addresses: dict[int, tuple[int, Any]] = {}
 
     def __call__(self, *arguments: P.args, **keywords: P.kwargs) -> R:
-        """Call the function whose pointer is the first argument, with the other arguments."""
+        """Call the function whose address is the first argument, with the other arguments."""
         address, *own = arguments
         if INTERPRETED and address > 0:  # type: ignore[operator]
             return cast(R, self.functions[address](*own))  # type: ignore[index]
         return cast(R, getattr(_LIBRARY, self._name)(*arguments))
 
     def address(self, function: Any) -> int:
-        """Return the function pointer of a function.
+        """Return the address of a function.
 
         Raises:
             TypeError: `function` is a kernel of other types, or no function.
@@ -110,7 +111,7 @@ class Entry(Generic[P, R]):
         return self._addresses[id(function)][0]
 
     def _address(self, function: Any) -> int:
-        """Make the function pointer of a function that `address` meets for the first time."""
+        """Make the address of a function that `address` meets for the first time."""
         source = source_of(function)
         found = getattr(function, "address", function)
         if source is not function:
@@ -118,7 +119,7 @@ class Entry(Generic[P, R]):
             if _LIBRARY.codes[name] != self._types:
                 types = _LIBRARY.codes[name]
                 raise TypeError(f"{name} is a kernel of the types {types}, not {self._types}")
-            address = int(_LIBRARY.addresses[name])
+            address = int(_LIBRARY.numbers[name])
         elif isinstance(found, int) and found > 0:
             address = -found
         elif not callable(function):

@@ -2,7 +2,7 @@ static int note(PyObject *module, const char *name, const struct kernel *kernel)
 {
     PyObject *dict = PyObject_GetAttrString(module, name);
     PyObject *value = name[0] == 'c' ? PyUnicode_FromString(kernel->code)
-                                     : PyLong_FromVoidPtr(kernel->address);
+                                     : PyLong_FromLong(kernel->number);
     const int done = dict && value ? PyDict_SetItemString(dict, kernel->name, value) : -1;
     Py_XDECREF(dict);
     Py_XDECREF(value);
@@ -22,12 +22,11 @@ PyMODINIT_FUNC PyInit__kernels(void)
     import_array();
     PyObject *module = PyModule_Create(&definition);
     if (!module) return NULL;
-    const struct kernel flag = {"failed", &failed, ""};
-    if (PyModule_AddObject(module, "addresses", PyDict_New()) < 0
+    if (PyModule_AddObject(module, "numbers", PyDict_New()) < 0
         || PyModule_AddObject(module, "codes", PyDict_New()) < 0
-        || note(module, "addresses", &flag) < 0) return NULL;
+        || PyModule_AddObject(module, "failed", PyLong_FromVoidPtr(&failed)) < 0) return NULL;
     for (const struct kernel *kernel = kernels; kernel->name; kernel++) {
-        if (note(module, "codes", kernel) < 0 || note(module, "addresses", kernel) < 0) return NULL;
+        if (note(module, "codes", kernel) < 0 || note(module, "numbers", kernel) < 0) return NULL;
     }
     return module;
 }

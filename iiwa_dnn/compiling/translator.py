@@ -33,12 +33,14 @@ class Translator(Translation):
 
     Attributes:
         functions: Translated functions by module and name, each after those that it calls.
+        numbers: Number of each part by its name in C, from `text` on.
     """
 
     def __init__(self, folder: Path, is_checked: bool = False) -> None:
         """Take the folder of a package, and whether indices are checked in C."""
         super().__init__(folder, is_checked)
         self.functions: dict[tuple[str, str], Function] = {}
+        self.numbers: dict[str, int] = {}
 
     def all(self) -> None:
         """Translate all kernels of the package."""
@@ -52,6 +54,7 @@ class Translator(Translation):
             titles: Titles of the sections of functions, in their order, by subpackages; the title
                 by an empty name is of functions from outside of the package.
         """
+        self._number_parts()
         enter = _entry if self.parts is None else partial(_numbered, parts=self.parts)
         ranks = {room: i for i, room in enumerate(titles)}
         functions = sorted(self.functions.values(), key=lambda own: ranks.get(own.room(titles), 0))
@@ -70,6 +73,12 @@ class Translator(Translation):
         parts = ["\n\n".join(own.values()) for own in declared]
         parts[2:2] = [f"\n/* ---- {TABLES} ---- */\n"] * bool(self.tables)
         return "\n".join([*parts, *heads, *bodies])
+
+    def _number_parts(self) -> None:
+        """Number the parts, which are the kernels that have the types of an entry, from 1."""
+        types = {own.code[1:] for own in self.functions.values() if own.decoration == ENTRY}
+        parts = [own for own in self.functions.values() if own.code in types]
+        self.numbers = {own.name: n for n, own in enumerate(parts, 1)}
 
     def function(
         self, module: Module, node: ast.FunctionDef, like: Function | None = None
@@ -380,27 +389,38 @@ def _numbered(own: Function, parts: list[Function]) -> str:
 
 
 def _entry(own: Function) -> str:
-    """Write the body of an entry in the library: a call by a function pointer.
+    """Write the body of an entry in the library: a call of a part, or by a function pointer.
 
-    A positive pointer is a kernel's. A negative one is, without its sign, a function of C that
-    takes an array as its pointer and sizes, a named tuple as its members, and a last pointer to
-    which it writes the numbers of a resulting tuple.
+    A positive number is a part's. A negative one is, without its sign, the address of a function of
+    C that takes an array as its pointer and sizes, a named tuple as its members, and a last pointer
+    to which it writes the numbers of a resulting tuple.
     """
     address, *names = own.parameters
-    tag = own.result.tag
     flat = [each for name in names for each in _flat(own.value(ast.Name(name)))]
-    answer = tag
+    answer = own.result.tag
     if own.result.members:
         flat.append(("double *", "numbers.at"))
         answer = "void"
-    types = ", ".join(["struct arena *", *own.types[1:]])
-    kernel = f"(({tag} (*)({types}))(intptr_t){address})({', '.join(['arena', *names])})"
     types = ", ".join(kind for kind, _ in flat)
     other = f"(({answer} (*)({types}))(intptr_t)-{address})({', '.join(text for _, text in flat)})"
-    lines = [f"if ({address} > 0) return {kernel};", f"return {other};"]
+    lines = [*_choice(own), f"return {other};"]
     if own.result.members:
-        lines[1:] = [f"{tag} numbers = {{{{0.0}}}};", f"{other};", "return numbers;"]
+        lines[-1:] = [f"{own.result.tag} numbers = {{{{0.0}}}};", f"{other};", "return numbers;"]
     return own.written_out(own.about, lines)
+
+
+def _choice(own: Function) -> list[str]:
+    """Write the statement by which an entry calls a part by its number, and returns."""
+    address, *names = map(c_word, own.parameters)
+    lines = [f"switch ({address}) {{"]
+    for part in own.translator.functions.values():
+        if part.code == own.code[1:]:
+            given = ", ".join([*["arena"] * part.uses_arena, *names])
+            lines.append(f"case {own.translator.numbers[part.name]}:")
+            is_void = own.result is VOID
+            call = f"{part.name}({given});"
+            lines += [f"    {call}", "    return;"] if is_void else [f"    return {call}"]
+    return [*lines, "default:", "    break;", "}"]
 
 
 def _flat(value: Value) -> Iterator[tuple[str, str]]:

@@ -13,6 +13,7 @@ import iiwa_dnn
 from helpers_kinematics import PAPER_Q0
 from helpers_physics import run_python
 from helpers_simulation import heart, paper_robot
+from iiwa_dnn.compiling.library import _LIBRARY
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.export.folder import run
 from iiwa_dnn.networks.integrators.implicit import solve
@@ -100,6 +101,15 @@ def test_an_error_in_ones_own_function_comes_with_its_traceback() -> None:
 def test_what_has_other_types_is_refused(wrong: object) -> None:
     with pytest.raises(TypeError):
         enter_limit.address(wrong)
+
+
+def test_kernels_that_can_be_entered_are_numbered_and_others_are_not() -> None:
+    numbers = [own for own in _LIBRARY.numbers.values() if own]
+    assert sorted(numbers) == [*range(1, 1 + len(numbers))]
+    own = _LIBRARY.numbers["references_shapes_heart_path"]
+    assert enter_path.address(iiwa_dnn.Heart.path) == own
+    assert _LIBRARY.numbers["networks_integrators_implicit_solve"]
+    assert not _LIBRARY.numbers["control_cycle_take_step"]
 
 
 def test_a_path_is_entered_from_python_and_by_two_threads() -> None:
