@@ -139,6 +139,7 @@ class Entry(Generic[P, R]):
         letters, _, result = re.sub(r"\{\w+\}", "v", self._types).partition(":")
         kinds = [kind for letter in letters for kind in _FLAT.get(letter, [])]
         is_tuple = result[0] == "("
+        returned: Any = {"d": ctypes.c_double, "b": ctypes.c_bool}.get(result)
         kinds += [ctypes.POINTER(ctypes.c_double)] * is_tuple
         hints = [*get_type_hints(self.prototype).values()][1:-1]
 
@@ -149,13 +150,13 @@ class Entry(Generic[P, R]):
                 answer = function(*[_rebuilt(hint, codes, values) for hint in hints])
                 for i, number in enumerate(answer if is_tuple else ()):
                     flat[-1][i] = number
-                return float(answer) if result == "d" else 0.0
+                return returned(answer).value if returned else 0.0
             except BaseException as error:
                 _ERRORS[threading.get_ident()] = error
                 _FAILED.value = len(_ERRORS)
                 return 0.0
 
-        return ctypes.CFUNCTYPE(ctypes.c_double if result == "d" else None, *kinds)(enter)
+        return ctypes.CFUNCTYPE(returned, *kinds)(enter)
 
 
 entry = Entry

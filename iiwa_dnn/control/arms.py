@@ -17,7 +17,8 @@ from iiwa_dnn.compiling.library import compiled, released
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.command import StepLog, log_of
-from iiwa_dnn.control.cycle import INVALID, ControlPlan, take_step
+from iiwa_dnn.control.cycle import INVALID, take_step
+from iiwa_dnn.control.plan import ControlPlan
 from iiwa_dnn.control.requests import (
     CUT,
     FASTEST,

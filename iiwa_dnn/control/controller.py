@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.command import EXCEEDED, Command
-from iiwa_dnn.control.cycle import INVALID, ControlLayout, ControlPlan, take_step
+from iiwa_dnn.control.cycle import INVALID, ControlLayout, take_step
 from iiwa_dnn.control.paths import (
     References,
     beyond_reach,
@@ -23,9 +23,10 @@ from iiwa_dnn.control.paths import (
     setup_warnings,
     target_warnings,
 )
+from iiwa_dnn.control.plan import ControlPlan, Instant
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.state import ControllerState, MotionState, count_as_sent
-from iiwa_dnn.control.stopping import stopping_time
+from iiwa_dnn.control.stopping import periods_to_rest
 from iiwa_dnn.control.yielding import BRAKE
 from iiwa_dnn.errors import InvalidInputError, warn_caller
 from iiwa_dnn.networks.solver import DNNSolver
@@ -316,13 +317,14 @@ class Controller:
             control_layout = self.control_layout
             if control_layout.program.rate_limits is not None:
                 return True
-            control_layout.program.kinematics.update(q)
-            least = self._state.next_motion.least
-            at = MotionState.zeros(*self._state.sizes)
-            at.q[:] = q
             plan = control_layout.plan
-            rest = stopping_time(plan.arrays, at, least, plan.yielding, plan.timing, dq)
-            return bool(rest >= 0.0)
+            rest = MotionState.zeros(*self._state.sizes)
+            least = self._state.next_motion.least
+            targets = np.zeros((0, TARGET_SIZE))
+            step = control_layout.program.step_at(
+                q, rest.last, rest.before, targets, self.dt, 0.0, least
+            )
+            return bool(periods_to_rest(plan, Instant(step, rest, rest), dq) < np.inf)
 
     def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlLayout:
         """Anchor the scheme at q (n,), warn of the start at the first step; return the layout.

@@ -6,9 +6,7 @@ is one call per step.
 
 import math
 from collections.abc import Mapping, Sequence
-from enum import IntEnum
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
@@ -25,13 +23,14 @@ from iiwa_dnn.control.command import (
     note_active,
     note_command,
 )
-from iiwa_dnn.control.fallback import Yielding, fallback_size
+from iiwa_dnn.control.fallback import fallback_size
+from iiwa_dnn.control.plan import ControlPlan, Instant, PathColumn, Paths
 from iiwa_dnn.control.state import MotionState, change_spacing
+from iiwa_dnn.control.stopping import periods_to_rest
 from iiwa_dnn.control.yielding import (
     BRAKE,
     NOMINAL,
     NONE,
-    guard_step,
     make_yielding,
     yield_step,
 )
@@ -45,7 +44,7 @@ from iiwa_dnn.networks.integrators.base import (
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
-from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, copied
+from iiwa_dnn.qp.layout import QPViews, Sizes, copied
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.base import FeedForward, enter_path
@@ -55,7 +54,7 @@ from iiwa_dnn.schemes.collisions import MEET
 from iiwa_dnn.schemes.joint_limits import JointLimits, PositionConstants
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
-from iiwa_dnn.schemes.periods import Periods, checked_longest, constant_periods
+from iiwa_dnn.schemes.periods import checked_longest, constant_periods
 from iiwa_dnn.schemes.program import ProgramArrays, assemble, block_constants, program_views
 from iiwa_dnn.schemes.rate_limits import MotionConstants, check_ranges, state_periods
 from iiwa_dnn.schemes.step import StepViews
@@ -65,52 +64,6 @@ FEASIBLE_BUDGET = 60.0
 
 INVALID = -1
 """Result of a step whose time, targets or joint positions are invalid, so no command is given."""
-
-
-class PathColumn(IntEnum):
-    """Columns of `Paths.table`: function address, feed-forward flag, slice of the constants."""
-
-    ADDRESS = 0
-    FEED_FORWARD = 1
-    START = 2
-    STOP = 3
-
-
-class Paths(NamedTuple):
-    """Compiled paths of the tracked frames.
-
-    Attributes:
-        table: A row for each of k paths, (k, 4), with the columns of `PathColumn`.
-        constants: Base target and constants of each path, one path after another, (size,).
-    """
-
-    table: IntMatrix
-    constants: Vector
-
-
-class ControlPlan(NamedTuple):
-    """Constants, settings and work arrays of a control step, as compiled code reads them.
-
-    Attributes:
-        arrays: Arrays from which the nominal program is assembled.
-        network: Function that answers the nominal program, with its settings.
-        paths: Paths of the tracked frames.
-        yielding: Constants of the fallback programs and stopping motions.
-        fallback: Network states of the fallback programs, (`fallback_size`,), their warm starts;
-            changed by steps.
-        policy: Action of the policy at a step without a solution; `BRAKE` in continuous mode.
-        samples: Whether a step samples its targets from `paths`; else they are in its log.
-        timing: Periods of the step.
-    """
-
-    arrays: ProgramArrays
-    network: CompiledAnswer
-    paths: Paths
-    yielding: Yielding
-    fallback: Vector
-    policy: int
-    samples: bool
-    timing: Periods
 
 
 class ControlLayout:
@@ -320,18 +273,19 @@ def take_step(
         log.lower_kind,
         log.upper_kind,
     )
+    instant = Instant(step, motion_state, next_motion_state)
     assemble(log.program, arrays, step)
     _note_instant(log, arrays, motion_state, next_motion_state)
     halted = motion_state.halts or largest_entry(log.least) == MEET
     if not motion_state.yields and not halted and _answer(log, arrays, plan.network, state):
         note_command(log, next_motion_state, log.point, timing.expected)
-        if guard_step(arrays, motion_state, next_motion_state, plan.yielding, timing):
+        rest = periods_to_rest(plan, instant, next_motion_state.last)
+        if rest < np.inf:
+            next_motion_state.stopping_periods = rest
             note_active(log, program_views(log.program, sizes), plan.yielding.tolerance)
             return NONE
     policy = BRAKE if halted else plan.policy
-    return yield_step(
-        log, arrays, motion_state, next_motion_state, plan.yielding, timing, plan.fallback, policy
-    )
+    return yield_step(log, plan, instant, policy)
 
 
 @compiled

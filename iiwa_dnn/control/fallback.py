@@ -97,7 +97,10 @@ class Yielding(NamedTuple):
             acceleration nor jerk limits.
         tolerance: Tolerance of the residuals of an answer.
         rates: Index of the scheme's part with acceleration and jerk limits; -1 if it has none.
-        scenes: Indices of the scheme's parts that avoid collisions, (scenes,).
+        rests: Indices of the limits that have a word on a motion to rest, (k,).
+        distances: Least distance of each watched pair by the scheme [m], (pairs,).
+        verifies: Whether the rows of one of them do not suffice: a command is then given only if
+            all of them agree with its motion to rest.
         cubic: Whether the jerk of a joint is limited.
         coupled: Whether joints are coupled by a hard `JointCouplingTask`.
         alike: Whether the network of the nominal program is compiled, as for fallback programs.
@@ -107,7 +110,9 @@ class Yielding(NamedTuple):
     limits: MotionConstants
     tolerance: float
     rates: int
-    scenes: IntVector
+    rests: IntVector
+    distances: Vector
+    verifies: bool
     cubic: bool
     coupled: bool
     alike: bool

@@ -30,12 +30,12 @@ from iiwa_dnn.control.fallback import (
     scale_task,
     solve_warm,
 )
+from iiwa_dnn.control.plan import ControlPlan, Instant
 from iiwa_dnn.control.policies import Action, ProgramKind
-from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.stopping import (
     least_periods,
     next_velocity,
-    stopping_time,
+    periods_to_rest,
     stretched,
 )
 from iiwa_dnn.naming import LimitKind
@@ -45,13 +45,11 @@ from iiwa_dnn.qp.dense import largest_entry, row_dot, times
 from iiwa_dnn.qp.layout import QPViews, copied
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.references.targets import TargetData
-from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.layout import ProgramLayout
-from iiwa_dnn.schemes.periods import Periods
+from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.profiles import braking
-from iiwa_dnn.schemes.program import ProgramArrays, block_constants, program_views
+from iiwa_dnn.schemes.program import program_views
 from iiwa_dnn.schemes.rate_limits import MotionConstants, MotionLimits
-from iiwa_dnn.schemes.scene import scene_views
 
 NONE, SLOW, RELAX, STOP, _ = map(int, Action)
 BRAKE = -1
@@ -87,12 +85,16 @@ def make_yielding(program: ProgramLayout, tol: float, alike: bool) -> Yielding:
     if program.rate_limits is not None:
         limits = program.rate_limits.constants(program.robot)
     weights = program.row_weights
+    rests = [k for k, part in enumerate(program.parts) if part.rest_kernel][::-1]  # joints first
+    lasting = [program.parts[k] for k in rests]
     return Yielding(
         weights,
         limits,
         tol,
         [*program.places_of(MotionLimits), -1][0],
-        np.array(program.places_of(CollisionAvoidance), dtype=np.int64),
+        np.array(rests, dtype=np.int64),
+        program.least,
+        not all(isinstance(part, Limit) and part.rows_suffice for part in lasting),
         bool((limits.jerk < np.inf).any()),
         bool((weights == 0.0).any()),
         alike,
@@ -102,12 +104,8 @@ def make_yielding(program: ProgramLayout, tol: float, alike: bool) -> Yielding:
 @compiled
 def yield_step(
     log: StepLog,
-    arrays: ProgramArrays,
-    motion_state: MotionState,
-    next_motion_state: MotionState,
-    yielding: Yielding,
-    timing: Periods,
-    fallback: Vector,
+    plan: ControlPlan,
+    instant: Instant,
     action: int,
 ) -> int:
     """Compute the command of a step without a nominal answer, by a fallback program or by braking.
@@ -118,20 +116,19 @@ def yield_step(
     Args:
         log: The step's log, with the nominal program and its joint positions; program, answer and
             command are overwritten.
-        arrays: Arrays of the scheme's programs, with the kinematics at the joint positions.
-        motion_state: State of the motion.
-        next_motion_state: State for the next step, overwritten.
-        yielding: Constants of the fallback programs and stopping motions.
-        timing: Periods of the step.
-        fallback: Network states of the fallback programs, (`fallback_size`,), overwritten.
+        plan: Layout of the step; network states of the fallback programs are overwritten.
+        instant: The instant of the step; the next state is overwritten.
         action: Action of the policy, or `BRAKE` to brake even if a program has a solution.
 
     Returns:
         The action that was taken.
     """
-    qp = program_views(log.program, arrays.sizes)
+    yielding = plan.yielding
+    next_motion_state = instant.next_motion
+    sizes = plan.arrays.sizes
+    qp = program_views(log.program, sizes)
     data = log.program.copy()
-    nominal = program_views(data, arrays.sizes)
+    nominal = program_views(data, sizes)
     lower_kind = log.lower_kind.copy()
     upper_kind = log.upper_kind.copy()
     kind = STOPPED
@@ -139,16 +136,14 @@ def yield_step(
     rest = 0.0
     if action != BRAKE:
         _widen_bounds(log, qp, yielding.limits)
-        found, factor = _answer_fallback(log, qp, yielding, fallback, action)
+        found, factor = _answer_fallback(log, qp, yielding, plan.fallback, action)
         kind = int(found)
     x = log.point[: qp.q.size].copy()
     limits = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, nominal.lb, nominal.ub)
     if kind != STOPPED:
-        _approach_answer(limits, motion_state, next_motion_state, yielding, timing, log.stats, x)
-        rest = _make_stoppable(
-            limits, arrays, motion_state, next_motion_state, yielding, timing, log, x
-        )
-        missing = _note_missing(log, x[: arrays.sizes.joints])
+        _approach_answer(limits, plan, instant, log.stats, x)
+        rest = _make_stoppable(limits, plan, instant, log, x)
+        missing = _note_missing(log, x[: sizes.joints])
         primal, dual, gap = point_residuals(limits, log.point)
         if missing > 0:
             kind = STOPPED if action == STOP else RATE_LIMITED
@@ -163,8 +158,8 @@ def yield_step(
         copied(log.program, data)
         copied(log.lower_kind, lower_kind)
         copied(log.upper_kind, upper_kind)
-        rest = _brake(nominal, arrays, motion_state, yielding, timing, log, x)
-        _keep_verified_distances(motion_state, next_motion_state)
+        rest = _brake(nominal, plan, instant, log, x)
+        _keep_verified_distances(instant)
         log.point[:] = 0.0
         copied(log.point, x)
     log.stats.primal, log.stats.dual, log.stats.gap = point_residuals(qp, log.point)
@@ -172,9 +167,9 @@ def yield_step(
     if taken == NONE:
         note_active(log, qp, yielding.tolerance)
     next_motion_state.stopping_periods = rest
-    next_motion_state.path_lag += timing.expected * (1.0 - log.fraction)
+    next_motion_state.path_lag += plan.timing.expected * (1.0 - log.fraction)
     next_motion_state.yields = kind != NOMINAL and action != BRAKE
-    note_command(log, next_motion_state, x, timing.expected)
+    note_command(log, next_motion_state, x, plan.timing.expected)
     return taken
 
 
@@ -330,13 +325,7 @@ def _note_missing(log: StepLog, dq: Vector) -> int:
 
 @compiled
 def _approach_answer(
-    limits: QPViews,
-    motion_state: MotionState,
-    next_motion_state: MotionState,
-    yielding: Yielding,
-    timing: Periods,
-    stats: SolveStats,
-    x: Vector,
+    limits: QPViews, plan: ControlPlan, instant: Instant, stats: SolveStats, x: Vector
 ) -> None:
     """Replace the answer x of a fallback program by the next command towards it, within limits.
 
@@ -344,58 +333,56 @@ def _approach_answer(
 
     Args:
         limits: The program that was answered, with the nominal bounds.
-        motion_state: State of the motion.
-        next_motion_state: State for the next step; the answer is written to `wanted`.
-        yielding: Constants of the fallback programs, with the rate limits.
-        timing: Periods of the step.
+        plan: Layout of the step.
+        instant: The instant of the step; the answer is written to `wanted` of the next state.
         stats: Statistics of the step, updated as in `solve_warm`.
         x: The answer, overwritten by the command [rad/s], (n,).
     """
+    yielding = plan.yielding
     if yielding.limits.velocity.size == 0:
         return
-    copied(next_motion_state.wanted, x[: motion_state.q.size])
+    copied(instant.next_motion.wanted, x[: instant.motion.q.size])
     # A straight line keeps the ratios of coupled joints.
     if yielding.coupled:
-        _approach_together(motion_state, yielding, timing, x)
+        _approach_together(plan, instant, x)
     else:
-        _approach_each(limits, motion_state, yielding, timing, x)
+        _approach_each(limits, plan, instant, x)
     nearest_within(limits, x, yielding, stats)
 
 
 @compiled
-def _approach_each(
-    limits: QPViews, motion_state: MotionState, yielding: Yielding, timing: Periods, x: Vector
-) -> None:
+def _approach_each(limits: QPViews, plan: ControlPlan, instant: Instant, x: Vector) -> None:
     """Replace the wanted velocity x (n,) [rad/s] by the next command, joint by joint.
 
     Each joint approaches its wanted velocity as quickly as its limits allow. It does not overshoot
     a wanted velocity that keeps changing as since the last step (`motion_state.wanted`). Bounds are
     those of the program `limits`.
     """
-    dof = motion_state.q.size
-    for i in range(dof):
-        most = yielding.limits.acceleration[i] * timing.dt
+    motion_state = instant.motion
+    yielding = plan.yielding
+    for i in range(motion_state.q.size):
+        most = yielding.limits.acceleration[i] * plan.timing.dt
         change = min(max(x[i] - motion_state.wanted[i], -most), most)
         behind = motion_state.last[i] - (x[i] - change)
         rate = yielding.limits.jerk[i]
-        x[i] += braking(behind, limits.lb[i] - x[i], limits.ub[i] - x[i], rate, timing)
+        x[i] += braking(behind, limits.lb[i] - x[i], limits.ub[i] - x[i], rate, plan.timing)
 
 
 @compiled
-def _approach_together(
-    motion_state: MotionState, yielding: Yielding, timing: Periods, x: Vector
-) -> None:
+def _approach_together(plan: ControlPlan, instant: Instant, x: Vector) -> None:
     """Replace the wanted velocity x (n,) [rad/s] by the next command on a straight line to it.
 
     All joints reach it together; if no number of periods is enough, x stays.
     """
+    motion_state = instant.motion
+    yielding = plan.yielding
     dof = motion_state.q.size
     now = np.empty(dof)
     before = np.empty(dof)
     for i in range(dof):
         now[i] = motion_state.last[i] - x[i]
         before[i] = motion_state.before[i] - x[i]
-    dt = timing.dt
+    dt = plan.timing.dt
     periods = least_periods(now, before, yielding.limits, dt, yielding.cubic, False)
     for i in range(dof):
         if periods < np.inf:
@@ -404,86 +391,63 @@ def _approach_together(
 
 @compiled
 def _make_stoppable(
-    limits: QPViews,
-    arrays: ProgramArrays,
-    motion_state: MotionState,
-    next_motion_state: MotionState,
-    yielding: Yielding,
-    timing: Periods,
-    log: StepLog,
-    x: Vector,
+    limits: QPViews, plan: ControlPlan, instant: Instant, log: StepLog, x: Vector
 ) -> float:
     """Blend a command towards the stored stopping motion until the arm can stop after it.
 
     Args:
         limits: The program that was answered, with the nominal bounds.
-        arrays: Arrays of the scheme's programs, with the kinematics at the joint positions.
-        motion_state: State of the motion, with the stored stopping motion.
-        next_motion_state: State for the next step; `least` is overwritten if the stopping motion
-            itself is taken.
-        yielding: Constants of the fallback programs and stopping motions.
-        timing: Periods of the step.
+        plan: Layout of the step.
+        instant: The instant of the step; `least` of the next state is overwritten if the stored
+            stopping motion itself is taken.
         log: The step's log, with the answer; its stats are updated.
         x: The command, overwritten [rad/s], (n,).
 
     Returns:
         Periods until the arm rests after the command; 0 if no stopping motion has to be verified.
     """
-    dof = motion_state.q.size
-    rest = stopping_time(arrays, motion_state, log.least, yielding, timing, x[:dof])
-    if rest >= 0.0:
+    yielding = plan.yielding
+    dof = instant.motion.q.size
+    rest = periods_to_rest(plan, instant, x[:dof])
+    if rest < np.inf:
         return rest
     wanted = log.point[: x.size].copy()
     if yielding.limits.velocity.size > 0:
-        _approach_together(motion_state, yielding, timing, wanted)
+        _approach_together(plan, instant, wanted)
         nearest_within(limits, wanted, yielding, log.stats)
     brake = np.zeros(x.size)
-    left = _brake(limits, arrays, motion_state, yielding, timing, log, brake)
+    left = _brake(limits, plan, instant, log, brake)
     fraction = 1.0
-    for _ in range(HALVINGS_NEAR if _is_near(arrays, yielding, log.least) else HALVINGS):
+    for _ in range(HALVINGS_NEAR if _is_near(plan, instant) else HALVINGS):
         for i in range(dof):
             x[i] = brake[i] + fraction * (wanted[i] - brake[i])
-        rest = stopping_time(arrays, motion_state, log.least, yielding, timing, x[:dof])
-        if rest >= 0.0:
+        rest = periods_to_rest(plan, instant, x[:dof])
+        if rest < np.inf:
             return rest
         fraction *= 0.5
     copied(x, brake)
-    _keep_verified_distances(motion_state, next_motion_state)
+    _keep_verified_distances(instant)
     return left
 
 
 @compiled
-def _is_near(arrays: ProgramArrays, yielding: Yielding, least: Vector) -> bool:
-    """Test whether the distance that a pair has to keep, of `least` (pairs,) [m], is reduced.
-
-    It is if it is below the least distance of the pair's scene.
-    """
+def _is_near(plan: ControlPlan, instant: Instant) -> bool:
+    """Test whether a pair has to keep less than the least distance of its scene."""
     found = False
-    for k in range(len(yielding.scenes)):
-        own = block_constants(arrays, yielding.scenes[k])
-        scene = scene_views(own, arrays.sizes.joints)
-        for i in range(len(scene.pairs)):
-            found = found or least[scene.head.first + i] < scene.head.least
+    for k in range(plan.yielding.distances.size):
+        found = found or instant.step.least[k] < plan.yielding.distances[k]
     return found
 
 
 @compiled
-def _keep_verified_distances(motion_state: MotionState, next_motion_state: MotionState) -> None:
+def _keep_verified_distances(instant: Instant) -> None:
     """If a stopping motion is stored, copy its verified distances `least` to the next state."""
-    if motion_state.stopping_periods > 0.0:
-        copied(next_motion_state.least, motion_state.least)
+    if instant.motion.stopping_periods > 0.0:
+        copied(instant.next_motion.least, instant.motion.least)
 
 
 @compiled
-def _brake(
-    limits: QPViews,
-    arrays: ProgramArrays,
-    motion_state: MotionState,
-    yielding: Yielding,
-    timing: Periods,
-    log: StepLog,
-    dq: Vector,
-) -> float:
+def _brake(limits: QPViews, plan: ControlPlan, instant: Instant, log: StepLog, dq: Vector) -> float:
     """Compute the next command of the stored stopping motion or, if none is stored, of a new one.
 
     Without acceleration and jerk limits the command is zero. A new motion takes the number of
@@ -492,31 +456,31 @@ def _brake(
 
     Args:
         limits: A program with the nominal bounds.
-        arrays: Arrays of the scheme's programs, with the kinematics at the joint positions.
-        motion_state: State of the motion.
-        yielding: Constants of the fallback programs and stopping motions.
-        timing: Periods of the step.
+        plan: Layout of the step.
+        instant: The instant of the step.
         log: The step's log; its stats are updated.
         dq: The command [rad/s], (n,), overwritten.
 
     Returns:
         Periods until rest after the command; 0 if no stopping motion from it is verified.
     """
+    yielding = plan.yielding
+    motion_state = instant.motion
     dq[:] = 0.0
     if yielding.limits.velocity.size == 0:
         return 0.0
     rest: float = motion_state.stopping_periods
     dof = motion_state.q.size
-    dt = timing.dt
+    dt = plan.timing.dt
     periods = rest
     last = motion_state.last
     before = motion_state.before
     if rest == 0.0:
         periods = least_periods(last, before, yielding.limits, dt, yielding.cubic, False)
-    elif yielding.cubic and timing.vary:
+    elif yielding.cubic and plan.timing.vary:
         periods = stretched(last, before, yielding.limits, dt, rest)
     if periods < np.inf:
-        _slow_down(motion_state, yielding, timing, periods, dq)
+        _slow_down(plan, instant, periods, dq)
     if rest > 0.0:
         return max(periods - 1.0, 0.0)
     lb = limits.lb.copy()
@@ -531,48 +495,23 @@ def _brake(
     times(limits.A, dq, rates)
     braking = QPViews(limits.P, limits.q, limits.G, idle, limits.A, rates, lb, ub)
     nearest_within(braking, dq, yielding, log.stats)
-    return max(stopping_time(arrays, motion_state, log.least, yielding, timing, dq[:dof]), 0.0)
+    rest = periods_to_rest(plan, instant, dq[:dof])
+    return rest if rest < np.inf else 0.0
 
 
 @compiled
-def _slow_down(
-    motion_state: MotionState, yielding: Yielding, timing: Periods, periods: float, dq: Vector
-) -> None:
+def _slow_down(plan: ControlPlan, instant: Instant, periods: float, dq: Vector) -> None:
     """Compute the next command of a motion that comes to rest after a number of periods.
 
     The command dq [rad/s], (n,), is overwritten, within velocity and acceleration limits.
     """
-    dof = motion_state.q.size
-    for i in range(dof):
+    motion_state = instant.motion
+    yielding = plan.yielding
+    for i in range(motion_state.q.size):
         last = motion_state.last[i]
         fastest = max(yielding.limits.velocity[i], abs(last))
-        change = yielding.limits.acceleration[i] * timing.dt
+        change = yielding.limits.acceleration[i] * plan.timing.dt
         dq[i] = next_velocity(last, motion_state.before[i], periods, yielding.cubic)
         # After a change of the control period the curve may exceed a limit.
         dq[i] = min(max(dq[i], last - change), last + change)
         dq[i] = min(max(dq[i], -fastest), fastest)
-
-
-@compiled
-def guard_step(
-    arrays: ProgramArrays,
-    motion_state: MotionState,
-    next_motion_state: MotionState,
-    yielding: Yielding,
-    timing: Periods,
-) -> bool:
-    """Test whether the arm can stop after a step's command without breaking a limit or distance.
-
-    Args:
-        arrays: Arrays of the scheme's programs, with the kinematics at the joint positions.
-        motion_state: State of the motion.
-        next_motion_state: State for the next step, with the command in `last`; `stopping_periods`
-            is overwritten.
-        yielding: Limits of the joints, and the scheme's collision avoidance.
-        timing: Periods of the step.
-    """
-    rest = stopping_time(
-        arrays, motion_state, next_motion_state.least, yielding, timing, next_motion_state.last
-    )
-    next_motion_state.stopping_periods = max(rest, 0.0)
-    return rest >= 0.0

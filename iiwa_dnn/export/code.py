@@ -35,8 +35,9 @@ from iiwa_dnn.control.arms import (
 )
 from iiwa_dnn.control.command import SINGULAR, log_of
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.cycle import ControlPlan, PathColumn, Paths, sample_targets, take_step
+from iiwa_dnn.control.cycle import sample_targets, take_step
 from iiwa_dnn.control.paths import by_frame
+from iiwa_dnn.control.plan import ControlPlan, PathColumn, Paths
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.requests import REASONS, Reason, Request
 from iiwa_dnn.control.shield import Shield
@@ -214,7 +215,7 @@ def _about(
         "n": n,
         "m": m,
         "p": p,
-        "kept": ", ".join(type(each).__name__ for each in limits) or "none",
+        "kept": ", ".join(each.title for each in limits) or "none",
         "watched": len(program.pairs) or "none, not even links",
         "joint_names": ", ".join(robot.joint_names),
         "dt": repr(made.dt),
@@ -349,7 +350,8 @@ class _Code:
         """Replace the addresses in a table of parts or paths by the numbers of functions."""
         address = columns["ADDRESS"]
         table = own.table.copy()
-        table[:, address] = [*map(self._part, table[:, address].tolist())]
+        for column in [own for own in columns if own.name in ("ADDRESS", "REST")]:
+            table[:, column] = [*map(self._part, table[:, column].tolist())]
         names = [self._parts[k - 1].name for k in table[:, address].tolist()]
         self._named[type(own), "table"] = function_table(table, columns, names)
         return own._replace(table=table)

@@ -24,6 +24,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.checks import Vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError
 from iiwa_dnn.files import one_line, read_toml
@@ -34,6 +35,7 @@ from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Placement
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacles
 from iiwa_dnn.schemes.parts import Limit
+from iiwa_dnn.schemes.rest import Motion, displacement_after, end_displacement
 from iiwa_dnn.schemes.scene import (
     Body,
     Contact,
@@ -194,6 +196,80 @@ def _rank(slacks: Vector, k: int) -> int:
     return rank
 
 
+@compiled
+def keeps_distances(step: StepViews, constants: Vector, motion: Motion) -> bool:
+    """Test whether all pairs of a scene surely keep their distance on a motion to rest.
+
+    The test is by bounds: False may be returned for a motion that would keep all of them.
+    If a pair is nearer than the distance that it has to keep, or a moving obstacle may bring it
+    that near while the arm brakes, the motion of the arm must not reduce its distance.
+
+    Args:
+        step: The instant at which the motion begins. In its `least`, 0 stands for the distance of
+            the scene.
+        constants: Numbers of the scene, `Scene.constants`, (k,).
+        motion: The motion, of n joints.
+    """
+    n = motion.first.size
+    scene = scene_views(constants, n)
+    placed = np.empty((len(scene.bodies), Placement.width()))
+    place_bodies(scene, step.placements, placed)
+    M = motion.periods
+    travel = np.empty(n)
+    for i in range(n):
+        travel[i] = displacement_after(motion, abs(motion.first[i]), abs(motion.coefficient[i]), M)
+    for k in range(len(scene.pairs)):
+        contact = contact_of(scene, k, placed)
+        pair = Pair.of(scene.pairs[k])
+        left = contact.distance - Body.of(scene.bodies[pair.first]).speed * motion.period * M
+        most = 0.0
+        for i in range(n):
+            most += abs(pair.radii[i]) * travel[i]
+        own = step.least[scene.head.first + k]
+        kept = own if own != 0.0 else scene.head.least
+        if left - most >= kept:
+            continue
+        change = np.inf
+        remainder = 0.5 * second_order(pair, travel)
+        ends = ends_of(scene, placed, pair.second)
+        for at in range(2):
+            end = ends[at]
+            if pair.unmoved_end == at + 1:
+                continue
+            x, coefficient = _along(motion, step.jacobian, pair, end, contact.normal)
+            displacement = end_displacement(motion, x, coefficient)
+            change = min(change, height_of(end, contact) + min(displacement - remainder, 0.0))
+        if left + change < min(kept, left):
+            return False
+    return True
+
+
+@compiled
+def _along(
+    motion: Motion, jacobian: Matrix, pair: Pair, point: Vector3, normal: Vector3
+) -> tuple[float, float]:
+    """Compute the velocity of a point along a normal (3,), relative to the pair's first body.
+
+    Args:
+        motion: A motion of n joints to rest.
+        jacobian: Joint Jacobian, `Kinematics.jacobian`, (n, 6).
+        pair: The pair; the point is of its second body.
+        point: Position of the point [m], (3,).
+        normal: Unit normal from the first to the second body, (3,).
+
+    Returns:
+        Its first velocity and its coefficient b [m/s].
+    """
+    x = 0.0
+    b = 0.0
+    for j in range(motion.first.size):
+        if pair.support[j] != 0.0:
+            rate = pair.support[j] * rate_along(jacobian, j, point, normal)
+            x += rate * motion.first[j]
+            b += rate * motion.coefficient[j]
+    return x, b
+
+
 def tuple_of_obstacles(argument: str, value: Any) -> tuple[Obstacle, ...]:
     """Return one obstacle or several as a tuple; refuse any other value."""
     obstacles = value if isinstance(value, Iterable) else (value,)
@@ -229,6 +305,7 @@ class CollisionAvoidance(Limit):
     """
 
     kernel = staticmethod(collision_rows)
+    rest_kernel = staticmethod(keeps_distances)
     _checks: ClassVar[checks.Checks] = {
         "obstacles": tuple_of_obstacles,
         "self_collision": partial(checks.one_of, choices=(True, False)),

@@ -118,6 +118,7 @@ class JointLimits(Limit):
     """
 
     kernel = staticmethod(joint_limits)
+    rows_suffice = True
     _checks: ClassVar[checks.Checks] = {"gain": checks.positive}
     gain: float = 20.0
 

@@ -15,7 +15,7 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.parts import Cost, Limit, Part, Task, answer_of, idle_arrays
+from iiwa_dnn.schemes.parts import Cost, Limit, Part, Task, answer_of, enter_rest, idle_arrays
 from iiwa_dnn.schemes.program import BlockKind, Column, ProgramArrays, ProgramSizes, assemble
 from iiwa_dnn.schemes.rate_limits import MotionLimits, merged
 from iiwa_dnn.schemes.scene import SceneHead
@@ -36,7 +36,7 @@ class ProgramLayout:
             tip's if no task tracks one.
         refreshed: Indices of the parts whose constants change from step to step.
         kinematics: Kinematics of the robot, overwritten by each step.
-        table: A row for each part, (parts, 7), by `Column`.
+        table: A row for each part, (parts, 8), by `Column`.
         constants: Constants of all parts, (k,).
         pairs: Names in words and least distance [m] of each watched pair.
         kinds: `LimitKind` of the lower and upper bounds in the last program of `qp_at`, (2, dof).
@@ -94,7 +94,8 @@ class ProgramLayout:
             stop = start + own.size
             address = part.entry.address(part.kernel)
             self.parts.append(part)
-            row = (kind, address, first, rows, start, stop, target)
+            rest = enter_rest.address(part.rest_kernel) if part.rest_kernel else 0
+            row = (kind, address, rest, first, rows, start, stop, target)
             self.table = np.vstack([self.table, np.array(row, dtype=np.int64)])
             weight = [part.weight] if kind is BlockKind.SOFT_TASK and isinstance(part, Task) else []
             self.constants = np.concatenate([self.constants, own, np.array(weight)])
@@ -207,15 +208,40 @@ class ProgramLayout:
             InvalidInputError: A method in numpy returns something wrong; its part is named.
         """
         data = np.empty(data_size(*self.sizes))
-        self.kinematics.update(q)
-        self.refresh(q, last, targets, t, dt)
         kept = self.least if least is None else least
-        arrays = self.arrays
-        rate = 1.0 / dt if dt < np.inf else np.inf
-        own = arrays[3:7]
-        step = StepViews(float(t), rate, q, last, before, *own, targets, kept, *self.kinds)
-        assemble(data, arrays, step)
+        step = self.step_at(q, last, before, targets, dt, t, kept)
+        self.refresh(q, last, targets, t, dt)
+        assemble(data, self.arrays, step)
         return QP.from_data(data, self.sizes)
+
+    def step_at(
+        self,
+        q: Vector,
+        last: Vector,
+        before: Vector,
+        targets: Matrix,
+        dt: float,
+        t: float,
+        least: Vector,
+    ) -> StepViews:
+        """Return one instant, with the kinematics at q; the arguments are those of `qp_at`."""
+        self.kinematics.update(q)
+        arrays = self.arrays
+        return StepViews(
+            t=float(t),
+            rate=1.0 / dt if dt < np.inf else np.inf,
+            q=q,
+            last=last,
+            before=before,
+            jacobian=arrays.jacobian,
+            placements=arrays.placements,
+            support=arrays.support,
+            inertia=arrays.inertia,
+            targets=targets,
+            least=least,
+            lower_kind=self.kinds[0],
+            upper_kind=self.kinds[1],
+        )
 
 
 def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:

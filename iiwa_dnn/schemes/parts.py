@@ -8,6 +8,10 @@ constants that the kernel reads. All kernels of a kind have one signature:
     limit  kernel(step, constants, G, h, lb, ub)        writes G (rows, n) and h (rows,), and
                                                         tightens lb (n,) and ub (n,)
 
+A limit has a second kernel, `rest_kernel(step, constants, motion)`, unless it holds at a step only:
+whether a `Motion` to rest, from the joint positions of the step, keeps it. A command is given if
+all limits agree with its motion to rest, else the next one of the motion that they agreed with.
+
 `step` is a `StepViews`, and `target` the `TargetData` of the frame that the task tracks. A, b, G
 and h are zero before the call. The n variables are the joints, then the scheme's slack variables.
 A kernel writes no other array, but that a limit may write the kinds of its bounds
@@ -29,6 +33,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.program import real_array
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.schemes.rest import Motion
 from iiwa_dnn.schemes.step import Step, StepViews
 
 PartT = TypeVar("PartT", bound="Part")
@@ -59,6 +64,12 @@ def enter_limit(
     """Call a limit's kernel by its address; it writes G (rows, n), h (rows,), lb and ub (n,)."""
 
 
+@entry
+def enter_rest(address: int, step: StepViews, constants: Vector, motion: Motion) -> bool:
+    """Call a limit's second kernel by its address, to test whether a motion to rest keeps it."""
+    raise NotImplementedError
+
+
 _IDLE = {"h": np.inf, "lb": -np.inf, "ub": np.inf}
 """Values without effect in an array of a part, by its name; 0 in the others."""
 
@@ -74,11 +85,14 @@ class Part(Checked):
     Attributes:
         kernel: Compiled function that writes the rows; in a class with a method in numpy, the one
             that copies its arrays.
+        rest_kernel: Compiled function that tests whether a motion to rest keeps a limit; None if
+            the limit holds at a step only, as one in numpy does.
         rows: Number of rows; 0 for a cost.
         entry: Function through which compiled code calls the kernels of this kind.
     """
 
     kernel: Any = None
+    rest_kernel: Any = None
     rows: int = 0
     entry: ClassVar[Any]
     _copy: Any
@@ -89,6 +103,7 @@ class Part(Checked):
         super().__init_subclass__(**options)
         if not cls._methods.keys().isdisjoint(vars(cls)):
             cls.kernel = staticmethod(cls._copy)
+            cls.rest_kernel = None
 
     @property
     def copies(self) -> bool:
@@ -286,7 +301,19 @@ class Limit(Part):
 
     The number of inequality rows, `rows`, is the same at every step; a row that is not needed has
     h = inf.
+
+    Attributes:
+        rows_suffice: Whether the rows of a step always leave a command after which those of the
+            next one do, so that by itself the limit needs no test of a motion to rest.
     """
+
+    rows_suffice: ClassVar[bool] = False
+
+    @property
+    def title(self) -> str:
+        """Name of the class; behind a limit that no motion to rest is tested for, words for it."""
+        lasts = self.rest_kernel is not None or self.rows_suffice
+        return type(self).__name__ + (not lasts) * " (this step only)"
 
     entry = enter_limit
     _copy = staticmethod(copy_limit)

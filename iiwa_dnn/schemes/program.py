@@ -53,6 +53,7 @@ class Column(IntEnum):
     Members:
         KIND: `BlockKind` of the part.
         ADDRESS: Address of its kernel.
+        REST: Address of a limit's second kernel, for motions to rest; 0: it has none.
         FIRST: Its first row among the program's equality or inequality rows.
         ROWS: Number of its rows; 0 for a cost.
         START: Beginning of its constants; those of a soft task are followed by its weight.
@@ -62,11 +63,12 @@ class Column(IntEnum):
 
     KIND = 0
     ADDRESS = 1
-    FIRST = 2
-    ROWS = 3
-    START = 4
-    STOP = 5
-    TARGET = 6
+    REST = 2
+    FIRST = 3
+    ROWS = 4
+    START = 5
+    STOP = 6
+    TARGET = 7
 
 
 class ProgramArrays(NamedTuple):
@@ -76,7 +78,7 @@ class ProgramArrays(NamedTuple):
 
     Attributes:
         sizes: Sizes of the programs.
-        table: A row for each part, (parts, 7), by `Column`.
+        table: A row for each part, (parts, 8), by `Column`.
         constants: Constants of all parts, (k,).
         jacobian: `Kinematics.jacobian`, (dof, 6).
         placements: `Kinematics.placements`, (frames, 12).

@@ -16,6 +16,7 @@ from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.parts import Limit, Task
 from iiwa_dnn.schemes.periods import Periods, constant_periods
 from iiwa_dnn.schemes.profiles import Rates, usable_jerk
+from iiwa_dnn.schemes.rest import SLACK, Motion, end_displacement, velocity_at
 from iiwa_dnn.schemes.step import StepViews
 from iiwa_dnn.schemes.tasks import JointCouplingTask
 from iiwa_dnn.schemes.viability import joint_bounds
@@ -39,6 +40,7 @@ class RateLimits(Limit):
         row: Row of `Robot.limits` that has it.
     """
 
+    rows_suffice = True
     _checks: ClassVar[checks.Checks] = {"limit": positive_rates}
     limit: ArrayLike | None = None
     quantity: ClassVar[str]
@@ -189,6 +191,52 @@ def motion_limits(
         ub[i] = min(max(ub[i], lower), upper)
 
 
+@compiled
+def keeps_joint_limits(step: StepViews, constants: Vector, motion: Motion) -> bool:
+    """Test whether the joints keep position and velocity limits on a motion to rest.
+
+    A joint outside its position limits must not move further out. `constants` are a
+    `MotionConstants`.
+    """
+    q = step.q
+    limits = MotionConstants.of(constants)
+    for i in range(q.size):
+        x = motion.first[i]
+        b = motion.coefficient[i]
+        top = q[i] - min(end_displacement(motion, -x, -b), 0.0)
+        bottom = q[i] + min(end_displacement(motion, x, b), 0.0)
+        if top > max(limits.upper[i], q[i]) or bottom < min(limits.lower[i], q[i]):
+            return False
+        steepest = 6.0 * x + 3.0 * b
+        u = b / steepest if steepest != 0.0 else 0.0
+        fastest = limits.velocity[i] * (1.0 + SLACK)
+        if 0.0 < u < 1.0 and abs(velocity_at(x, b, u, True)) > fastest:
+            return False
+        if limits.lag[i] > 0.0 and not keeps_varying_limit(motion, q, limits, i):
+            return False
+    return True
+
+
+@compiled
+def keeps_varying_limit(motion: Motion, q: Vector, limits: MotionConstants, i: int) -> bool:
+    """Test whether joint i keeps its position-dependent velocity limit on a motion to rest.
+
+    The joints are at q (n,) [rad].
+    """
+    at = q[i]
+    dt = motion.period
+    for k in range(int(motion.periods)):
+        x = velocity_at(motion.first[i], motion.coefficient[i], k / motion.periods, motion.cubic)
+        left = limits.upper[i] - at if x > 0.0 else at - limits.lower[i]
+        if motion.varies:  # the velocity may be held for one period more
+            left -= dt * abs(x)
+        needed = x * x / (2.0 * limits.slope[i]) + abs(x) * limits.lag[i]
+        if needed > max(left, 0.0) * (1.0 + SLACK):
+            return False
+        at += dt * x
+    return True
+
+
 @dataclass(frozen=True)
 class MotionLimits(Limit):
     """All acceleration and jerk limits of a scheme, as one part of its program.
@@ -200,6 +248,8 @@ class MotionLimits(Limit):
     """
 
     kernel = staticmethod(motion_limits)
+    rest_kernel = staticmethod(keeps_joint_limits)
+    rows_suffice = True
     limits: tuple[RateLimits, ...] = ()
     couplings: tuple[JointCouplingTask, ...] = ()
 

@@ -1,14 +1,14 @@
 """A command is given only if the arm can still stop from it, clear of all that is near."""
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 
 import iiwa_dnn as d
-from helpers_simulation import driven
+from helpers_simulation import driven, own
 from iiwa_dnn.control import stopping
+from iiwa_dnn.schemes import rest
 from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.scene import Pair, second_order
 from judge_limits import breaches
@@ -76,152 +76,6 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
     assert min(ratios) == 1.0
     assert max(ratios) <= (1.0 if jerk == np.inf else 1.125)
     assert stopping.next_velocity(1.2, 1.2, 1.2, False) == pytest.approx(0.2)  # a period changed
-
-
-@pytest.mark.parametrize("periods", [2.0, 3.0, 7.0, 40.0, 300.0])
-def test_what_sets_off_away_has_gone_the_square_of_the_joints_part(periods: float) -> None:
-    motion = stopping.Motion(np.ones(1), np.ones(1), periods, True, False, False)
-    part, away = (
-        np.array(
-            [stopping.displacement_after(motion, x, b, k, 1.0) for k in range(int(periods) + 1)]
-        )
-        for x, b in ((1.0, 0.0), (1.0 / (3.0 * periods), 1.0))
-    )
-    assert (away / away[-1] >= (part / part[-1]) ** 2 - 1e-12).all()
-
-
-@pytest.mark.parametrize("cubic", [False, True])
-def test_the_displacement_along_a_motion_is_the_sum_of_its_velocities(cubic: bool) -> None:
-    random = np.random.default_rng(4)
-    for _ in range(300):
-        M = float(random.integers(1, 40))
-        x, before = random.standard_normal(2)
-        b = stopping.cubic_coefficient(x, before, M, False) if cubic else 0.0
-        motion = stopping.Motion(np.array([x]), np.array([b]), M, cubic, False, False)
-        velocities = [stopping.velocity_at(x, b, u, cubic) for u in np.arange(M) / M]
-        displacements = np.append(0.0, np.cumsum(velocities)) * 1e-3
-        assert stopping.least_displacement(motion, x, b, 1e-3) == pytest.approx(
-            displacements.min(), abs=1e-12
-        )
-        assert stopping.displacement_after(motion, x, b, M, 1e-3) == pytest.approx(
-            displacements[-1], abs=1e-12
-        )
-
-
-def gone(
-    periods: np.ndarray, x: Any, a: Any, time: float, says: bool
-) -> tuple[np.ndarray, np.ndarray]:
-    """Ways and velocities of joints at x with accelerations a that come to rest in `time` [s].
-
-    They brake along the cubics through their last two velocities that end there, solved for here.
-    """
-    displacement = periods[0] * x
-    displacements = [0.0 * x, displacement]
-    velocities = [x]
-    for last, period in pairwise(periods):
-        r = period if says else last
-        next_motion_state = 0.0 * x
-        if r < time:
-            # v(t) = (t - time)^2 (c + k t), with v(0) = x and v(-r) = x - r a
-            c = x / time**2
-            k = (c - (x - r * a) / (r + time) ** 2) / r
-            next_motion_state = (r - time) ** 2 * (c + k * r)
-        a = (next_motion_state - x) / r
-        x = next_motion_state
-        time = max(time - r, 0.0)
-        displacement = displacement + period * x
-        displacements.append(displacement)
-        velocities.append(x)
-    return np.array(displacements), np.array(velocities)
-
-
-def blocks_of(random: np.random.Generator) -> np.ndarray:
-    """Periods up to 1 that stay the same for a while."""
-    choices = np.array([1.0, 0.02, 0.1, 0.3, 0.6])
-    blocks = [np.full(random.integers(1, 60), random.choice(choices)) for _ in range(30)]
-    return np.concatenate([*blocks, np.ones(25)])
-
-
-@pytest.mark.parametrize("says", [False, True])
-@pytest.mark.parametrize("M", [1.0, 2.0, 3.0, 7.0, 20.0])
-def test_the_way_to_rest_in_any_periods_is_no_less_than_the_checked_one(
-    M: float, says: bool
-) -> None:
-    """It is up to 0.94 periods of the velocity less than that in the longest periods."""
-    random = np.random.default_rng(7)
-    angles = np.linspace(0.0, 2.0 * np.pi, 145)
-    x = np.cos(angles)
-    a = 6.0 / M * np.sin(angles)
-    bounds = []
-    longest = []
-    for own, rate in zip(x, a, strict=True):
-        b = stopping.cubic_coefficient(own, own - rate, M, True)
-        motion = stopping.Motion(np.array([own]), np.array([b]), M + 1.0, True, True, False)
-        bounds.append(min(stopping.end_displacement(motion, own, b, 1.0), 0.0))
-        b = stopping.cubic_coefficient(own, own - rate, M, False)
-        longest.append(stopping.least_displacement(motion, own, b, 1.0))
-    least = np.full(x.size, np.inf)
-    short = np.full(int(50 * M), 0.02)
-    runs = [np.append(short[::step], np.ones(25)) for step in range(1, 7)]
-    for periods in [*runs, *(blocks_of(random) for _ in range(40))]:
-        least = np.minimum(least, gone(periods, x, a, M, says)[0].min(axis=0))
-    assert (bounds <= least + 1e-12).all()
-    assert (longest > least + (0.1 if says else 0.8)).any()
-
-
-@pytest.mark.parametrize("says", [False, True])
-@pytest.mark.parametrize("cubic", [False, True])
-@pytest.mark.parametrize("lag", [0.0, 3.0])
-def test_a_motion_to_rest_keeps_the_limits_of_a_joint_in_any_periods(
-    says: bool, cubic: bool, lag: float
-) -> None:
-    """Its range is the least that passes; above a position-dependent limit it is 0 at the end."""
-    random = np.random.default_rng(11)
-    slope = 0.3
-    for _ in range(20):
-        M = float(random.integers(1, 12))
-        x = 1.0
-        a = random.uniform(-4.0, 6.0) / M if cubic else -x / M
-        b = stopping.cubic_coefficient(x, x - a, M, True) if cubic else 0.0
-        motion = stopping.Motion(np.array([x]), np.array([b]), M + 1.0, cubic, True, False)
-        limits = MotionConstants.of(
-            np.array([0.0] * 4 + [-99.0, 0.0, 99.0, 1.0, 1.0, 1.0, slope, lag])
-        )
-        too_short = 0.0
-        enough = 99.0
-        for _ in range(40):
-            limits.upper[0] = 0.5 * (too_short + enough)
-            if stopping.keeps_joint_limits(motion, np.zeros(1), limits, 1.0):
-                enough = limits.upper[0]
-            else:
-                too_short = limits.upper[0]
-        for _ in range(10):
-            periods = blocks_of(random)
-            periods = periods[: np.searchsorted(np.cumsum(periods), M + 2.0)]
-            times = np.cumsum(periods if says else np.append(0.0, periods[:-1]))
-            if cubic:
-                way, velocities = gone(periods, x, a, M, says)
-            else:
-                velocities = np.maximum(1.0 - (times - times[0]) / M, 0.0)
-                way = np.append(0.0, np.cumsum(periods * velocities))
-            assert way.max() <= enough + 1e-9
-            if lag > 0.0:
-                needed = velocities**2 / (2.0 * slope) + velocities * lag
-                assert (needed <= enough - way[:-1] + 1e-9).all()
-
-
-@pytest.mark.parametrize("M", [1.0, 2.0, 7.0, 40.0])
-def test_the_way_that_may_lead_nearer_is_that_of_the_velocities_which_do(M: float) -> None:
-    """Where nobody states the periods, each velocity may be held for the longest, or for none."""
-    for angle in np.linspace(0.0, 2.0 * np.pi, 145):
-        x, a = np.cos(angle), 6.0 / M * np.sin(angle)
-        b = stopping.cubic_coefficient(x, x - a, M, True)
-        motion = stopping.Motion(np.zeros(1), np.zeros(1), M + 1.0, True, True, True)
-        steps = np.arange(M)
-        own = stopping.cubic_coefficient(x, x - a, M, False)
-        velocities = [stopping.velocity_at(x, own, i / M, True) for i in steps]
-        bound = min(stopping.end_displacement(motion, x, b, 1.0), 0.0)
-        assert bound <= np.minimum(velocities, 0.0).sum() + 1e-12
 
 
 START = d.Configuration(ROBOT, ROBOT.start_posture())
@@ -399,3 +253,38 @@ def test_a_velocity_that_others_chose_is_tested_for_distances() -> None:
         assert found[0] >= found[1]
         clear += found
     assert 400 > clear[0] > clear[1] > 100
+
+
+def test_a_limit_of_ones_own_has_a_word_on_the_motion_to_rest() -> None:
+    """It has no rows: nothing but its refusals keeps the first joint within 0.3 rad."""
+
+    class Fence(d.Limit):
+        kernel = staticmethod(lambda *arrays: None)
+
+        @staticmethod
+        def rest_kernel(step: Any, constants: Any, motion: Any) -> bool:
+            x, b = motion[0][0], motion[1][0]
+            displacement = rest.end_displacement(rest.Motion(*motion), -x, -b)
+            return bool(step.q[0] - displacement <= START.q[0] + 0.3)
+
+    shield = d.Shield(ROBOT.with_limits(jerk=500.0), 4e-3)
+    request = 0.5 * np.eye(7)[0]
+    q = START.q
+    for _ in range(400):
+        q = shield.step(q, request).next_q
+    assert q[0] - START.q[0] == pytest.approx(0.8, rel=0.05)
+    shield = d.Shield(ROBOT.with_limits(jerk=500.0), 4e-3)
+    shield.limits += (Fence(),)
+    path = [START.q]
+    for _ in range(400):
+        path.append(shield.step(path[-1], request).next_q)
+    assert 0.29 < np.max(path, axis=0)[0] - START.q[0] <= 0.3
+    kinds = (ROBOT.q_lower, ROBOT.q_upper, ROBOT.dq_max, ROBOT.ddq_max, 500.0)
+    assert breaches(np.array(path), 4e-3, *kinds) == []
+
+
+def test_a_limit_says_whether_it_holds_at_a_step_only() -> None:
+    quick = own(d.Limit, bounds=(-np.ones(7), np.ones(7)))
+    titles = [each.title for each in (*JERK, beside(0.1, BALL), d.JointLimits(), quick)]
+    assert titles[:2] == ["AccelerationLimits", "JerkLimits"]
+    assert titles[2:] == ["CollisionAvoidance", "JointLimits", "Own (this step only)"]

@@ -20,10 +20,10 @@
 @interface@
 
 /* What a step is laid out with; tables, and the kinematics in the controller. */
-static inline control_cycle_ControlPlan controller_plan(struct controller *c)
+static inline control_plan_ControlPlan controller_plan(struct controller *c)
 {
     (void)c;
-    const control_cycle_ControlPlan plan = @plan@;
+    const control_plan_ControlPlan plan = @plan@;
     return plan;
 }
 
@@ -35,7 +35,7 @@ static inline control_state_MotionState controller_motion(const struct controlle
 
 static inline control_command_StepLog controller_log(const struct controller *c)
 {
-    const control_cycle_ControlPlan plan = controller_plan((struct controller *)c);
+    const control_plan_ControlPlan plan = controller_plan((struct controller *)c);
     const Vector numbers = {(double *)c->log, @width@};
     return @log_of@numbers, &plan.arrays.sizes);
 }
@@ -72,7 +72,7 @@ void controller_send(struct controller *c, const double *dq, double fraction)
 int controller_step(struct controller *c, const double *q, const double *target, double *dq)
 {
     CONTROLLER_ARENA;
-    const control_cycle_ControlPlan plan = controller_plan(c);
+    const control_plan_ControlPlan plan = controller_plan(c);
     const robot_kinematics_kernel_ModelTables model = @model@;
     const control_command_StepLog log = controller_log(c);
     const Vector motion_state = {c->motion_state, @motion@};
