@@ -58,6 +58,31 @@ def test_imports_point_forward() -> None:
     assert len(found) > 50
 
 
+def circles(modules: dict[str, set[str]]) -> list[str]:
+    """Modules that import themselves by way of others, given what each imports."""
+    found = []
+    for name in modules:
+        seen: set[str] = set()
+        ahead = {*modules[name]}
+        while ahead:
+            seen |= ahead
+            ahead = {each for far in ahead for each in modules.get(far, ())} - seen
+        if name in seen:
+            found.append(name)
+    return found
+
+
+def test_no_modules_of_the_robot_import_each_other_in_a_circle() -> None:
+    modules: dict[str, set[str]] = {}
+    for path in (PACKAGE / "robot").glob("[!_]*.py"):
+        module = path.relative_to(PACKAGE.parent).with_suffix("").parts
+        names = imported(path.read_text(encoding="utf-8"), module)
+        modules[path.stem] = {name[2] for name in names if name[1:2] == ("robot",) and name[2:]}
+    assert circles(modules) == []
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}}) == ["a", "b", "c"]
+    assert {"start", "tools"} <= modules["robot"]
+
+
 def test_a_wrong_import_is_found_and_a_right_one_passes() -> None:
     wrong = "from iiwa_dnn import qp\nimport iiwa_dnn\ndef f():\n    from ..networks import A"
     assert faults(wrong, ("iiwa_dnn", "qp", "program")) == ["__init__", "networks"]

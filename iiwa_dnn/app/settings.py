@@ -39,6 +39,7 @@ from iiwa_dnn.app.words import WORDS
 from iiwa_dnn.checks import Array
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.files import one_line, parse_toml, read_toml
+from iiwa_dnn.robot.obstacles import make_obstacles
 from iiwa_dnn.schemes.rate_limits import RateLimits, own_rate_limits
 from iiwa_dnn.simulation import Disturbances, IdealPlant, Push
 
@@ -74,6 +75,7 @@ PATHS: dict[str, Callable[..., Any]] = {
     "tilting-circle": Tilting,
 }
 PARTS: Choices = {
+    "robot.tool_shapes": make_obstacles,
     "reference.along": Circle,
     "limits.acceleration": partial(rate_limit, AccelerationLimits),
     "limits.jerk": partial(rate_limit, JerkLimits),

@@ -22,6 +22,7 @@ from iiwa_dnn.control.paths import (
     rank_warnings,
     setup_warnings,
     target_warnings,
+    warn_of_bodies,
 )
 from iiwa_dnn.control.plan import ControlPlan, Instant
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
@@ -138,6 +139,8 @@ class Controller:
         # A verified stopping motion keeps the limits of before.
         if name in ("robot", "scheme") and value is not before:
             self._state.motion.stopping_periods = 0.0
+            if "scheme" in vars(self):  # the robot is set before
+                warn_of_bodies(self.robot, self.scheme.limits, self._state.warned)
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
@@ -261,7 +264,7 @@ class Controller:
     ) -> Command:
         control_layout = self._derived
         state = self._state
-        if control_layout is None or not state.warned:
+        if control_layout is None or "start" not in state.warned:
             control_layout = self._prepare(q, t, target is None)
         plan = control_layout.plan if target is None else control_layout.given
         if control_layout.varies or not dt is elapsed is None:
@@ -334,7 +337,7 @@ class Controller:
         checks.finite("t", t)
         start = Configuration(self.robot, checks.joint_positions("q", q, self.robot.dof))
         self.anchor(start)
-        if not self._state.warned:
+        if "start" not in self._state.warned:
             self.warn_of_start(start, t, own)
         return self.control_layout
 

@@ -9,13 +9,13 @@ from pinocchio import log3
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.command import SINGULAR
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError, warn_caller
 from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.references import Reference
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.robot.collision import unwatched_links
-from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
+from iiwa_dnn.robot.collision import CLEARANCE, TOO_NEAR, collision_model, unwatched_links
+from iiwa_dnn.schemes import Limit, OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
@@ -102,6 +102,32 @@ def setup_warnings(
     if program.places_of(CollisionAvoidance) and (links := unwatched_links(robot)):
         yield unwatched(links)
     yield from pair_warnings(program, start, t)
+
+
+def warn_of_bodies(robot: Robot, limits: Sequence[Limit], warned: set[str]) -> None:
+    """Warn of what watched distances assume of a robot's tools, or do not watch of them.
+
+    Args:
+        robot: The robot.
+        limits: Limits of a controller or a shield.
+        warned: Warnings that were given, to which those given now are added.
+    """
+    for message in _body_warnings(robot, limits):
+        if message not in warned:
+            warned.add(message)
+            warn_caller(message)
+
+
+def _body_warnings(robot: Robot, limits: Sequence[Limit]) -> Iterator[str]:
+    parts = [part for part in limits if isinstance(part, CollisionAvoidance)]
+    for part in parts:
+        yield from (tool.assumption for tool in robot.tools if tool.assumption)
+        for first, second, reason in collision_model(robot).unwatched:
+            if part.self_collision and reason == TOO_NEAR:
+                yield (
+                    f"nothing keeps {second} and {first} apart: in every posture they are within "
+                    f"{CLEARANCE:g} m of each other"
+                )
 
 
 def _gain_warnings(program: ProgramLayout, dt: float) -> Iterator[str]:

@@ -48,7 +48,7 @@ from iiwa_dnn.control.arms import (
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import ACTION_OF, periods_of_step
 from iiwa_dnn.control.cycle import INVALID, ControlLayout
-from iiwa_dnn.control.paths import setup_warnings
+from iiwa_dnn.control.paths import setup_warnings, warn_of_bodies
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.requests import (
     CUT,
@@ -321,6 +321,7 @@ class Shield:
         self._limits = tuple(limits)
         self._begin()
         self.reset()
+        warn_of_bodies(robot, self._limits, self._warned)
 
     @property
     def limits(self) -> tuple[Limit, ...]:
@@ -346,6 +347,7 @@ class Shield:
             self._layouts.clear()
             self.reset()
             self._halted = halted
+            warn_of_bodies(self.robot, self._limits, self._warned)
 
     def _begin(self) -> None:
         self._lock = threading.RLock()

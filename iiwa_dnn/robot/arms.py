@@ -61,6 +61,7 @@ _BAXTER = "baxter_description/urdf/baxter.urdf"
 # Stretched farther out, Baxter's motors do not hold its arms: a real one has springs.
 _BENT = (0.0, -1.0, 0.0, 1.9, 0.0, 0.67, 0.0)
 _WRIST = (0.0, 0.0, 0.0)
+_IIWA7 = (8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17)
 _UR = (
     0.8699832445515518,
     -0.8770505783483138,
@@ -81,12 +82,13 @@ ARMS = {
         "iiwa7/iiwa7.urdf",
         ("iiwa7_flange",),
         (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0),  # the paper's theta(0), section V
-        ((8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17), (np.inf,) * 7),
+        (_IIWA7, (np.inf,) * 7),
     ),
     "iiwa7_dual": Arm(
         "iiwa7_dual/iiwa7_dual.urdf",
         ("left_iiwa7_flange", "right_iiwa7_flange"),
         (0.0, 0.6, 0.0, -1.4, 0.0, 1.1, 0.0) * 2,
+        (_IIWA7 * 2, (np.inf,) * 14),
     ),
     "baxter_left": Arm(_BAXTER, ("left_gripper",), _BENT),
     "baxter_right": Arm(_BAXTER, ("right_gripper",), _BENT),
@@ -149,6 +151,9 @@ ARMS = {
     ),
 }
 """Arms by name.
+
+Hands. fr3, iiwa7, iiwa7_dual, ur3, ur5, ur10 and xarm7 end at their flanges, without one. The other
+files have a hand or gripper, the panda's with its fingers closed, as joints that are held still.
 
 Sources of the rates. iiwa7: KUKA publishes none. These accelerations are `drake:acceleration` of
 iiwa_description/sdf/iiwa7_no_collision.sdf in github.com/RobotLocomotion/models; its README derives

@@ -4,7 +4,8 @@ It is read from ``NAME.collisions.toml`` beside the URDF, or made from the URDF'
 cylinder gets two round ends, any other body a capsule around it along one of its principal axes.
 The files of the named arms have smaller ones, along axes of any direction. As in an SRDF file some
 pairs are left out: neighbours, pairs that never meet, and pairs that meet in the start posture
-already, as capsules do that overlap in every posture.
+already, as capsules do that overlap in every posture. Tools and held objects are further capsules,
+by the names of their frames.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import os
 import warnings
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from itertools import chain, combinations, product
 from pathlib import Path
@@ -30,13 +31,21 @@ from iiwa_dnn.files import one_line, read_toml, write_text
 from iiwa_dnn.robot.arms import ARMS, robots_folder
 from iiwa_dnn.robot.obstacles import box_around
 from iiwa_dnn.robot.robot import Robot
-from iiwa_dnn.robot.shapes import read_shapes, source_of
+from iiwa_dnn.robot.shapes import read_shapes, source_of, tool_shapes
 
 SAMPLES = 10_000
 """Random postures in which the distances of the pairs are measured."""
 
 CLEARANCE = 0.02
 """Distance beyond which a pair never meets [m]."""
+
+TOOL_SAMPLES = 300
+"""Random postures in which the distances of tools from links are measured."""
+
+TOO_NEAR = "near in every posture"
+
+_STILL = 1e-6
+"""Change of a distance over those postures up to which no joint moves a pair [m]."""
 
 
 @dataclass(frozen=True)
@@ -78,11 +87,22 @@ class CollisionModel(checks.Checked):
         capsules: The capsules.
         left_out: Pairs of links that are left out, each with the reason: ``"adjacent"``,
             ``"never"``, ``"start"`` or a text of one's own.
+        too_near: Pairs of a tool's capsule and a link's, by their indices, that are within
+            `CLEARANCE` in every posture, as at the wrist, and are not kept apart; each with the
+            reason: ``"no joint moves it"`` or `TOO_NEAR`.
     """
 
     _checks: ClassVar[checks.Checks] = {"left_out": _reasons}
     capsules: tuple[LinkCapsule, ...]
     left_out: tuple[tuple[str, str, str], ...]
+    too_near: tuple[tuple[int, int, str], ...] = ()
+
+    @property
+    def unwatched(self) -> tuple[tuple[str, str, str], ...]:
+        """Pairs of links and tools that are not kept apart, each with the reason."""
+        names = [capsule.link for capsule in self.capsules]
+        near = ((names[i], names[k], reason) for i, k, reason in self.too_near)
+        return (*self.left_out, *near)
 
     def pairs(self, robot: Robot) -> list[tuple[int, int]]:
         """List the pairs of capsules that are kept apart, by their indices, the inner link first.
@@ -93,13 +113,16 @@ class CollisionModel(checks.Checked):
         links = [capsule.link for capsule in self.capsules]
         joints = [_joint(robot, link) for link in links]
         left_out = {frozenset(pair[:2]) for pair in self.left_out}
+        too_near = {pair[:2] for pair in self.too_near}
         for link in chain.from_iterable(left_out):
             robot.frame_id(link)
         outward = sorted(range(len(joints)), key=joints.__getitem__)
         return [
             (i, k)
             for i, k in combinations(outward, 2)
-            if joints[i] != joints[k] and frozenset((links[i], links[k])) not in left_out
+            if joints[i] != joints[k]
+            and frozenset((links[i], links[k])) not in left_out
+            and (i, k) not in too_near
         ]
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -140,7 +163,39 @@ def collision_file(robot: Robot) -> Path:
 
 @lru_cache(maxsize=32)
 def collision_model(robot: Robot) -> CollisionModel:
-    """Read the collision geometry of a robot; if it has no file, make it from the URDF.
+    """Return the collision geometry of a robot's links (`link_model`) and of its tools.
+
+    Raises:
+        InvalidInputError, FileError: As of `link_model`.
+    """
+    links = link_model(robot)
+    tools = _capsules(robot, tool_shapes(robot))
+    model = replace(links, capsules=(*links.capsules, *tools))
+    if not tools:
+        return model
+    first = len(links.capsules)
+    pairs = [pair for pair in model.pairs(robot) if max(pair) >= first]
+    return replace(model, too_near=_too_near(robot, coal_geometry(robot, model, pairs)))
+
+
+def _too_near(robot: Robot, geometry: pin.GeometryModel) -> tuple[tuple[int, int, str], ...]:
+    """List the pairs of a geometry that are within `CLEARANCE` in every posture, with reasons."""
+    data = robot.model.createData()
+    scratch = pin.GeometryData(geometry)
+    distances = []
+    for q in robot.draw(np.random.default_rng(0), TOOL_SAMPLES):
+        pin.computeDistances(robot.model, data, geometry, scratch, q)
+        distances.append([found.min_distance for found in scratch.distanceResults])
+    apart = np.max(distances, axis=0)
+    moved = apart - np.min(distances, axis=0) > _STILL
+    reasons = np.where(moved, TOO_NEAR, "no joint moves it").tolist()
+    pairs = [(pair.first, pair.second) for pair in geometry.collisionPairs]
+    return tuple((*pairs[k], reasons[k]) for k in np.flatnonzero(apart <= CLEARANCE))
+
+
+@lru_cache(maxsize=32)
+def link_model(robot: Robot) -> CollisionModel:
+    """Read the collision geometry of a robot's links; if it has no file, make it from the URDF.
 
     No file is written. If making takes more than a second, a warning says how to keep the result.
 
@@ -167,9 +222,9 @@ def unwatched_links(robot: Robot) -> tuple[str, ...]:
     """Name the first link of each joint that carries mass but no capsule: no row keeps it clear.
 
     Raises:
-        InvalidInputError, FileError, NotFoundError: As of `collision_model`.
+        InvalidInputError, FileError, NotFoundError: As of `link_model`.
     """
-    watched = {_joint(robot, capsule.link) for capsule in collision_model(robot).capsules}
+    watched = {_joint(robot, capsule.link) for capsule in link_model(robot).capsules}
     heavy = {joint for joint, body in enumerate(robot.model.inertias) if joint and body.mass > 0.0}
     links = [frame for frame in robot.model.frames if frame.type == pin.FrameType.BODY]
     first = {link.parentJoint: link.name for link in reversed(links)}
@@ -181,7 +236,8 @@ def make_collision_model(robot: Robot, samples: int = SAMPLES) -> CollisionModel
 
     Postures are drawn evenly within the robot's limits, with a fixed seed.
     """
-    whole = CollisionModel(tuple(_capsules(robot)), ())
+    shapes = read_shapes(robot, pin.GeometryType.COLLISION).geometryObjects
+    whole = CollisionModel(tuple(_capsules(robot, shapes)), ())
     links = [capsule.link for capsule in whole.capsules]
     joints = {link: _joint(robot, link) for link in links}
     pairs = whole.pairs(robot)
@@ -240,12 +296,11 @@ def _joint(robot: Robot, link: str) -> int:
     return int(robot.model.frames[robot.frame_id(link)].parentJoint)
 
 
-def _capsules(robot: Robot) -> list[LinkCapsule]:
-    """Fit a capsule to each <collision> shape of the URDF, in the frame of its link.
+def _capsules(robot: Robot, shapes: Iterable[pin.GeometryObject]) -> list[LinkCapsule]:
+    """Fit a capsule to each shape of a robot, in the frame of its link.
 
     Spheres that another capsule of the link holds, such as the ends of a cylinder, are left out.
     """
-    shapes = read_shapes(robot, pin.GeometryType.COLLISION).geometryObjects
     found: list[LinkCapsule] = []
     for shape in sorted(shapes, key=lambda each: isinstance(each.geometry, coal.Sphere)):
         frame = robot.model.frames[shape.parentFrame]

@@ -14,7 +14,13 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Array
-from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
+from iiwa_dnn.errors import (
+    FileError,
+    InvalidInputError,
+    MissingDependencyError,
+    NotFoundError,
+    warn_caller,
+)
 from iiwa_dnn.robot.arms import ARMS, robots_folder
 from iiwa_dnn.robot.robot import Robot, frame_id, model_limits
 from iiwa_dnn.robot.urdf import build_model, number_of, read_urdf
@@ -36,6 +42,7 @@ def load_robot(
     locked: str | Iterable[str] = (),
     tool: pin.SE3 | ArrayLike | None = None,
     frames: str | Iterable[str] = (),
+    tool_shapes: Any = None,
 ) -> Robot:
     """Load a robot by its name, from a URDF file or from a Pinocchio model.
 
@@ -54,6 +61,7 @@ def load_robot(
             or x, y, z [m], roll, pitch, yaw [rad], (6,).
         frames: Further frames that tasks track, such as a second arm's tip: joints that move one
             of them stay free.
+        tool_shapes: Shapes of the tool in the frame `tip`, as `Robot.with_tool` takes them.
 
     Raises:
         NotFoundError: If there is no such robot, frame or joint; the error lists those that exist.
@@ -94,7 +102,16 @@ def load_robot(
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
     for message in _load_warnings(robot, still, left_out):
         warnings.warn(message, stacklevel=2)
-    return robot if tool is None else robot.with_tool(tool)
+    return _hold(robot, tool, tool_shapes)
+
+
+def _hold(robot: Robot, tool: pin.SE3 | ArrayLike | None, shapes: Any) -> Robot:
+    """Return a robot with its tool, if it has one; refuse shapes of none."""
+    if tool is not None:
+        return robot.with_tool(tool, tool_shapes=shapes)
+    if shapes is not None:
+        raise InvalidInputError("tool_shapes", "are a tool's: tool= says where its tip is", shapes)
+    return robot
 
 
 def _load_warnings(robot: Robot, still: list[str], left_out: list[str]) -> Iterator[str]:
@@ -195,6 +212,30 @@ def _rates(name: str, model: pin.Model, tips: Iterable[str]) -> dict[str, tuple[
     return dict(zip(joints, rates, strict=True)) if len(rates) == len(joints) else {}
 
 
+def _soft_limits(
+    path: Path | None, joint: ET.Element, lower: float, upper: float
+) -> tuple[float, float]:
+    """Return the position limits [rad] within which a joint's ``<safety_controller>`` keeps it.
+
+    They are `lower` and `upper`, or its soft limits where these are inside. Soft limits of which
+    the lower one is not below the other are not given; of those that leave nothing of the range, a
+    warning tells.
+    """
+    controller = joint.find("safety_controller")
+    if controller is None:
+        return lower, upper
+    soft = [float(controller.get(f"soft_{side}_limit", 0.0)) for side in ("lower", "upper")]
+    inside = (max(lower, soft[0]), min(upper, soft[1]))
+    if inside[0] < inside[1]:
+        return inside
+    if soft[0] < soft[1]:
+        warn_caller(
+            f"{path}: the soft limits of joint {joint.get('name')!r}, {soft[0]:g} to {soft[1]:g}, "
+            f"leave nothing of {lower:g} to {upper:g}, which hold"
+        )
+    return lower, upper
+
+
 def _limits(
     path: Path | None,
     model: pin.Model,
@@ -229,6 +270,7 @@ def _limits(
             )
         if not twists[:, i].any():
             raise InvalidInputError("source", f"the axis of joint {name!r} is zero", name)
+        limits[:2, i] = _soft_limits(path, joint, *limits[:2, i])
         limits[3:, i] = rates.get(name, np.inf)
         further = (
             ("limit", ("acceleration", "jerk"), limits[3:]),

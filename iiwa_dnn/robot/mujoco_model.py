@@ -15,19 +15,22 @@ import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from typing import Any
 
+import coal
 import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, MissingDependencyError, import_extra
 from iiwa_dnn.robot.robot import Robot
-from iiwa_dnn.robot.shapes import source_of
+from iiwa_dnn.robot.shapes import source_of, tool_shapes
 
 TIP_SITE = "tip"
 """Name of the site at the tip frame."""
 
 VISUAL_GROUP = 1
-"""Geometry group of the URDF's <visual> shapes."""
+"""Geometry group of the URDF's <visual> shapes, and of tools."""
+
+_TOOL_COLOR = (0.55, 0.55, 0.58, 1.0)
 
 
 @dataclass(frozen=True)
@@ -81,7 +84,7 @@ def build_spec(robot: Robot) -> Any:
 
     Locked joints are welded. The mechanical stops are the URDF's: the robot's own position limits
     are a matter of the controller. Body 0 is the world; every link is a body of its own,
-    ``TIP_SITE`` is at the tip, joints and motors stand in Pinocchio's order.
+    ``TIP_SITE`` is at the tip, joints and motors stand in Pinocchio's order. Tools have no mass.
 
     Raises:
         MissingDependencyError: If MuJoCo is not installed.
@@ -115,7 +118,33 @@ def build_spec(robot: Robot) -> Any:
     carrier = joints[robot.model.names[frame.parentJoint]].parent
     turn = _quaternion(frame.placement)
     carrier.add_site(name=TIP_SITE, pos=frame.placement.translation, quat=turn)
+    for tool in tool_shapes(robot):
+        _add_tool(mj, joints[robot.model.names[tool.parentJoint]].parent, tool)
     return spec
+
+
+def _add_tool(mj: Any, body: Any, tool: pin.GeometryObject) -> None:
+    """Add a shape of a tool to the body that carries it, without mass or contacts."""
+    shape = tool.geometry
+    if isinstance(shape, coal.Box):
+        kind = mj.mjtGeom.mjGEOM_BOX
+        size = shape.halfSide
+    else:
+        round_kinds = (mj.mjtGeom.mjGEOM_SPHERE, mj.mjtGeom.mjGEOM_CAPSULE)
+        kind = round_kinds[shape.halfLength > 0.0]
+        size = np.array([shape.radius, shape.halfLength, 0.0])
+    body.add_geom(
+        name=tool.name,
+        type=kind,
+        size=size,
+        pos=tool.placement.translation,
+        quat=_quaternion(tool.placement),
+        rgba=_TOOL_COLOR,
+        group=VISUAL_GROUP,
+        mass=0.0,
+        contype=0,
+        conaffinity=0,
+    )
 
 
 def _weld(spec: Any, robot: Robot) -> None:

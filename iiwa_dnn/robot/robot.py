@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import InvalidInputError, NotFoundError
+from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.start import best_start
+from iiwa_dnn.robot.tools import Tool, make_tool
+from iiwa_dnn.robot.urdf import read_geometry
 
 _NO_LIMIT = 1e300
 """Value above which a limit of Pinocchio's means none [rad, rad/s]."""
@@ -47,6 +51,7 @@ class Robot:
         q_locked: Positions at which the joints of ``locked`` are frozen [rad], one each.
         path: The URDF file, where the robot came from one; it is read once, on loading.
         urdf: Text of the URDF as it was read.
+        tools: Tools and held objects at the tip, the innermost first.
         tip_id: Pinocchio's index of the tip frame.
 
     Raises:
@@ -63,6 +68,7 @@ class Robot:
     q_locked: tuple[float, ...] = ()
     path: Path | None = None
     urdf: str | None = None
+    tools: tuple[Tool, ...] = ()
     tip_id: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -203,18 +209,26 @@ class Robot:
                 return f"is not between {lower:g} and {upper:g} rad: joint {i} is at {each:g}{hint}"
         return ""
 
-    def with_tool(self, tool: pin.SE3 | ArrayLike, name: str = "tool") -> Robot:
-        """Return the same robot with a frame fixed to its tip, which becomes the tip.
+    def with_tool(
+        self, tool: pin.SE3 | ArrayLike, name: str = "tool", tool_shapes: Any = None
+    ) -> Robot:
+        """Return the same robot with a tool or a held object, whose frame becomes the tip.
+
+        Distances are kept of its shapes as of a link that goes by its name. It has no mass.
 
         Args:
-            tool: Pose of the tool in the tip's frame: a Pinocchio SE3, or x, y, z [m] and roll,
-                pitch, yaw [rad] as in a URDF's ``<origin>``, (6,).
-            name: Name of the frame, which is none of the robot's.
+            tool: Pose of the tool in the tip's frame, the flange: a Pinocchio SE3, or x, y, z [m]
+                and roll, pitch, yaw [rad] as in a URDF's ``<origin>``, (6,).
+            name: Name of the tool and of its frame, which is none of the robot's.
+            tool_shapes: Shapes of the tool in the frame of the flange: a `Sphere`, `Capsule` or
+                `Box`, or several; [] for none. None: a capsule from the flange to the tool's tip
+                stands for it, and a warning says so where distances are watched.
 
         Raises:
-            InvalidInputError: If the pose is neither, or not finite, or the name is taken.
+            InvalidInputError: If the pose is neither, or not finite, or the name is taken, or a
+                shape is another one or moves.
         """
-        if name in self.frame_names:
+        if checks.instance("name", name, str) in self.frame_names:
             raise InvalidInputError("tool", f"the robot has a frame {name!r} already", name)
         if not isinstance(tool, pin.SE3):
             xyz_rpy = checks.finite_array("tool", tool, (6,)).copy()
@@ -223,7 +237,8 @@ class Robot:
         pose = tip.placement * tool
         model = self.model.copy()
         model.addFrame(pin.Frame(name, tip.parentJoint, self.tip_id, pose, pin.FrameType.OP_FRAME))
-        return replace(self, model=model, tip=name)
+        fixed = make_tool(name, self.tip, tool.translation, tool_shapes)
+        return replace(self, model=model, tip=name, tools=(*self.tools, fixed))
 
     def start_posture(self) -> checks.Array:
         """Return joint positions (n,) [rad] to start from, inside the limits.
@@ -242,7 +257,12 @@ class Robot:
     @cached_property
     def _best_start(self) -> checks.Array:
         ratios = np.random.default_rng(0).uniform(*_MIDDLE, (_CANDIDATES, self.dof))
-        return best_start(self, self._inside(ratios))
+        shapes = pin.GeometryModel()
+        with suppress(FileError):  # a mesh is missing
+            if self.path is not None:
+                kind = pin.GeometryType.COLLISION
+                shapes = read_geometry(self.model, self.path, str(self.urdf), kind)
+        return best_start(self.model, self.tip_id, self.reach, shapes, self._inside(ratios))
 
     def draw(self, random: np.random.Generator, count: int) -> checks.Array:
         """Draw joint positions evenly within the limits, at most 2 pi from 0, (count, n) [rad]."""

@@ -1,11 +1,8 @@
-"""The shapes of a robot's URDF: its collision shapes, and the meshes that it is drawn with."""
-
-from __future__ import annotations
+"""The shapes of a robot: those of its URDF, of its tools, and the meshes that it is drawn with."""
 
 import warnings
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import coal
 import numpy as np
@@ -13,11 +10,9 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.files import one_line
-from iiwa_dnn.robot.urdf import parser_messages
-
-if TYPE_CHECKING:
-    from iiwa_dnn.robot.robot import Robot
+from iiwa_dnn.robot.obstacles import Box
+from iiwa_dnn.robot.robot import Robot
+from iiwa_dnn.robot.urdf import read_geometry
 
 Mesh = tuple[pin.GeometryObject, NDArray[np.float64], NDArray[np.int32]]
 """A shape with its corners in the frame of the joint that carries it [m], (k, 3), and triangles of
@@ -38,32 +33,37 @@ def read_shapes(robot: Robot, kind: pin.GeometryType) -> pin.GeometryModel:
         InvalidInputError: The robot does not come from a file.
         FileError: A mesh is missing or damaged.
     """
-    return _read(robot.model, *source_of(robot), kind).copy()
+    return read_geometry(robot.model, *source_of(robot), kind).copy()
 
 
-@lru_cache(maxsize=8)  # meshes of 100,000 triangles take a second
-def _read(model: pin.Model, path: Path, text: str, kind: pin.GeometryType) -> pin.GeometryModel:
-    folders = [str(folder) for folder in (*path.absolute().parents, *path.resolve().parents)]
-    loader = coal.CachedMeshLoader(coal.BV_OBB)  # half of the default's time
-    try:
-        with parser_messages():  # they were shown when the robot was loaded
-            return pin.buildGeomFromUrdfString(model, text, kind, None, folders, loader)
-    except (ValueError, RuntimeError) as error:
-        # Behind where coal's source has it, before its advice.
-        reason = one_line(error).rpartition("message: ")[2].partition(" Hint: ")[0]
-        advice = "ROS_PACKAGE_PATH names the folder of packages"
-        raise FileError(path, f"a shape cannot be read ({reason}); {advice}") from error
+def tool_shapes(robot: Robot) -> list[pin.GeometryObject]:
+    """List the shapes of a robot's tools in the frames of the joints that carry them."""
+    found = []
+    for tool in robot.tools:
+        index = robot.frame_id(tool.name)
+        flange = robot.model.frames[robot.frame_id(tool.flange)]
+        for number, shape in enumerate(tool.shapes):
+            center, rotation, half = shape.box
+            sides = 2.0 * half
+            is_box = isinstance(shape, Box)
+            body = coal.Box(*sides) if is_box else coal.Capsule(shape.thickness, sides[2])
+            place = flange.placement * pin.SE3(rotation, center)
+            name = f"{tool.name}_{number}"
+            found.append(pin.GeometryObject(name, flange.parentJoint, index, place, body))
+    return found
 
 
 def visual_shapes(robot: Robot) -> pin.GeometryModel:
-    """Read the visual shapes of a robot; if a mesh is missing, return none and warn."""
-    if robot.path is None:
-        return pin.GeometryModel()
+    """Read the visual shapes of a robot; if a mesh is missing, warn, and return its tools alone."""
+    shapes = pin.GeometryModel()
     try:
-        return read_shapes(robot, pin.GeometryType.VISUAL)
+        if robot.path is not None:
+            shapes = read_shapes(robot, pin.GeometryType.VISUAL)
     except FileError as error:
         warnings.warn(f"{robot.name} is drawn without its shapes: {error}", stacklevel=2)
-        return pin.GeometryModel()
+    for tool in tool_shapes(robot):
+        shapes.addGeometryObject(tool)
+    return shapes
 
 
 @lru_cache(maxsize=4)  # a robot of 100,000 triangles takes seconds

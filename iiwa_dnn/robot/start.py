@@ -1,19 +1,9 @@
 """Start postures of arms without a known one."""
 
-from __future__ import annotations
-
-from contextlib import suppress
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn.checks import Array
-from iiwa_dnn.errors import IiwaDnnError
-from iiwa_dnn.robot.shapes import read_shapes
-
-if TYPE_CHECKING:
-    from iiwa_dnn.robot.robot import Robot
 
 _TESTED = 20
 """Postures that are tested for their surroundings and for collisions, the best ones."""
@@ -25,7 +15,9 @@ _ZERO = 1e-6
 """Ratio to the largest singular value below which one is zero."""
 
 
-def best_start(robot: Robot, postures: Array) -> Array:
+def best_start(
+    model: pin.Model, tip_id: int, reach: float, shapes: pin.GeometryModel, postures: Array
+) -> Array:
     """Choose the posture out of (k, n) [rad] that is farthest from singular ones, (n,).
 
     The measure of a posture is the least singular value of the tip's Jacobian, among those that are
@@ -36,43 +28,48 @@ def best_start(robot: Robot, postures: Array) -> Array:
 
     Source: C. A. Klein, B. E. Blaho, "Dexterity measures for the design and control of
     kinematically redundant manipulators", Int. J. Robotics Research 6(2), 1987.
+
+    Args:
+        model: The Pinocchio model of n joints.
+        tip_id: Index of the tip's frame.
+        reach: Distance of the tip from the base at most [m]; of no use if 0 or infinite.
+        shapes: Collision shapes; none where they are not known.
+        postures: The postures.
     """
-    reach = robot.reach if 0.0 < robot.reach < np.inf else 1.0
-    jacobians = _jacobians(robot, postures, reach)
+    reach = reach if 0.0 < reach < np.inf else 1.0
+    jacobians = _jacobians(model, tip_id, postures, reach)
     values = np.linalg.svd(jacobians, compute_uv=False)
     least = (values > _ZERO * values.max()).sum(axis=1).max() - 1
     order = np.argsort(-values[:, least], kind="stable")[:_TESTED]
     best = postures[order]
     steps = _AWAY * reach * np.linalg.pinv(jacobians[order], _ZERO)[:, :, :3].transpose(0, 2, 1)
     around = best[:, np.newaxis] + np.concatenate([steps, -steps], axis=1)
-    jacobians = _jacobians(robot, around.reshape(-1, robot.dof), reach)
+    jacobians = _jacobians(model, tip_id, around.reshape(-1, model.nv), reach)
     values = np.linalg.svd(jacobians, compute_uv=False)[:, least].reshape(len(best), -1)
-    order = np.lexsort([-values.min(axis=1), _count_collisions(robot, best)])
+    order = np.lexsort([-values.min(axis=1), _count_collisions(model, shapes, best)])
     return np.array(best[order[0]])
 
 
-def _jacobians(robot: Robot, postures: Array, reach: float) -> Array:
+def _jacobians(model: pin.Model, tip_id: int, postures: Array, reach: float) -> Array:
     """Compute the tip's Jacobians (k, 6, n) with the rows of rotation times the reach [m], or 0."""
-    data = robot.model.createData()
-    at_tip = (robot.tip_id, pin.LOCAL_WORLD_ALIGNED)
-    found = [pin.computeFrameJacobian(robot.model, data, q, *at_tip) for q in postures]
-    units = np.repeat([1.0, reach if robot.dof >= 6 else 0.0], 3)[:, np.newaxis]
-    return np.asarray(units * np.reshape(found, (-1, 6, robot.dof)))
+    data = model.createData()
+    at_tip = (tip_id, pin.LOCAL_WORLD_ALIGNED)
+    found = [pin.computeFrameJacobian(model, data, q, *at_tip) for q in postures]
+    units = np.repeat([1.0, reach if model.nv >= 6 else 0.0], 3)[:, np.newaxis]
+    return np.asarray(units * np.reshape(found, (-1, 6, model.nv)))
 
 
-def _count_collisions(robot: Robot, postures: Array) -> Array:
+def _count_collisions(model: pin.Model, shapes: pin.GeometryModel, postures: Array) -> Array:
     """Count the pairs of collision shapes that meet at each posture (k, n), (k,).
 
     Pairs that meet at all postures are left out.
     """
-    geometry = pin.GeometryModel()
-    with suppress(IiwaDnnError):  # no file, or a mesh is missing
-        geometry = read_shapes(robot, pin.GeometryType.COLLISION)
+    geometry = shapes.copy()
     geometry.addAllCollisionPairs()
-    data = robot.model.createData()
+    data = model.createData()
     scratch = pin.GeometryData(geometry)
     meet = np.zeros((len(postures), len(geometry.collisionPairs)), dtype=bool)
     for row, q in zip(meet, postures, strict=True):
-        pin.computeCollisions(robot.model, data, geometry, scratch, q, False)
+        pin.computeCollisions(model, data, geometry, scratch, q, False)
         row[:] = [result.isCollision() for result in scratch.collisionResults]
     return np.asarray((meet & ~meet.all(axis=0)).sum(axis=1))

@@ -1,18 +1,21 @@
 """URDF files: read as Pinocchio's parser does, or refused with its reason."""
 
 import os
+import posixpath
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryFile
 from threading import Lock
 from xml.parsers import expat
 
+import coal
 import pinocchio as pin
 
-from iiwa_dnn.errors import FileError
+from iiwa_dnn.errors import FileError, warn_caller
 from iiwa_dnn.files import one_line
 
 _UTF_16 = (b"\xfe\xff", b"\xff\xfe")
@@ -20,6 +23,12 @@ _UNREAD = re.compile(r"<\?xml\s.*?\?>|<!--.*?-->", re.DOTALL)
 # One sentence of it: what follows two spaces is advice.
 _MESSAGE = re.compile(rb"(?:Error|Warning): +(.*?)(?:\.  .*)?\n +at line \d+ in .*\n")
 _UNSPECIFIC = b"joint xml is not initialized correctly"
+# Of the reader of meshes: there is nothing that encloses a body.
+_NO_TRIANGLES = re.compile(
+    r"Could not load resource (.+)\n"
+    r"(?:No meshes remaining|.*There are no facets defined|Mesh with invalid primitive type)"
+)
+_NOT_FOUND = "could not be found"
 
 _lock = Lock()
 
@@ -28,7 +37,8 @@ def read_urdf(path: Path) -> ET.Element:
     """Read a URDF file as XML; return its first element.
 
     A continuous joint becomes a revolute one of a range without end: one coordinate, like all
-    others. An effort that is missing or negative becomes 0, "not given".
+    others. An effort that is missing or negative becomes 0, "not given". Capsules are read whatever
+    the version of the file.
 
     Raises:
         FileError: If the file cannot be read, is not XML or no URDF, or a velocity limit is not a
@@ -45,6 +55,8 @@ def read_urdf(path: Path) -> ET.Element:
         raise FileError(path, f"not XML that can be read: {one_line(error)}") from error
     if root.tag != "robot":
         raise FileError(path, f"no URDF: its first element is <{root.tag}>, not <robot>")
+    if root.get("version", "1.0") == "1.0" and root.find(".//geometry/capsule") is not None:
+        root.set("version", "1.1")  # the first one in which the parser takes a capsule
     for joint in root.findall("joint"):
         limit = joint.find("limit")
         if joint.get("type") == "continuous":
@@ -125,6 +137,57 @@ def build_model(path: Path, root: ET.Element, text: str) -> tuple[pin.Model, lis
             problem = "is in a loop, or its child link has another parent"
             raise FileError(path, f"joint {joint.get('name')!r} {problem}")
     return model, messages
+
+
+@lru_cache(maxsize=8)  # meshes of 100,000 triangles take a second
+def read_geometry(
+    model: pin.Model, path: Path, text: str, kind: pin.GeometryType
+) -> pin.GeometryModel:
+    """Read the visual or collision shapes of a URDF; meshes in its folder or above it.
+
+    A mesh without triangles is left out, and a warning says so.
+
+    Args:
+        model: Its Pinocchio model.
+        path: The file.
+        text: The URDF as it was read.
+        kind: Visual or collision shapes.
+
+    Raises:
+        FileError: A mesh is missing or damaged.
+    """
+    folders = [str(folder) for folder in (*path.absolute().parents, *path.resolve().parents)]
+    loader = coal.CachedMeshLoader(coal.BV_OBB)  # half of the default's time
+    try:
+        with parser_messages():  # they were shown when the robot was loaded
+            return pin.buildGeomFromUrdfString(model, text, kind, None, folders, loader)
+    except (ValueError, RuntimeError) as error:
+        empty = _NO_TRIANGLES.search(str(error))
+        rest, links = _without_mesh(text, empty[1]) if empty else (text, [])
+        if not empty or not links:
+            # Behind where coal's source has it, before its advice.
+            reason = one_line(error).rpartition("message: ")[2].partition(" Hint: ")[0]
+            advice = "; ROS_PACKAGE_PATH names the folder of packages"
+            advice *= _NOT_FOUND in reason
+            raise FileError(path, f"a shape cannot be read ({reason}){advice}") from error
+    named = ", ".join(dict.fromkeys(links))
+    warn_caller(f"{path}: the mesh {empty[1]} of {named} has no triangles: it is left out")
+    return read_geometry(model, path, rest, kind)
+
+
+def _without_mesh(text: str, file: str) -> tuple[str, list[str]]:
+    """Return a URDF's text without the shapes of a mesh's file, and the names of their links."""
+    root = ET.fromstring(text)
+    links = []
+    for link in root.findall("link"):
+        for shape in (*link.findall("collision"), *link.findall("visual")):
+            mesh = shape.find("geometry/mesh")
+            name = "" if mesh is None else mesh.get("filename", "").rpartition("://")[2]
+            tail = posixpath.normpath(name).lstrip("./")
+            if name and f"/{file}".endswith(f"/{tail}"):
+                link.remove(shape)
+                links.append(link.get("name", ""))
+    return ET.tostring(root, encoding="unicode"), links
 
 
 @contextmanager

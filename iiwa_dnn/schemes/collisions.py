@@ -288,7 +288,7 @@ def pairs_of_names(argument: str, value: Any) -> tuple[tuple[str, str], ...]:
 
 @dataclass(frozen=True, eq=False)
 class CollisionAvoidance(Limit):
-    """Rows that keep the links away from obstacles and from each other.
+    """Rows that keep links, tools and held objects away from obstacles and from each other.
 
     No pair comes nearer than `distance`, not even between steps, if the arm begins at rest and
     follows the commands, `JointLimits` are among the limits, obstacles stand still, and at most
@@ -301,7 +301,8 @@ class CollisionAvoidance(Limit):
         distance: Least distance [m], above 0.
         gain: Largest rate at which a distance shrinks towards `distance` [1/s], above 0.
         nearest: Largest number of rows; the program has those with the least slack.
-        left_out: Pairs that are not watched, each as two names of `Scene.pairs` in any order.
+        may_touch: Pairs that are not watched, each as two names of `Scene.pairs` in any order: a
+            gripper and its object, ``[("tool", "Box 1")]``.
     """
 
     kernel = staticmethod(collision_rows)
@@ -312,14 +313,14 @@ class CollisionAvoidance(Limit):
         "distance": checks.positive,
         "gain": checks.positive,
         "nearest": partial(checks.integer, least=1),
-        "left_out": pairs_of_names,
+        "may_touch": pairs_of_names,
     }
     obstacles: Sequence[Obstacle] = ()
     self_collision: bool = True
     distance: float = 0.02
     gain: float = 20.0
     nearest: int = 48
-    left_out: Sequence[tuple[str, str]] = ()
+    may_touch: Sequence[tuple[str, str]] = ()
 
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> "CollisionAvoidance":
@@ -340,7 +341,7 @@ class CollisionAvoidance(Limit):
     def scene(self, robot: Robot) -> Scene:
         """Return the scene for a robot; raises the errors of `make_scene`."""
         distances = (self.distance, self.gain)
-        return make_scene(robot, self.obstacles, self.self_collision, distances, self.left_out)
+        return make_scene(robot, self.obstacles, self.self_collision, distances, self.may_touch)
 
     def pairs(self, robot: Robot) -> list[tuple[str, float]]:
         """Return for each watched pair its name in words and the distance it has to keep [m]."""
@@ -380,16 +381,18 @@ class CollisionAvoidance(Limit):
         """Return the settings of a record: least distance, obstacles, pairs, unwatched links.
 
         ``left_out`` has the pairs that no row watches, each with its reason: that of
-        `CollisionModel`, ``"given"``, or ``"no joint moves it"``.
+        `CollisionModel`, ``"may touch"``, or ``"no joint moves it"``. ``tools`` has the names of
+        tools, each with its shapes.
         """
         scene = self.scene(robot)
-        of_links = collision_model(robot).left_out if self.self_collision else ()
+        of_links = collision_model(robot).unwatched if self.self_collision else ()
         return {
             "distance": self.distance,
             "obstacles": self.settings()["obstacles"],
             "pairs": scene.pairs,
             "left_out": (*of_links, *scene.left_out),
             "unwatched": unwatched_links(robot),
+            "tools": [(each.name, each.settings()) for each in robot.tools],
         }
 
 

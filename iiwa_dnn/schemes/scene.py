@@ -206,7 +206,7 @@ def make_scene(
     obstacles: Sequence[Obstacle],
     self_collision: bool,
     distances: tuple[float, float],
-    left_out: Sequence[tuple[str, str]] = (),
+    may_touch: Sequence[tuple[str, str]] = (),
 ) -> Scene:
     """Lay out the capsules of a robot's links, the obstacles, and the pairs that are watched.
 
@@ -215,11 +215,11 @@ def make_scene(
         obstacles: The obstacles.
         self_collision: Whether pairs of links are watched.
         distances: Least distance [m], and the largest rate at which a distance shrinks to it [1/s].
-        left_out: Names of the two bodies of each pair that is not watched. Pairs that no joint
+        may_touch: Names of the two bodies of each pair that is not watched. Pairs that no joint
             moves are left out too.
 
     Raises:
-        NotFoundError: `left_out` has a name that is no body's.
+        NotFoundError: `may_touch` has a name that is no body's.
         InvalidInputError: The robot has no URDF file, a joint has no velocity limit, or no pair is
             left to be watched.
         FileError: The collision geometry of the robot cannot be read.
@@ -241,13 +241,13 @@ def make_scene(
     for row, end in zip(pairs, unmoved, strict=True):
         Pair.of(row).unmoved_end = end
     named = [(names[i], names[k]) for i, k in numbered]
-    watched = moved.any(axis=1) & ~_are_given(named, left_out, names)
+    watched = moved.any(axis=1) & ~_are_given(named, may_touch, names)
     if not watched.any():
         bare = unwatched_links(robot)
         reason = f"; {unwatched(bare)}" if bare else ""
         problem = f"there is no pair that could meet{reason}"
         raise InvalidInputError("obstacles", problem, obstacles)
-    reasons = np.where(moved.any(axis=1), "given", "no joint moves it").tolist()
+    reasons = np.where(moved.any(axis=1), "may touch", "no joint moves it").tolist()
     left = tuple((*named[at], reasons[at]) for at in np.flatnonzero(~watched))
     constants = _constants(robot, distances, bodies, pairs[watched])
     moving = [(each, k) for k, each in enumerate(obstacles, len(links)) if each.speed]
@@ -255,13 +255,13 @@ def make_scene(
 
 
 def _are_given(
-    pairs: list[tuple[str, str]], left_out: Sequence[tuple[str, str]], names: list[str]
+    pairs: list[tuple[str, str]], given: Sequence[tuple[str, str]], names: list[str]
 ) -> NDArray[np.bool_]:
-    """Test which pairs of names are left out, (pairs,); refuse a name that is no body's."""
-    for name in itertools.chain(*left_out):
+    """Test which pairs of names are among those given, (pairs,); refuse a name of no body."""
+    for name in itertools.chain(*given):
         if name not in names:
             raise NotFoundError("link or obstacle", name, names)
-    return np.array([pair in left_out or pair[::-1] in left_out for pair in pairs], dtype=bool)
+    return np.array([pair in given or pair[::-1] in given for pair in pairs], dtype=bool)
 
 
 def _bodies(robot: Robot, obstacles: Sequence[Obstacle]) -> list[Body]:

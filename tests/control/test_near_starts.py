@@ -74,17 +74,17 @@ def test_pairs_that_no_joint_moves_are_left_out_and_named(name: str) -> None:
 
 
 def test_pairs_are_left_out_by_name() -> None:
-    avoidance, scheme = beside(0.005, left_out=[("Sphere 1", "iiwa7_link_7")])
-    assert ("Sphere 1", "iiwa7_link_7", "given") in avoidance.overview(ROBOT)["left_out"]
+    avoidance, scheme = beside(0.005, may_touch=[("Sphere 1", "iiwa7_link_7")])
+    assert ("Sphere 1", "iiwa7_link_7", "may touch") in avoidance.overview(ROBOT)["left_out"]
     path, _ = driven(d.Controller(ROBOT, scheme, dt=DT), START.q, 200, at(0.1))
     assert judged(ROBOT, avoidance, path[-1:]).min() < 0.0
     with pytest.raises(
         d.IiwaDnnError, match="no link or obstacle 'Sphere 2'; did you mean: Sphere 1"
     ):
-        beside(0.005, left_out=[("iiwa7_link_7", "Sphere 2")])[0].scene(ROBOT)
+        beside(0.005, may_touch=[("iiwa7_link_7", "Sphere 2")])[0].scene(ROBOT)
     for wrong in ("iiwa7_link_7", [("iiwa7_link_7",)], [1], 2):
-        with pytest.raises(d.InvalidInputError, match="left_out: must be pairs of names"):
-            beside(0.005, left_out=wrong)
+        with pytest.raises(d.InvalidInputError, match="may_touch: must be pairs of names"):
+            beside(0.005, may_touch=wrong)
 
 
 @pytest.mark.parametrize("nearer", [0.005, 0.025])

@@ -351,7 +351,7 @@ def test_a_collision_avoidance_states_distance_and_pairs() -> None:
     alone = dataclasses.replace(avoidance, self_collision=False)
     scene = alone.scene(ROBOT)
     order = np.argsort(distances := scene.distances(START[np.newaxis], np.zeros(1))[0])
-    free = dataclasses.replace(alone, left_out=[scene.pairs[order[0]]])
+    free = dataclasses.replace(alone, may_touch=[scene.pairs[order[0]]])
     found = d.Shield(ROBOT, DT, free).step(START).margin.distance
     assert found == pytest.approx(distances[order[1]] - 0.03, abs=1e-9)
 

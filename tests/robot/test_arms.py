@@ -13,6 +13,7 @@ import yourdfpy
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array, example_urdf
+from iiwa_dnn.control.shield import DISTANCE
 from iiwa_dnn.robot.arms import ARMS, robots_folder
 from iiwa_dnn.robot.collision import collision_file
 from iiwa_dnn.robot.shapes import visual_meshes
@@ -40,6 +41,14 @@ def test_every_arm_starts_inside_its_limits_and_not_singular(name: str) -> None:
         q = start.start_posture()
         assert is_inside(start, q)
         assert np.linalg.svd(d.Configuration(start, q).jacobian, compute_uv=False)[-1] >= least
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_every_arm_starts_at_the_default_distance_from_itself(name: str) -> None:
+    robot = d.load_robot(name)
+    avoidance = d.CollisionAvoidance()
+    near, _ = avoidance.scene(robot).nearest(robot.start_posture()[np.newaxis], np.zeros(1))
+    assert near[0] > avoidance.distance == DISTANCE
 
 
 def test_the_iiwa_starts_where_the_paper_does_or_as_near_as_its_limits_let_it() -> None:
@@ -149,8 +158,12 @@ def test_joints_limits_and_poses_of_all_links(name: str, words: tuple[str, ...])
     for i, joint in enumerate(robot.joint_names):
         np.testing.assert_array_equal(robot.limits[:, i], known[joint])
         limit = reader.joint_map[joint].limit or yourdfpy.Limit()
-        assert robot.q_lower[i] == (-np.inf if limit.lower == -1e308 else limit.lower)
-        assert robot.q_upper[i] == (np.inf if limit.upper == 1e308 else limit.upper)
+        lower = -np.inf if limit.lower == -1e308 else limit.lower
+        upper = np.inf if limit.upper == 1e308 else limit.upper
+        if (soft := reader.joint_map[joint].safety_controller) is not None:
+            lower = max(lower, soft.soft_lower_limit)
+            upper = min(upper, soft.soft_upper_limit)
+        assert (robot.q_lower[i], robot.q_upper[i]) == (lower, upper)
         assert robot.dq_max[i] == (limit.velocity or np.inf)
         assert robot.model.effortLimit[i] == (limit.effort or 0.0)
     data = robot.model.createData()

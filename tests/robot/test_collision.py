@@ -169,15 +169,65 @@ def test_a_fault_of_a_geometry_file_is_named(capsule, pair, said, tmp_path) -> N
     assert "\n" not in str(caught.value)
 
 
+def mesh_of(name: str) -> str:
+    return f"<collision><geometry><mesh filename='package://{name}'/></geometry></collision>"
+
+
 @pytest.mark.parametrize("mesh", ["gone.stl", "text.stl", "part.step"])
-def test_a_damaged_mesh_is_named(mesh: str, tmp_path) -> None:
+def test_a_damaged_mesh_is_named_and_a_folder_is_asked_for_if_it_is_missing(mesh, tmp_path) -> None:
     if mesh != "gone.stl":
         (tmp_path / mesh).write_text("hello")
-    part = f"<collision><geometry><mesh filename='package://{mesh}'/></geometry></collision>"
-    said = rf"read \((Mesh package://|Could not load resource .*){mesh}.*\); ROS_PACKAGE_PATH"
+    said = rf"read \((Mesh package://|Could not load resource .*){mesh}.*\)"
     with pytest.raises(iiwa_dnn.errors.FileError, match=said) as caught:
-        collision_model(arm_of(tmp_path, p1=part))
+        collision_model(arm_of(tmp_path, p1=mesh_of(mesh)))
     assert "\n" not in str(caught.value)
+    assert ("ROS_PACKAGE_PATH" in str(caught.value)) == (mesh == "gone.stl")
+
+
+PLY = """ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+element face {}
+property list uchar int vertex_indices
+end_header
+0 0 0
+0.1 0 0
+0 0.1 0
+{}"""
+NO_TRIANGLES = {
+    "some.ply": PLY.format(0, "").encode(),
+    "points.obj": b"# points\n" + 5 * b"v 0 0 0\nv 1 0 0\n",
+    "text.stl": b"solid a\nendsolid a\n",
+    "none.stl": bytes(84),
+}
+
+
+@pytest.mark.parametrize(("name", "data"), NO_TRIANGLES.items(), ids=NO_TRIANGLES)
+def test_a_mesh_without_triangles_is_left_out_and_said_and_the_others_are_watched(
+    name: str, data: bytes, tmp_path
+) -> None:
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / name).write_bytes(data)
+    (tmp_path / "whole.ply").write_text(PLY.format(1, "3 0 1 2\n"))
+    twice = mesh_of(f"parts/{name}") + mesh_of("whole.ply")
+    robot = arm_of(tmp_path, p1=COVER, p2=twice, p3=mesh_of(f"parts/{name}"))
+    said = f"the mesh .*parts/{name} of p2, p3 has no triangles: it is left out$"
+    with pytest.warns(UserWarning, match=said):
+        model = make_collision_model(robot, samples=9)
+    assert sorted(capsule.link for capsule in model.capsules) == ["p1", "p2"]
+
+
+@pytest.mark.parametrize("version", ["", "version='1.0'", "version='1.1'", "version='1.2'"])
+def test_a_capsule_of_a_file_is_a_shape_whatever_its_version(version: str, tmp_path) -> None:
+    rod = "<collision><geometry><capsule radius='0.03' length='0.2'/></geometry></collision>"
+    path = Path(arm_of(tmp_path, p1=rod).path or "")
+    path.write_text(path.read_text().replace("<robot ", f"<robot {version} "))
+    (capsule,) = make_collision_model(iiwa_dnn.load_robot(path, "flange"), samples=9).capsules
+    assert (capsule.link, capsule.radius) == ("p1", 0.03)
+    np.testing.assert_allclose(np.abs([capsule.a, capsule.b]), [[0, 0, 0.1]] * 2, atol=1e-12)
 
 
 def test_pairs_that_take_long_are_said(tmp_path, monkeypatch) -> None:

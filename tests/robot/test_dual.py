@@ -10,6 +10,13 @@ LEFT, RIGHT = "left_iiwa7_flange", "right_iiwa7_flange"
 COSTS = [d.KineticEnergy(weight=0.2), d.CyclicMotion(weight=0.8)]
 
 
+def test_each_of_two_arms_has_the_accelerations_of_one() -> None:
+    one = d.load_robot("iiwa7")
+    both = d.load_robot("iiwa7_dual")
+    assert both.ddq_max.tolist() == [*one.ddq_max, *one.ddq_max]
+    assert both.dddq_max.tolist() == [*one.dddq_max, *one.dddq_max]
+
+
 def test_two_arms_that_are_driven_into_each_other_do_not_touch() -> None:
     robot = d.load_robot("iiwa7_dual")
     start = d.Configuration(robot, robot.start_posture())

@@ -209,6 +209,30 @@ def test_what_is_left_out_is_said(written, capfd, content: str, reason: str) -> 
     assert capfd.readouterr().err == ""
 
 
+SOFT = {
+    "inside": ('soft_lower_limit="-1.5" soft_upper_limit="1.2"', (-1.5, 1.2)),
+    "one side inside": ('soft_lower_limit="-3" soft_upper_limit="1.2"', (-2.0, 1.2)),
+    "outside": ('soft_lower_limit="-3" soft_upper_limit="3"', (-2.0, 2.0)),
+    "none": ("", (-2.0, 2.0)),
+    "equal": ('soft_lower_limit="1" soft_upper_limit="1"', (-2.0, 2.0)),
+}
+
+
+@pytest.mark.parametrize(("given", "held"), SOFT.values(), ids=SOFT.keys())
+def test_soft_limits_are_position_limits_where_they_are_inside(written, given, held) -> None:
+    soft = f'{LIMIT}<safety_controller k_velocity="10" {given}/>'
+    robot = d.load_robot(written(elbow(LIMIT, soft)))
+    assert (robot.q_lower[1], robot.q_upper[1]) == held
+    assert (robot.q_lower[0], robot.q_upper[0]) == (-2.0, 2.0)
+
+
+def test_soft_limits_beside_the_range_are_said(written) -> None:
+    soft = f'{LIMIT}<safety_controller k_velocity="1" soft_lower_limit="3" soft_upper_limit="4"/>'
+    with pytest.warns(UserWarning, match="joint 'elbow', 3 to 4, leave nothing of -2 to 2, which"):
+        robot = d.load_robot(written(elbow(LIMIT, soft)))
+    assert (robot.q_lower[1], robot.q_upper[1]) == (-2.0, 2.0)
+
+
 @pytest.mark.parametrize(
     ("name", "upper", "unit"), [("elbow", "120", "degrees"), ("wrist", "800", "mm")]
 )

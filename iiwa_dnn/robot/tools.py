@@ -1,0 +1,89 @@
+"""Tools and held objects: shapes that a robot's tip carries beyond the links of its URDF."""
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.robot.obstacles import Box, Capsule, Obstacle, Sphere
+
+RADIUS = 0.05
+"""Radius of the capsule that stands for a tool without shapes [m]."""
+
+_NO_LENGTH = 1e-6
+"""Length up to which a tool only turns or names the tip: it has no body [m]."""
+
+
+class Tool(NamedTuple):
+    """A tool, fixed to a robot's tip, whose place its own frame takes.
+
+    Attributes:
+        name: Name of its frame.
+        flange: Name of the frame to which it is fixed.
+        length: Distance of the two [m].
+        shapes: Its shapes in the frame of the flange.
+        stated: Whether the shapes were stated.
+    """
+
+    name: str
+    flange: str
+    length: float
+    shapes: tuple[Obstacle, ...]
+    stated: bool
+
+    def settings(self) -> list[dict[str, Any]]:
+        """Return its shapes as values that JSON can hold."""
+        return [shape.settings() for shape in self.shapes]
+
+    @property
+    def assumption(self) -> str:
+        """What stands for a tool whose shapes were not stated, in words; "" if they were."""
+        if self.stated or not self.shapes:
+            return ""
+        radius = self.shapes[0].thickness
+        return (
+            f"{self.name!r} has no shapes: a capsule of radius {radius:g} m from {self.flange!r} "
+            f"to its tip, {self.length:g} m away, stands for it; tool_shapes= states others, or "
+            "none by []"
+        )
+
+
+def make_tool(name: str, flange: str, end: checks.Array, shapes: Any) -> Tool:
+    """Make a tool of the given shapes; of None, of one capsule from the flange to the tool's tip.
+
+    The capsule's round end touches the flange, so that it meets no link before that. A tool whose
+    tip is that of the flange has no capsule.
+
+    Args:
+        name: Name of the tool's frame.
+        flange: Name of the frame to which it is fixed.
+        end: Tip of the tool in that frame [m], (3,).
+        shapes: A `Sphere`, `Capsule` or `Box` in that frame, or several; or None.
+
+    Raises:
+        InvalidInputError: A shape is another one, or moves.
+    """
+    length = float(np.linalg.norm(end))
+    if shapes is not None:
+        return Tool(name, flange, length, _shapes("tool_shapes", shapes), True)
+    if length <= _NO_LENGTH:
+        return Tool(name, flange, length, (), False)
+    radius = min(RADIUS, length)
+    tip = end.tolist()
+    body = Capsule((radius / length * end).tolist(), tip, radius)
+    return Tool(name, flange, length, (body,), False)
+
+
+def _shapes(argument: str, value: Any) -> tuple[Obstacle, ...]:
+    """Return one shape or several as a tuple; refuse any that is no body of a tool."""
+    shapes = tuple(value) if isinstance(value, Iterable) else (value,)
+    for shape in shapes:
+        if not isinstance(shape, Sphere | Capsule | Box):
+            problem = f"must be a Sphere, Capsule or Box each, not {shape!r}"
+            raise InvalidInputError(argument, problem, value)
+        if shape.speed:
+            problem = f"is carried by the robot: no velocity of its own, as {shape!r} has"
+            raise InvalidInputError(argument, problem, value)
+    return shapes
