@@ -21,7 +21,7 @@ from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.results.pictures import obstacles_of
 from iiwa_dnn.results.plots import envelope
 from iiwa_dnn.results.report import markdown_table, verdict
-from iiwa_dnn.robot.obstacles import outline
+from iiwa_dnn.robot.obstacles import make_obstacles, outline
 from iiwa_dnn.robot.shapes import visual_shapes
 
 PIECES = 300
@@ -62,10 +62,15 @@ def robot_of(record: Record, settings: Path, name: str | None = None) -> Robot:
         InvalidInputError: The robot's joints are not those of the record.
     """
     kept = record.settings
-    table = {"name": kept["robot"], "tip": kept.get("tip"), "locked": list(kept["locked"] or ())}
+    tools = kept.get("tools", [])
+    tip = tools[0]["flange"] if tools else kept.get("tip")
+    table = {"name": kept["robot"], "tip": tip, "locked": list(kept["locked"] or ())}
     if settings.is_file():
         table |= read_toml(settings).get("robot", {})
     robot: Robot = load({**table, "name": name or table["name"]})
+    for tool in () if robot.tools else tools:
+        shapes = make_obstacles(tool["tool_shapes"])
+        robot = robot.with_tool(tool["tool"], tool["name"], shapes)
     if list(robot.joint_names) != kept["joints"]:
         problem = f"{robot.name} has other joints than the record: {' '.join(robot.joint_names)}"
         raise InvalidInputError("--robot", problem, name)

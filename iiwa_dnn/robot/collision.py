@@ -170,9 +170,9 @@ def collision_model(robot: Robot) -> CollisionModel:
     """
     links = link_model(robot)
     tools = _capsules(robot, tool_shapes(robot))
-    model = replace(links, capsules=(*links.capsules, *tools))
     if not tools:
-        return model
+        return links
+    model = replace(links, capsules=(*links.capsules, *tools))
     first = len(links.capsules)
     pairs = [pair for pair in model.pairs(robot) if max(pair) >= first]
     return replace(model, too_near=_too_near(robot, coal_geometry(robot, model, pairs)))

@@ -237,7 +237,7 @@ class Robot:
         pose = tip.placement * tool
         model = self.model.copy()
         model.addFrame(pin.Frame(name, tip.parentJoint, self.tip_id, pose, pin.FrameType.OP_FRAME))
-        fixed = make_tool(name, self.tip, tool.translation, tool_shapes)
+        fixed = make_tool(name, self.tip, tool, tool_shapes)
         return replace(self, model=model, tip=name, tools=(*self.tools, fixed))
 
     def start_posture(self) -> checks.Array:

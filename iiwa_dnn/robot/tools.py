@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
+import pinocchio as pin
 
-from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.robot.obstacles import Box, Capsule, Obstacle, Sphere
+from iiwa_dnn.robot.obstacles import SHAPES, Box, Capsule, Obstacle, Sphere
 
 RADIUS = 0.05
 """Radius of the capsule that stands for a tool without shapes [m]."""
@@ -22,35 +22,41 @@ class Tool(NamedTuple):
     Attributes:
         name: Name of its frame.
         flange: Name of the frame to which it is fixed.
-        length: Distance of the two [m].
+        pose: Pose of its frame in that of the flange.
         shapes: Its shapes in the frame of the flange.
         stated: Whether the shapes were stated.
     """
 
     name: str
     flange: str
-    length: float
+    pose: pin.SE3
     shapes: tuple[Obstacle, ...]
     stated: bool
 
-    def settings(self) -> list[dict[str, Any]]:
-        """Return its shapes as values that JSON can hold."""
-        return [shape.settings() for shape in self.shapes]
+    def settings(self) -> dict[str, Any]:
+        """Return arguments of `Robot.with_tool`, and the flange, as values that JSON can hold."""
+        turn = pin.rpy.matrixToRpy(self.pose.rotation)
+        return {
+            "name": self.name,
+            "flange": self.flange,
+            "tool": [*self.pose.translation.tolist(), *turn.tolist()],
+            "tool_shapes": [shape.settings() for shape in self.shapes],
+        }
 
     @property
     def assumption(self) -> str:
-        """What stands for a tool whose shapes were not stated, in words; "" if they were."""
+        """Words for what stands for a tool whose shapes were not stated; "" if they were."""
         if self.stated or not self.shapes:
             return ""
-        radius = self.shapes[0].thickness
+        length = float(np.linalg.norm(self.pose.translation))
         return (
-            f"{self.name!r} has no shapes: a capsule of radius {radius:g} m from {self.flange!r} "
-            f"to its tip, {self.length:g} m away, stands for it; tool_shapes= states others, or "
-            "none by []"
+            f"{self.name!r} has no shapes: a capsule of radius {self.shapes[0].thickness:g} m from "
+            f"{self.flange!r} to its tip, {length:.3g} m away, stands for it; tool_shapes= states "
+            "others, or none by []"
         )
 
 
-def make_tool(name: str, flange: str, end: checks.Array, shapes: Any) -> Tool:
+def make_tool(name: str, flange: str, pose: pin.SE3, shapes: Any) -> Tool:
     """Make a tool of the given shapes; of None, of one capsule from the flange to the tool's tip.
 
     The capsule's round end touches the flange, so that it meets no link before that. A tool whose
@@ -59,21 +65,23 @@ def make_tool(name: str, flange: str, end: checks.Array, shapes: Any) -> Tool:
     Args:
         name: Name of the tool's frame.
         flange: Name of the frame to which it is fixed.
-        end: Tip of the tool in that frame [m], (3,).
+        pose: Pose of the tool's frame in that of the flange.
         shapes: A `Sphere`, `Capsule` or `Box` in that frame, or several; or None.
 
     Raises:
-        InvalidInputError: A shape is another one, or moves.
+        InvalidInputError: A shape is another one, or moves; or obstacles go by such a name.
     """
-    length = float(np.linalg.norm(end))
+    if name.rpartition(" ")[0].lower() in SHAPES:
+        raise InvalidInputError("name", f"must not be an obstacle's, as {name!r} is", name)
     if shapes is not None:
-        return Tool(name, flange, length, _shapes("tool_shapes", shapes), True)
+        return Tool(name, flange, pose, _shapes("tool_shapes", shapes), True)
+    tip = pose.translation
+    length = float(np.linalg.norm(tip))
     if length <= _NO_LENGTH:
-        return Tool(name, flange, length, (), False)
+        return Tool(name, flange, pose, (), False)
     radius = min(RADIUS, length)
-    tip = end.tolist()
-    body = Capsule((radius / length * end).tolist(), tip, radius)
-    return Tool(name, flange, length, (body,), False)
+    near = radius / length * tip
+    return Tool(name, flange, pose, (Capsule(near.tolist(), tip.tolist(), radius),), False)
 
 
 def _shapes(argument: str, value: Any) -> tuple[Obstacle, ...]:

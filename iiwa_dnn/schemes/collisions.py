@@ -381,8 +381,7 @@ class CollisionAvoidance(Limit):
         """Return the settings of a record: least distance, obstacles, pairs, unwatched links.
 
         ``left_out`` has the pairs that no row watches, each with its reason: that of
-        `CollisionModel`, ``"may touch"``, or ``"no joint moves it"``. ``tools`` has the names of
-        tools, each with its shapes.
+        `CollisionModel`, ``"may touch"``, or ``"no joint moves it"``.
         """
         scene = self.scene(robot)
         of_links = collision_model(robot).unwatched if self.self_collision else ()
@@ -392,7 +391,6 @@ class CollisionAvoidance(Limit):
             "pairs": scene.pairs,
             "left_out": (*of_links, *scene.left_out),
             "unwatched": unwatched_links(robot),
-            "tools": [(each.name, each.settings()) for each in robot.tools],
         }
 
 

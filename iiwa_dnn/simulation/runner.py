@@ -195,6 +195,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         "joints": robot.joint_names,
         "locked": dict(zip(robot.locked, robot.q_locked, strict=True)) or None,
         "tip": program.target_frames[0],
+        "tools": [tool.settings() for tool in robot.tools],
         "frames": list(program.target_frames[1:]),
         "q_lower": robot.q_lower,
         "q_upper": robot.q_upper,

@@ -16,6 +16,7 @@ import pytest
 import iiwa_dnn as d
 from helpers_export import compile_quickly, needs
 from iiwa_dnn.app import settings
+from iiwa_dnn.app.replay import robot_of
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.robot.collision import CLEARANCE, collision_model, link_model, unwatched_links
 from iiwa_dnn.robot.mujoco_model import JointDynamics, compile_model
@@ -323,11 +324,18 @@ def test_tools_are_drawn_and_weigh_nothing_in_physics() -> None:
     )
 
 
-def test_tool_shapes_are_settings_of_a_run() -> None:
+def test_tool_shapes_are_settings_of_a_run_and_of_its_record(tmp_path: Path) -> None:
     tables = {"shape": "capsule", "a": [0, 0, 0], "b": [0, 0, 0.1], "radius": 0.02}
     robot = settings.load({"name": "iiwa7", "tool": DOWN, "tool_shapes": [tables]})
     assert robot.tools[0].shapes == (d.Capsule([0, 0, 0], [0, 0, 0.1], 0.02),)
-    assert robot.tools[0].settings()[0]["radius"] == 0.02
+    held = robot.with_tool(TILTED, "cup", tool_shapes=[])
+    start = d.Configuration(held, robot.start_posture())
+    path = d.Circle(radius=0.02, period=2.0).anchored(start)
+    record = d.simulate(held, d.DoubleIndicator(), path, start.q, dt=1e-2, duration=0.05)
+    record.save(tmp_path / "record.npz")
+    again = robot_of(d.Record.load(tmp_path / "record.npz"), tmp_path / "none.toml")
+    assert [tool.shapes for tool in again.tools] == [tool.shapes for tool in held.tools]
+    np.testing.assert_allclose(d.Configuration(again, start.q).pose, start.pose, atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -339,6 +347,7 @@ def test_tool_shapes_are_settings_of_a_run() -> None:
         ({"tool_shapes": d.Sphere([0, 0, 0], 0.1, velocity=[0, 0, 1])}, "no velocity of its own"),
         ({"name": "iiwa7_link_3"}, "the robot has a frame 'iiwa7_link_3' already"),
         ({"name": 3}, "name: must be"),
+        ({"name": "Box 1"}, "name: must not be an obstacle's"),
     ],
 )
 def test_a_wrong_tool_is_refused_by_name(arguments: dict[str, Any], problem: str) -> None:
