@@ -23,6 +23,7 @@ from iiwa_dnn.errors import (
 )
 from iiwa_dnn.robot.arms import ARMS, robots_folder
 from iiwa_dnn.robot.robot import Robot, frame_id, model_limits
+from iiwa_dnn.robot.tools import ToolShapes
 from iiwa_dnn.robot.urdf import build_model, number_of, read_urdf
 
 _LARGE = 40.0
@@ -42,7 +43,7 @@ def load_robot(
     locked: str | Iterable[str] = (),
     tool: pin.SE3 | ArrayLike | None = None,
     frames: str | Iterable[str] = (),
-    tool_shapes: Any = None,
+    tool_shapes: ToolShapes = None,
 ) -> Robot:
     """Load a robot by its name, from a URDF file or from a Pinocchio model.
 
@@ -105,7 +106,7 @@ def load_robot(
     return _hold(robot, tool, tool_shapes)
 
 
-def _hold(robot: Robot, tool: pin.SE3 | ArrayLike | None, shapes: Any) -> Robot:
+def _hold(robot: Robot, tool: pin.SE3 | ArrayLike | None, shapes: ToolShapes) -> Robot:
     """Return a robot with its tool, if it has one; refuse shapes of none."""
     if tool is not None:
         return robot.with_tool(tool, tool_shapes=shapes)

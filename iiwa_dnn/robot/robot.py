@@ -6,7 +6,6 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -16,7 +15,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.start import best_start
-from iiwa_dnn.robot.tools import Tool, make_tool
+from iiwa_dnn.robot.tools import Tool, ToolShapes, make_tool
 from iiwa_dnn.robot.urdf import read_geometry
 
 _NO_LIMIT = 1e300
@@ -210,7 +209,7 @@ class Robot:
         return ""
 
     def with_tool(
-        self, tool: pin.SE3 | ArrayLike, name: str = "tool", tool_shapes: Any = None
+        self, tool: pin.SE3 | ArrayLike, name: str = "tool", tool_shapes: ToolShapes = None
     ) -> Robot:
         """Return the same robot with a tool or a held object, whose frame becomes the tip.
 
@@ -233,11 +232,12 @@ class Robot:
         if not isinstance(tool, pin.SE3):
             xyz_rpy = checks.finite_array("tool", tool, (6,)).copy()
             tool = pin.SE3(pin.rpy.rpyToMatrix(xyz_rpy[3:]), xyz_rpy[:3])
+        checks.finite_array("tool", tool.homogeneous, (4, 4))
         tip = self.model.frames[self.tip_id]
         pose = tip.placement * tool
         model = self.model.copy()
         model.addFrame(pin.Frame(name, tip.parentJoint, self.tip_id, pose, pin.FrameType.OP_FRAME))
-        fixed = make_tool(name, self.tip, tool, tool_shapes)
+        fixed = make_tool(name, self.tip, tool.copy(), tool_shapes)
         return replace(self, model=model, tip=name, tools=(*self.tools, fixed))
 
     def start_posture(self) -> checks.Array:

@@ -9,6 +9,9 @@ import pinocchio as pin
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot.obstacles import SHAPES, Box, Capsule, Obstacle, Sphere
 
+ToolShapes = Obstacle | Iterable[Obstacle] | None
+"""Shapes as they are given for a tool."""
+
 RADIUS = 0.05
 """Radius of the capsule that stands for a tool without shapes [m]."""
 
@@ -56,7 +59,7 @@ class Tool(NamedTuple):
         )
 
 
-def make_tool(name: str, flange: str, pose: pin.SE3, shapes: Any) -> Tool:
+def make_tool(name: str, flange: str, pose: pin.SE3, shapes: ToolShapes) -> Tool:
     """Make a tool of the given shapes; of None, of one capsule from the flange to the tool's tip.
 
     The capsule's round end touches the flange, so that it meets no link before that. A tool whose

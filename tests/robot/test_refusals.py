@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import iiwa_dnn as d
@@ -11,6 +12,8 @@ from iiwa_dnn.robot.obstacles import make_obstacles
 ROBOT = d.load_robot("iiwa7")
 ODD = (np.nan, np.inf, True, "a", 1j, 10**400)
 BALL = {"shape": "sphere", "center": [0.0, 0.0, 1.0], "radius": 0.1}
+
+POSES = ([0, 0, 1], [np.nan] * 6, "pen", np.eye(3), pin.SE3(np.eye(3), np.array([0, 0, np.nan])))
 
 REFUSED = [
     *[
@@ -25,7 +28,7 @@ REFUSED = [
     *[(ROBOT.with_limits, {"velocity": v}, "velocity") for v in (True, [1, 1, 1, -1, 1, 1, 1])],
     (ROBOT.with_limits, {"acceleration": np.nan}, "acceleration"),
     (ROBOT.with_limits, {"jerk": -1.0}, "jerk"),
-    *[(ROBOT.with_tool, {"tool": t}, "tool") for t in ([0, 0, 1], [np.nan] * 6, "pen", np.eye(3))],
+    *[(ROBOT.with_tool, {"tool": t}, "tool") for t in POSES],
     (d.load_robot, {"source": "iiwa7", "locked": ROBOT.joint_names}, "tip"),
     *[(d.load_robot, {"source": "iiwa7", name: [3]}, name) for name in ("locked", "frames")],
     (d.robot_from_dh, {"table": np.zeros((2, 3))}, "table"),
