@@ -11,10 +11,9 @@ by the names of their frames.
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from itertools import chain, combinations, product
 from pathlib import Path
@@ -26,7 +25,7 @@ import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError
+from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, warn_caller
 from iiwa_dnn.files import one_line, read_toml, write_text
 from iiwa_dnn.robot.arms import ARMS, robots_folder
 from iiwa_dnn.robot.obstacles import box_around
@@ -198,6 +197,7 @@ def link_model(robot: Robot) -> CollisionModel:
     """Read the collision geometry of a robot's links; if it has no file, make it from the URDF.
 
     No file is written. If making takes more than a second, a warning says how to keep the result.
+    It is made once for all robots that differ in tools and rates alone.
 
     Raises:
         InvalidInputError: The robot does not come from a file.
@@ -206,13 +206,45 @@ def link_model(robot: Robot) -> CollisionModel:
     file = collision_file(robot)
     if file.exists():
         return CollisionModel.load(file)
+    flange = robot.tools[0].flange if robot.tools else robot.tip
+    bare = replace(robot, tip=flange, tools=())
+    ranges = robot.limits[:2].tobytes()
+    return _made(_Arm(robot.path, robot.urdf, robot.locked, robot.q_locked, ranges, flange, bare))
+
+
+@dataclass(frozen=True)
+class _Arm:
+    """A robot without tools, equal to any other for which the same geometry is made.
+
+    Attributes:
+        path: The URDF file.
+        text: Its text.
+        locked: Names of the joints that are locked.
+        q_locked: Their positions [rad].
+        ranges: Bytes of the position limits.
+        tip: Name of the tip.
+        robot: The robot.
+    """
+
+    path: Path | None
+    text: str | None
+    locked: tuple[str, ...]
+    q_locked: tuple[float, ...]
+    ranges: bytes
+    tip: str
+    robot: Robot = field(compare=False)
+
+
+@lru_cache(maxsize=32)
+def _made(arm: _Arm) -> CollisionModel:
+    """Make the collision geometry of an arm, and warn if that takes long."""
+    robot = arm.robot
     began = perf_counter()
     model = make_collision_model(robot)
     if (taken := perf_counter() - began) > 1.0:
-        warnings.warn(
+        warn_caller(
             f"capsules and pairs of {robot.name} took {taken:.1f} s; "
-            f"`iiwa-dnn collisions` keeps them beside {robot.path}",
-            stacklevel=2,
+            f"`iiwa-dnn collisions` keeps them beside {robot.path}"
         )
     return model
 

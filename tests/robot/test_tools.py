@@ -18,7 +18,14 @@ from helpers_export import compile_quickly, needs
 from iiwa_dnn.app import settings
 from iiwa_dnn.app.replay import robot_of
 from iiwa_dnn.qp import Matrix
-from iiwa_dnn.robot.collision import CLEARANCE, collision_model, link_model, unwatched_links
+from iiwa_dnn.robot import collision
+from iiwa_dnn.robot.collision import (
+    CLEARANCE,
+    collision_model,
+    link_model,
+    make_collision_model,
+    unwatched_links,
+)
 from iiwa_dnn.robot.mujoco_model import JointDynamics, compile_model
 from iiwa_dnn.robot.shapes import visual_shapes
 from judge_distances import SLACK, _coal
@@ -252,6 +259,25 @@ def test_each_robot_has_the_bodies_of_its_own_tools() -> None:
     # In the frame of its flange each: the cup's body is 5 cm behind its own tip.
     last = collision_model(two).capsules[-1]
     np.testing.assert_allclose(last.a, np.array(PEN.a) - [0, 0, 0.05], atol=1e-12)
+
+
+def test_pairs_of_links_are_searched_once_for_all_tools(tmp_path: Path, monkeypatch) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(IIWA.urdf or "")
+    made: list[d.Robot] = []
+
+    def search(robot: d.Robot) -> Any:
+        made.append(robot)
+        return make_collision_model(robot, samples=9)
+
+    monkeypatch.setattr(collision, "make_collision_model", search)
+    robot = d.load_robot(path, tip="iiwa7_flange", tool=DOWN, tool_shapes=PEN)
+    held = robot.with_tool(DOWN, "cup", tool_shapes=PEN).with_limits(acceleration=1.0)
+    links = [link_model(each) for each in (robot, held, d.load_robot(path, tip="iiwa7_flange"))]
+    assert links[0] is links[1] is links[2]
+    assert [each.tools for each in made] == [()]
+    assert len(collision_model(held).capsules) == len(links[0].capsules) + 2
+    assert link_model(held.with_limits(upper=0.5)) is not links[0]
 
 
 def test_the_other_arm_of_two_keeps_away_from_a_tool() -> None:
