@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from pinocchio import log3
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.command import SINGULAR
-from iiwa_dnn.errors import InvalidInputError, warn_caller
+from iiwa_dnn.errors import IiwaDnnError, InvalidInputError, warn_caller
 from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.references import Reference
@@ -122,7 +123,10 @@ def _body_warnings(robot: Robot, limits: Sequence[Limit]) -> Iterator[str]:
     parts = [part for part in limits if isinstance(part, CollisionAvoidance)]
     for part in parts:
         yield from (tool.assumption for tool in robot.tools if tool.assumption)
-        for first, second, reason in collision_model(robot).unwatched:
+        unwatched_pairs: Sequence[tuple[str, str, str]] = ()
+        with suppress(IiwaDnnError):  # a step raises it, with its reason
+            unwatched_pairs = collision_model(robot).unwatched
+        for first, second, reason in unwatched_pairs:
             if part.self_collision and reason == TOO_NEAR:
                 yield (
                     f"nothing keeps {second} and {first} apart: in every posture they are within "
