@@ -211,7 +211,9 @@ def rotation(argument: str, value: ArrayLike) -> Array:
         raise InvalidInputError(argument, f"is not a rotation matrix: {found}", value)
     if away > 1e-12:
         left, _, right = np.linalg.svd(turn)
-        return read_only(left @ right)
+        near = left @ right
+        # Off orthogonality by some roundings, which depend on the processor; a Newton step has one.
+        return read_only(1.5 * near - 0.5 * near @ near.T @ near)
     return turn
 
 
