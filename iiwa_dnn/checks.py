@@ -47,6 +47,19 @@ class Checked:
             object.__setattr__(self, name, value)
 
 
+def fix(owner: object, **values: Any) -> None:
+    """Set attributes of an object that refuses to set them (`settable`)."""
+    for name, value in values.items():
+        object.__setattr__(owner, name, value)
+
+
+def settable(kind: str, name: str, value: object, names: Sequence[str]) -> None:
+    """Refuse to set a public attribute of an object of a kind, unless it is one of some names."""
+    if not name.startswith("_") and name not in names:
+        problem = f"cannot be set, as {' and '.join(names)} can; make {kind} anew"
+        raise InvalidInputError(name, problem, value)
+
+
 def finite(argument: str, value: object) -> float:
     """Return a finite number as a float; refuse any other value."""
     return _number(argument, value, "a finite number", lambda number: True)

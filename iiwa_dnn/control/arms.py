@@ -29,19 +29,25 @@ from iiwa_dnn.control.requests import (
     falls_short,
 )
 from iiwa_dnn.control.state import MotionState, change_spacing, count_as_sent
-from iiwa_dnn.control.stopping import least_periods
+from iiwa_dnn.control.stopping import least_periods, next_velocity
 from iiwa_dnn.control.yielding import NONE
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
 from iiwa_dnn.qp.layout import IntVector, copied
 from iiwa_dnn.robot.kinematics import Twist
 from iiwa_dnn.robot.kinematics_kernel import ModelTables, write_kinematics
-from iiwa_dnn.schemes.periods import Periods, periods_of
+from iiwa_dnn.schemes.periods import SLACK, Periods, periods_of
 from iiwa_dnn.schemes.profiles import Rates, arriving, braking
 from iiwa_dnn.schemes.program import ProgramArrays, block_constants, program_views
 from iiwa_dnn.schemes.rate_limits import MotionConstants, joint_rates
 from iiwa_dnn.schemes.scene import Body, scene_views, write_distances
 from iiwa_dnn.schemes.viability import joint_bounds
+
+TURN = 2.0 * math.pi
+"""Turn after which a joint without position limits is at the same place [rad]."""
+
+FOLLOWING = 1e-12
+"""Difference of measured and commanded positions that counts as rounding [rad]."""
 
 
 class ArmSettings(Record):
@@ -102,7 +108,11 @@ class ArmState(Record):
         has_begun: Whether joint positions are known.
         is_repeated: Whether the request is that of the step before.
         is_clipped: Whether the last command differs from the request.
+        is_misplaced: Whether the place of an obstacle is not known.
         positions: Commanded joint positions [rad], (n,).
+        measured: Measured ones [rad], (n,), with the displacement that the delay hides, and with
+            the turns of `positions`.
+        wraps: 1 for each joint whose readings have skipped whole turns, (n,).
         request: The request that counts, (max(n, 6),); zero without one.
         reasons: 1 for each `Reason` of the last step, else 0.
         motion: `MotionState`.
@@ -124,7 +134,10 @@ class ArmState(Record):
     has_begun: bool
     is_repeated: bool
     is_clipped: bool
+    is_misplaced: bool
     positions: Vector = part("n")
+    measured: Vector = part("n")
+    wraps: Vector = part("n")
     request: Vector = part("request")
     reasons: Vector = part(len(Reason))
     motion: Vector = part("motion")
@@ -213,7 +226,7 @@ def motion_of(plan: ArmPlan, arm: ArmState) -> MotionState:
 def rest_arm(plan: ArmPlan, memory: Vector, q: Vector) -> None:
     """Reset an arm to rest at joint positions q (n,) [rad]; its obstacles stay where they are.
 
-    If q is empty, the arm begins at the positions that the next step measures.
+    If q is empty, the arm begins at the positions that the next step measures; they are NaN before.
     """
     arm = arm_state(plan, memory)
     centers = arm.obstacles.copy()
@@ -222,6 +235,7 @@ def rest_arm(plan: ArmPlan, memory: Vector, q: Vector) -> None:
         copied(arm.obstacles[k], centers[k])
     arm.period = plan.settings.dt
     arm.reason = Reason.NO_REQUEST
+    arm.positions[:] = np.nan
     if q.size > 0:
         arm.has_begun = True
         copied(arm.positions, q)
@@ -229,9 +243,14 @@ def rest_arm(plan: ArmPlan, memory: Vector, q: Vector) -> None:
 
 @compiled
 def place_arm(plan: ArmPlan, memory: Vector, centers: Matrix) -> None:
-    """Place the centres of an arm's obstacles, (k, 3) [m], at the present time."""
+    """Place the centres of an arm's obstacles, (k, 3) [m], at the present time.
+
+    If one is not finite, all stay where they are, and the arm brakes until they are placed again.
+    """
     arm = arm_state(plan, memory)
-    for k in range(len(arm.obstacles)):
+    flat = centers.reshape(centers.size)
+    arm.is_misplaced = not all_finite(flat, 0, flat.size)
+    for k in range(0 if arm.is_misplaced else len(arm.obstacles)):
         for i in range(3):
             arm.obstacles[k, i] = centers[k, i] - arm.time * plan.velocities[k, i]
 
@@ -258,14 +277,10 @@ def send_arm(plan: ArmPlan, memory: Vector, dq: Vector, period: float) -> None:
 def step_arm(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> int:
     """Take a step of a shield; its command is then the last one of `motion_of` the arm.
 
-    If a measured position is not finite, the arm brakes along the commanded positions.
-
     Returns:
-        The first `Reason` of the step; `INVALID` if a stated period is not valid: nothing is then
-        changed.
+        The first `Reason` of the step.
     """
-    if not begin_step(plan, memory, inputs):
-        return INVALID
+    begin_step(plan, memory, inputs)
     arm = arm_state(plan, memory)
     base = plan.step.arrays
     jacobian = np.empty((arm.positions.size, 6))
@@ -277,34 +292,59 @@ def step_arm(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> int:
 
 
 @compiled
-def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> bool:
+def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> None:
     """Take the inputs of a step into an arm's state: the part of a step before the kinematics.
 
-    Returns:
-        False if a stated period is not valid: nothing is then changed.
+    An input that has no meaning is a `Reason`, with which the arm brakes along the commanded
+    positions: measured positions beyond `LARGEST`, an unknown kind of request, a period that is
+    negative, not finite, above that of a shield whose periods are constant, or stated twice.
     """
     arm = arm_state(plan, memory)
     settings = plan.settings
-    stated = max(inputs.dt, inputs.elapsed)
-    fits = stated < np.inf and min(inputs.dt, inputs.elapsed) == 0.0
-    if not fits or (inputs.elapsed > 0.0 and settings.longest == 0.0):
-        return False
-    periods = periods_of(settings.dt, settings.longest, inputs.dt, inputs.elapsed)
-    if inputs.elapsed > 0.0:
-        _correct_last_period(arm, motion_of(plan, arm), inputs.elapsed)
     arm.reasons[:] = 0.0
+    arm.reasons[Reason.PERIOD_REFUSED] = 0.0 if _fits(settings, inputs) else 1.0
+    arm.reasons[Reason.PLACE_NOT_FINITE] = 1.0 if arm.is_misplaced else 0.0
+    periods = _periods(arm, settings, inputs)
+    if inputs.elapsed > 0.0 and arm.reasons[Reason.PERIOD_REFUSED] == 0.0:
+        _correct_last_period(arm, motion_of(plan, arm), inputs.elapsed)
     arm.reasons[Reason.PERIOD_EXCEEDED] = 1.0 if periods.exceeded else 0.0
-    _update_positions(arm, settings, inputs)
+    _update_positions(plan, arm, inputs)
     _update_request(arm, settings, inputs)
     if arm.reason != Reason.NONE:
         arm.reasons[arm.reason] = 1.0
     arm.period = periods.expected
-    arm.answered = Request.VELOCITY
-    if arm.reason == Reason.NONE and arm.reasons[Reason.Q_NOT_FINITE] == 0.0:
-        arm.answered = arm.kind
+    arm.answered = arm.kind
+    if arm.reason != Reason.NONE or _is_refused(arm):
+        arm.answered = Request.VELOCITY
     if not arm.has_begun:
         arm.answered = Request.NONE
-    return True
+
+
+@compiled
+def _fits(settings: ArmSettings, inputs: ArmInput) -> bool:
+    """Test whether the stated periods of a step have a meaning, and are not above the limits."""
+    dt = inputs.dt
+    elapsed = inputs.elapsed
+    if not (dt >= 0.0 and elapsed >= 0.0 and dt + elapsed < np.inf and min(dt, elapsed) == 0.0):
+        return False
+    longest: float = settings.longest
+    return longest > 0.0 or (elapsed == 0.0 and dt <= settings.dt * (1.0 + SLACK))
+
+
+@compiled
+def _periods(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> Periods:
+    """Return the periods of a step; those that are refused count as not stated."""
+    if arm.reasons[Reason.PERIOD_REFUSED] != 0.0:
+        return periods_of(settings.dt, settings.longest, 0.0, 0.0)
+    return periods_of(settings.dt, settings.longest, inputs.dt, inputs.elapsed)
+
+
+@compiled
+def _is_refused(arm: ArmState) -> bool:
+    """Test whether an arm brakes at this step, whatever its request is."""
+    count: float = arm.reasons[Reason.Q_NOT_FINITE] + arm.reasons[Reason.PERIOD_REFUSED]
+    count += arm.reasons[Reason.PLACE_NOT_FINITE]
+    return count > 0.0
 
 
 @compiled
@@ -320,27 +360,52 @@ def _correct_last_period(arm: ArmState, motion: MotionState, elapsed: float) -> 
 
 
 @compiled
-def _update_positions(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> None:
+def _update_positions(plan: ArmPlan, arm: ArmState, inputs: ArmInput) -> None:
     """Set the commanded positions to the measured ones, where these count.
 
     They count at the first step; where they differ by more than the tracking error; and where
     periods vary and none is stated, since the time for which the last command was held is then
-    unknown. The displacement that the delay still hides is added to them.
+    unknown. The displacement that the delay still hides is added to them. Of a joint without
+    position limits they count up to whole turns: its encoder may begin anew after one.
     """
+    settings = plan.settings
     q = inputs.q[: arm.positions.size].copy()
     _add_pending(arm, settings.delay, q)
     far = 0
     beyond = 0
     for i in range(q.size):
+        turns = 0.0
+        if arm.has_begun and abs(q[i]) <= LARGEST and _is_endless(plan, i):
+            turns = _turns_between(q[i], arm.positions[i])
+        if turns != 0.0:
+            q[i] += TURN * turns
+            arm.wraps[i] = 1.0
         far += not abs(q[i] - arm.positions[i]) <= settings.tracking_error
         beyond += not abs(q[i]) <= LARGEST
-    unstated = settings.longest > 0.0 and max(inputs.dt, inputs.elapsed) == 0.0
+    copied(arm.measured, q)
+    stated = inputs.dt + inputs.elapsed
+    if arm.reasons[Reason.PERIOD_REFUSED] != 0.0:
+        stated = 0.0
+    unstated = settings.longest > 0.0 and stated == 0.0
     if beyond > 0:
         arm.reasons[Reason.Q_NOT_FINITE] = 1.0
     elif far > 0 or unstated or not arm.has_begun:
         arm.reasons[Reason.RESYNCHRONISED] = 1.0 if arm.has_begun and not unstated else 0.0
         arm.has_begun = True
         copied(arm.positions, q)
+
+
+@compiled
+def _is_endless(plan: ArmPlan, i: int) -> bool:
+    """Test whether joint i turns, and has no position limits."""
+    slides: float = plan.robot.slides[i]
+    return plan.lower[i] == -np.inf and plan.upper[i] == np.inf and slides == 0.0
+
+
+@compiled
+def _turns_between(position: float, other: float) -> float:
+    """Return the number of whole turns from a position to the same place nearest to another."""
+    return math.floor((other - position) / TURN + 0.5)
 
 
 @compiled
@@ -390,22 +455,27 @@ def _note_sent(arm: ArmState, period: float, dq: Vector) -> None:
 def _update_request(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> None:
     """Set the request that counts: the new one, else the last one, or zero for a `Reason`."""
     count = 0
-    if inputs.kind != Request.NONE:
-        arm.kind = inputs.kind
-        count = TWIST if inputs.kind == Request.TWIST else arm.positions.size
+    kind = inputs.kind
+    is_known = kind >= Request.NONE and kind <= Request.POSITION
+    if is_known and kind != Request.NONE:
+        arm.kind = kind
+        count = TWIST if kind == Request.TWIST else arm.positions.size
     arm.age += arm.period
     if count > 0 and arm.reason != Reason.HALTED:
         arm.age = 0.0
         finite = all_finite(inputs.request, 0, count)
         arm.reason = Reason.NONE if finite else Reason.NOT_FINITE
+    if not is_known and arm.reason != Reason.HALTED:
+        arm.reason = Reason.UNKNOWN_KIND
     if arm.reason == Reason.NONE and arm.age > settings.timeout + 0.5 * arm.period:
         arm.reason = Reason.TIMED_OUT
     before = arm.request.copy()
     for i in range(arm.request.size):
         now = inputs.request[i] if i < count else before[i]
         arm.request[i] = now if arm.reason == Reason.NONE else 0.0
-    known = arm.reasons[Reason.Q_NOT_FINITE] == 0.0
-    arm.is_repeated = known and differing(arm.request, before) == 0
+    refused = _is_refused(arm)
+    changes = differing(arm.request, before)
+    arm.is_repeated = not refused and changes == 0
 
 
 @compiled
@@ -439,7 +509,7 @@ def finish_step(
 
     Returns:
         The `Action` that was taken; `NONE`, without a log, if the positions are not known;
-        `INVALID`, with a command of 0, if they are beyond `LARGEST`.
+        `INVALID`, without a log, if they are beyond `LARGEST`: the arm brakes.
     """
     arm = arm_state(plan, memory)
     action = NONE
@@ -478,7 +548,7 @@ def _answer(
     data: Vector,
 ) -> int:
     """Answer the request of an arm by a control step, and keep its results; return the action."""
-    timing = periods_of(plan.settings.dt, plan.settings.longest, inputs.dt, inputs.elapsed)
+    timing = _periods(arm, plan.settings, inputs)
     base = plan.step.arrays
     arrays = ProgramArrays(
         base.sizes,
@@ -520,8 +590,8 @@ def _answer(
     )
     next_motion_state = np.empty(arm.motion.size)
     action = take_step(data, step, arm.positions, arm.motion, next_motion_state, state, arm.time)
-    if action == INVALID:  # the commanded positions are beyond `LARGEST`
-        motion.last[:] = 0.0
+    if action == INVALID:
+        _brake_blindly(plan, arm, motion)
         return action
     copied(arm.motion, next_motion_state)
     motion.yields = False  # the next step tries the request again
@@ -530,6 +600,23 @@ def _answer(
         arm.reasons[Reason.SINGULAR] = 1.0
     _note_limits(arm, log)
     return action
+
+
+@compiled
+def _brake_blindly(plan: ArmPlan, arm: ArmState, motion: MotionState) -> None:
+    """Advance an arm whose positions have no kinematics by a command of a motion to rest."""
+    arm.reasons[Reason.Q_NOT_FINITE] = 1.0
+    cubic = plan.step.yielding.cubic
+    periods = motion.stopping_periods
+    if periods == 0.0:
+        periods = least_periods(
+            motion.last, motion.before, plan.motion, motion.spacing, cubic, False
+        )
+    for i in range(motion.last.size):
+        last = motion.last[i]
+        motion.last[i] = next_velocity(last, motion.before[i], periods, cubic)
+        motion.before[i] = last
+    motion.stopping_periods = max(periods - 1.0, 0.0)
 
 
 @compiled
@@ -550,8 +637,8 @@ def approach_request(
     """Write the next velocities dq (n,) [rad/s] of the joints on their way to the request.
 
     For requested positions each joint takes the largest velocity from which it can still come to
-    rest there. A joint that cannot reach its requested velocity in this step because of a jerk
-    limit, or whose request is that of the step before, approaches it without overshoot.
+    rest there (`_left`). A joint that cannot reach its requested velocity in this step because of a
+    jerk limit, or whose request is that of the step before, approaches it without overshoot.
 
     Args:
         arm: The arm, with its request.
@@ -561,12 +648,12 @@ def approach_request(
         dq: The velocities, or longer, overwritten.
     """
     reaches = arm.answered == Request.POSITION
-    brakes = arm.reasons[Reason.Q_NOT_FINITE] != 0.0
+    brakes = _is_refused(arm)
     for i in range(arm.positions.size):
         last = motion.last[i]
         before = motion.before[i]
         wanted = 0.0 if brakes else arm.request[i]
-        left = wanted - arm.positions[i]
+        left = _left(arm, i)
         above = limits.upper[i] - arm.positions[i]
         below = arm.positions[i] - limits.lower[i]
         rates = joint_rates(limits, i)
@@ -587,6 +674,25 @@ def approach_request(
         elif arm.is_repeated or wanted < lower or wanted > upper:
             wanted += braking(last - wanted, -np.inf, np.inf, limits.jerk[i], periods)
         dq[i] = wanted
+
+
+@compiled
+def _left(arm: ArmState, i: int) -> float:
+    """Compute the displacement of joint i to its requested position [rad].
+
+    The joint is there where its commanded or its measured position is, or between them: a request
+    for the measured positions holds the arm. Of a joint whose readings have skipped turns, the
+    nearest of all positions that are one place is requested.
+    """
+    wanted: float = arm.request[i]
+    commanded: float = arm.positions[i]
+    measured: float = arm.measured[i]
+    if arm.wraps[i] != 0.0:
+        wanted += TURN * _turns_between(wanted, commanded)
+    if not abs(measured - commanded) > FOLLOWING:
+        return wanted - commanded
+    nearest = max(wanted, min(commanded, measured))
+    return wanted - min(nearest, max(commanded, measured))
 
 
 @compiled
@@ -624,6 +730,13 @@ def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
         for k in range(distances.size):
             distance = min(distance, distances[k] - scene.head.least)
     return joint, distance
+
+
+@released
+def write_margins(plan: ArmPlan, memories: Matrix, joint: Vector, distance: Vector) -> None:
+    """Write `margin_of` each of N arms, whose memories are (N, k), to two arrays (N,)."""
+    for k in range(len(memories)):
+        joint[k], distance[k] = margin_of(plan, memories[k])
 
 
 @compiled

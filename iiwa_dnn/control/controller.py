@@ -37,7 +37,7 @@ from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.layout import ProgramLayout, targets_of
-from iiwa_dnn.schemes.periods import Periods, stated_periods
+from iiwa_dnn.schemes.periods import Periods, checked_longest, stated_periods
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 Mode = Literal["converged", "continuous"]
@@ -128,11 +128,14 @@ class Controller:
     def _set(self, name: str, value: Any) -> None:
         """Set an attribute, and discard the layout that depends on it."""
         before = vars(self).get(name)
-        if name == "scheme":
-            value.program(self.robot)  # parts that do not fit the robot are refused
+        own = vars(self) | {name: value}
+        if name in ("robot", "scheme") and "scheme" in own:
+            own["scheme"].program(own["robot"])  # parts that do not fit the robot are refused
+        if name in ("dt", "longest_period") and "longest_period" in own:
+            checked_longest(own["longest_period"], own["dt"])
         # A number of numpy's names its type where it is written into C.
-        own = float(value) if name in ("dt", "longest_period") and value is not None else value
-        object.__setattr__(self, name, own)
+        number = float(value) if name in ("dt", "longest_period") and value is not None else value
+        object.__setattr__(self, name, number)
         self._derived = None
         if name == "robot" and self._state.sizes[0] != value.dof:
             self._state = ControllerState(value.dof)

@@ -16,6 +16,7 @@ from iiwa_dnn.qp import Matrix
 from iiwa_dnn.references import Reference
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.collision import CLEARANCE, TOO_NEAR, collision_model, unwatched_links
+from iiwa_dnn.robot.robot import model_limits
 from iiwa_dnn.schemes import Limit, OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.layout import ProgramLayout
@@ -34,6 +35,13 @@ SAMPLES = 200
 """Number of samples of a path in the test of its reach."""
 SLOWEST = 0.1
 """Control period above which a warning is given [s]."""
+FAR_ABOVE = 10.0
+"""Ratio of a limit to that of the robot's file, or of a tool to the arm, above which a warning is
+given."""
+FURTHEST = 1.0
+"""Least distance above which a warning is given [m]."""
+LONGEST = {"timeout": 10.0, "delay": 1.0}
+"""Times of a shield above which a warning is given [s]."""
 DOUBLINGS = 16
 """Number of samples in the rank test: the path 1, 2, 4, ... control periods after its start."""
 NEAR = 0.02
@@ -86,6 +94,7 @@ def setup_warnings(
     robot = program.robot
     if problem := robot.outside(start.q):
         yield f"the start posture {problem}"
+    yield from _unit_warnings(program)
     for coupling in LimitNames(program).conditions(start.q, program.least):
         yield f"{coupling} at the start: they come to it within the limits"
     yield from _gain_warnings(program, dt)
@@ -132,6 +141,37 @@ def _body_warnings(robot: Robot, limits: Sequence[Limit]) -> Iterator[str]:
                     f"nothing keeps {second} and {first} apart: in every posture they are within "
                     f"{CLEARANCE:g} m of each other"
                 )
+
+
+def _unit_warnings(program: ProgramLayout) -> Iterator[str]:
+    """Yield a warning for each length or limit that is most likely in mm or degrees."""
+    robot = program.robot
+    lower, upper, velocity = model_limits(robot.model)
+    sizes = {"position": np.maximum(abs(lower), abs(upper)), "velocity": velocity}
+    own = {"position": np.abs(robot.limits[:2]).max(axis=0), "velocity": robot.dq_max}
+    for word, size in sizes.items():
+        with np.errstate(invalid="ignore"):  # inf / inf
+            ratio = np.where(np.isfinite(own[word]), own[word] / size, 0.0)
+        i = int(np.argmax(ratio))
+        if ratio[i] > FAR_ABOVE:
+            unit = "mm" if i in robot.slides else "degrees"
+            yield (
+                f"joint {i + 1} has a {word} limit of {own[word][i]:g}, the robot's file "
+                f"{size[i]:g}: is it in {unit}?"
+            )
+    tip = float(np.linalg.norm(robot.model.frames[robot.tip_id].placement.translation))
+    if tip > max(FAR_ABOVE * float(robot.lengths.sum()), 1.0):
+        yield f"the tip is {tip:g} m from its joint: is the tool in mm?"
+    for part in program.limits:
+        if isinstance(part, CollisionAvoidance) and part.distance > FURTHEST:
+            yield f"a distance of {part.distance:g} m is long: is it in mm?"
+
+
+def long_times(times: Mapping[str, float]) -> Iterator[str]:
+    """Yield a warning for each time [s], by its name, that is most likely in ms."""
+    for name, time in times.items():
+        if LONGEST[name] < time < math.inf:
+            yield f"a {name} of {time:g} s is long: is it in ms?"
 
 
 def _gain_warnings(program: ProgramLayout, dt: float) -> Iterator[str]:

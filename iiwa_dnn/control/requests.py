@@ -53,6 +53,9 @@ REASONS = (
     "request cut",
     EXCEEDED,
     "singular posture",
+    "request of unknown kind",
+    "period refused",
+    "place of an obstacle not finite",
 )
 """Words of each `Reason`, in the order of their codes."""
 
@@ -69,7 +72,8 @@ class Request(IntEnum):
 class Reason(IntEnum):
     """Reasons, other than limits, for a command that differs from the request.
 
-    With those from `NO_REQUEST` to `Q_NOT_FINITE` the arm brakes to rest.
+    With those from `NO_REQUEST` to `Q_NOT_FINITE` and from `UNKNOWN_KIND` on, the arm brakes to
+    rest.
     """
 
     NONE = 0
@@ -82,6 +86,9 @@ class Reason(IntEnum):
     CUT = 7
     PERIOD_EXCEEDED = 8
     SINGULAR = 9
+    UNKNOWN_KIND = 10
+    PERIOD_REFUSED = 11
+    PLACE_NOT_FINITE = 12
 
 
 def one_request(

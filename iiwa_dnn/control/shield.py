@@ -41,6 +41,7 @@ from iiwa_dnn.control.arms import (
     halt_arm,
     margin_of,
     motion_of,
+    place_arm,
     rest_arm,
     send_arm,
     stopping_time_of,
@@ -48,7 +49,7 @@ from iiwa_dnn.control.arms import (
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import ACTION_OF, periods_of_step
 from iiwa_dnn.control.cycle import INVALID, ControlLayout
-from iiwa_dnn.control.paths import setup_warnings, warn_of_bodies
+from iiwa_dnn.control.paths import long_times, setup_warnings, warn_of_bodies
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.requests import (
     CUT,
@@ -74,16 +75,22 @@ from iiwa_dnn.schemes import (
     own_rate_limits,
 )
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.periods import Periods, checked_longest
+from iiwa_dnn.schemes.layout import ProgramLayout
+from iiwa_dnn.schemes.periods import SLACK, Periods, checked_longest
 from iiwa_dnn.schemes.rate_limits import MotionLimits
 from iiwa_dnn.schemes.scene import Body, scene_views
+from iiwa_dnn.schemes.step import TARGET_SIZE
 
 DISTANCE = 0.02
 """Least distance from obstacles where none is stated [m]."""
 
 
+NO_TARGETS = np.zeros((0, TARGET_SIZE))
+"""Targets of a shield, which tracks no frame, (0, 18)."""
+
+
 class Margin(NamedTuple):
-    """Distances of an arm from its limits.
+    """Distances of an arm from its limits, or of N arms, (N,).
 
     Attributes:
         joint: Least distance of a joint from its position limits [rad].
@@ -91,8 +98,8 @@ class Margin(NamedTuple):
             [m]; inf if no pair is watched.
     """
 
-    joint: float
-    distance: float
+    joint: float | Vector
+    distance: float | Vector
 
 
 class ArmLayout(NamedTuple):
@@ -103,12 +110,15 @@ class ArmLayout(NamedTuple):
         step: Layout of the control step.
         memory: Memory of an arm that has not begun, (k,).
         positions: Place of the commanded joint positions in it.
+        asks: Whether the step calls functions in Python: limits in numpy, or obstacles that move in
+            a way of their own (`Obstacle.shift`).
     """
 
     plan: ArmPlan
     step: ControlLayout
     memory: Vector
     positions: slice
+    asks: bool
 
     def state(self, memory: Vector) -> ArmState:
         """View memories (..., k) of arms as their states."""
@@ -146,10 +156,16 @@ def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
     """Lay out the step of a shield's arm, for requests of joints and of one frame's twist.
 
     Raises:
+        InvalidInputError: The shield's limits do not fit.
         NotFoundError: The robot has no frame of that name.
     """
     robot = shield.robot
     program = Scheme([RequestCost(frame)], [], shield.limits).program(robot)
+    if not program.places_of(JointLimits):
+        raise InvalidInputError("limits", "need a JointLimits: every command keeps it", program)
+    if len(program.places_of(CollisionAvoidance)) > 1:
+        problem = "have several CollisionAvoidance: put their obstacles into one"
+        raise InvalidInputError("limits", problem, program)
     solver = DNNSolver(tol=1e-9)
     longest = shield.longest_period
     step = ControlLayout(program, {}, solver, shield.dt, Action.RELAX, longest)
@@ -174,7 +190,7 @@ def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
         program.places_of(RequestCost)[0],
         [*program.places_of(CollisionAvoidance), -1][0],
         step.log_layout.width,
-        MotionLimits(own_rate_limits(robot)).constants(robot),
+        (program.rate_limits or MotionLimits()).constants(robot),
         float(CUT * max(robot.reach, 1.0) * total),  # above what the joints can do anywhere
         robot.q_lower,
         robot.q_upper,
@@ -188,7 +204,22 @@ def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
         centers = [Body.of(body).center for body in bodies[-len(obstacles) :]]
         memory.obstacles = np.array(centers)
     rest_arm(plan, memory.numbers, np.zeros(0))
-    return ArmLayout(plan, step, memory.numbers, ArmState.columns(*sizes)["positions"])
+    positions = ArmState.columns(*sizes)["positions"]
+    return ArmLayout(plan, step, memory.numbers, positions, bool(called_parts(shield, program)))
+
+
+def called_parts(shield: Shield, program: ProgramLayout) -> list[str]:
+    """Name the limits and obstacles whose Python is called at each step of a shield's program."""
+    numpy = [program.parts[k] for k in program.refreshed]
+    parts: list[Any] = [part for part in numpy if not isinstance(part, CollisionAvoidance)]
+    parts += own_movers(shield)
+    return [type(part).__name__ for part in parts]
+
+
+def own_movers(shield: Shield) -> list[Obstacle]:
+    """Return the obstacles of a shield that do not move at a constant velocity."""
+    avoidance = avoidance_of(shield) or CollisionAvoidance()
+    return [each for each in avoidance.obstacles if type(each).shift is not Obstacle.shift]
 
 
 class ShieldCommand(Command):
@@ -255,13 +286,24 @@ class Shield:
     `tracking_error` of those commanded `delay` ago do not change the integrated ones, unless
     periods vary and are not stated. Threads may share a shield: steps wait for each other.
 
+    What has no meaning is refused, and an arm never stops dead for it. Numbers that are not finite
+    brake the arm, with a reason; so do, in C and for an arm of `Shields`, all others. An argument
+    that raises an error changes nothing: `step` with None for the joint positions then brakes.
+
     Attributes:
         robot: The robot, n joints, whose limits hold.
         dt: Control period [s].
         longest_period: Longest control period where periods vary [s]; None: they are constant.
         delay: Time by which the arm is behind its commands [s].
-        settings: These and the other numbers, for kernels.
+        settings: These and the other numbers, for kernels. All of these are set when the shield is
+            made; `limits` alone may be set later.
     """
+
+    robot: Robot
+    dt: float
+    longest_period: float | None
+    delay: float
+    settings: ArmSettings
 
     def __init__(
         self,
@@ -296,19 +338,26 @@ class Shield:
             InvalidInputError: An argument is out of range; the message names it.
             NotFoundError: There is no link or obstacle of a name in the `CollisionAvoidance`.
         """
-        self.robot = checks.instance("robot", robot, Robot)
-        self.dt = checks.positive("dt", dt)
-        self.longest_period = checked_longest(longest_period, self.dt)
-        self.delay = checks.not_negative("delay", delay)
-        self.settings = ArmSettings.make(
-            dt=self.dt,
-            longest=longest_period or 0.0,
+        checks.instance("robot", robot, Robot)
+        settings = ArmSettings.make(
+            dt=checks.positive("dt", dt),
+            longest=checked_longest(longest_period, dt) or 0.0,
             timeout=timeout if timeout == math.inf else checks.positive("timeout", timeout),
             tracking_error=checks.not_negative("tracking_error", tracking_error),
-            delay=self.delay,
+            delay=checks.not_negative("delay", delay),
+        )
+        settings.setflags(write=False)
+        checks.fix(
+            self,
+            robot=robot,
+            dt=settings.dt,
+            longest_period=longest_period,
+            delay=settings.delay,
+            settings=settings,
         )
         self._warned: set[str] = set()
         self._halted = False
+        self._is_within = False
         self._kept: tuple[Vector, str]  # memory of the arm, never overwritten; frame of twists
         limits: list[Limit] = [JointLimits(), *own_rate_limits(robot)]
         checks.positive("distance", distance)
@@ -322,6 +371,10 @@ class Shield:
         self._begin()
         self.reset()
         warn_of_bodies(robot, self._limits, self._warned)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        checks.settable("the shield", name, value, ("limits",))
+        super().__setattr__(name, value)
 
     @property
     def limits(self) -> tuple[Limit, ...]:
@@ -337,21 +390,38 @@ class Shield:
 
     @limits.setter
     def limits(self, limits: Sequence[Limit]) -> None:
-        with self._lock:
+        with self._turn():
             memory, frame = self._kept
-            plan = self.layout(frame).plan
-            if motion_of(plan, self.layout(frame).state(memory)).last.any():
+            layout = self.layout(frame)
+            if motion_of(layout.plan, layout.state(memory)).last.any():
                 raise InvalidInputError("limits", "are set at rest: halt the arm first", limits)
             halted = self._halted
-            self._limits = tuple(limits)
+            before = self._limits
+            self._limits = tuple(checks.instance("limits", limit, Limit) for limit in limits)
             self._layouts.clear()
-            self.reset()
+            try:
+                self.reset()
+            except BaseException:
+                self._limits = before
+                raise
             self._halted = halted
             warn_of_bodies(self.robot, self._limits, self._warned)
 
     def _begin(self) -> None:
         self._lock = threading.RLock()
         self._layouts: dict[str, ArmLayout] = {}
+
+    def _turn(self) -> threading.RLock:
+        """Return the lock of the arm's memory.
+
+        Raises:
+            InvalidInputError: This thread takes a step: a limit or obstacle in Python that it calls
+                has called the shield.
+        """
+        if self._is_within and self._lock._is_owned():  # type: ignore[attr-defined]
+            problem = "is within a step: what the step calls may only read it, or halt it"
+            raise InvalidInputError("shield", problem, self)
+        return self._lock
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
@@ -376,7 +446,7 @@ class Shield:
             q: Joint positions of the arm [rad], (n,); None: those that the next step measures.
         """
         positions = np.zeros(0) if q is None else checks.joint_positions("q", q, self.robot.dof)
-        with self._lock:
+        with self._turn():
             tip = self.robot.tip
             layout = self.layout(tip)
             memory = layout.memory.copy()
@@ -400,7 +470,7 @@ class Shield:
         """
         sent = checks.finite_array("dq", dq, (self.robot.dof,))
         period = self.dt if dt is None else checks.positive("dt", dt)
-        with self._lock:
+        with self._turn():
             memory, frame = self._kept
             memory = memory.copy()
             send_arm(self.layout(frame).plan, memory, sent, period)
@@ -413,7 +483,7 @@ class Shield:
             q: Joint positions of the first step [rad], (n,).
             frames: Names of the frames whose twists will be requested.
         """
-        with self._lock:
+        with self._turn():
             kept = self._kept
             try:  # steps that do not count
                 self.step(q, np.zeros(self.robot.dof))
@@ -424,7 +494,7 @@ class Shield:
 
     def step(
         self,
-        q: ArrayLike,
+        q: ArrayLike | None,
         dq: ArrayLike | None = None,
         *,
         twist: ArrayLike | None = None,
@@ -439,34 +509,44 @@ class Shield:
         as for `Controller.step`.
 
         Args:
-            q: Measured joint positions [rad], (n,).
+            q: Measured joint positions [rad], (n,); None: they could not be read; the arm brakes.
             dq: Requested joint velocity [rad/s], (n,).
             twist: Or the requested linear [m/s] and angular [rad/s] velocity of a frame along the
                 base's axes, (6,).
-            position: Or the requested joint positions [rad], (n,).
+            position: Or the requested joint positions [rad], (n,). A joint is there where its
+                commanded or its measured position is, or between them.
             frame: Name of the twist's frame; None stands for the tip.
-            dt: Period for which this command will be held [s].
+            dt: Period for which this command will be held [s]; without a `longest_period` at most
+                the control period.
             elapsed: Time since the last step [s], for which the last command was held.
 
         Raises:
-            InvalidInputError: `q` or a request has a wrong shape, `q` is not finite, there are
-                several requests, or a period is wrong. Nothing is then changed.
+            InvalidInputError: `q` or a request has a wrong shape, `q` is not finite, or None at the
+                first step, there are several requests, or a period is wrong. Nothing is then
+                changed.
             NotFoundError: The robot has no frame of that name.
         """
         robot = self.robot
         kind, request = one_request((robot.dof,), dq, twist, position)
-        measured = checks.joint_positions("q", q, robot.dof)
-        with self._lock:
+        measured: Vector = np.full(robot.dof, np.nan)
+        if q is not None:
+            measured = checks.joint_positions("q", q, robot.dof)
+        with self._turn():
             memory, last = self._kept
             memory = memory.copy()
             seen = (frame or robot.tip) if kind is Request.TWIST else last
             layout = self._layouts.get(seen) or self.layout(seen)
             plan = layout.plan
             step = layout.step
+            if q is None and not layout.state(memory).has_begun:
+                raise InvalidInputError("q", "is needed at the first step", q)
             if "start" not in self._warned:
                 self._warn_of_start(Configuration(robot, measured))
+            if kind is Request.POSITION and "position" not in self._warned:
+                self._warn_of_positions(request)
             periods = step.plan.timing
             if step.varies or not dt is elapsed is None:
+                check_held(self, dt)
                 periods = periods_of_step(self, self._warned, dt, elapsed)
             if self._halted:
                 halt_arm(plan, memory)
@@ -475,6 +555,8 @@ class Shield:
             kinematics = step.program.kinematics
             positions = memory[layout.positions]
             kinematics.update(positions)
+            if layout.asks:
+                self._call_parts(layout, memory, periods)
             data = np.empty(plan.width)
             action = finish_step(
                 plan, memory, inputs, kinematics.jacobian, kinematics.placements, data
@@ -482,12 +564,48 @@ class Shield:
             if action == INVALID:
                 checks.joint_positions("q", positions, robot.dof)
             command = ShieldCommand(data, layout, ACTION_OF[action], periods, memory)
-            self._kept = (memory, seen)  # last: an interrupted step changes nothing
+            # Last: an interrupted step changes nothing.
+            object.__setattr__(self, "_kept", (memory, seen))
             return command
+
+    def _call_parts(self, layout: ArmLayout, memory: Vector, periods: Periods) -> None:
+        """Call the limits and obstacles in Python of a step whose kinematics are computed."""
+        plan = layout.plan
+        arm = layout.state(memory)
+        t = float(arm.time)
+        self._is_within = True
+        try:
+            last = motion_of(plan, arm).last.copy()
+            program = layout.step.program
+            program.refresh(arm.positions.copy(), last, NO_TARGETS, t, periods.expected)
+            if own_movers(self):
+                avoidance = avoidance_of(self) or CollisionAvoidance()
+                begun = layout.state(layout.memory).obstacles
+                shifts = [obstacle.shift(t) for obstacle in avoidance.obstacles]
+                place_arm(plan, memory, begun + np.array(shifts))
+        finally:
+            self._is_within = False
 
     def _warn_of_start(self, start: Configuration) -> None:
         """Warn of settings or a start posture that are most likely wrong, once."""
         self._warned.add("start")
         program = self.layout(self.robot.tip).step.program
+        settings = {"timeout": self.settings.timeout, "delay": self.delay}
         for message in setup_warnings(program, start, 0.0, self.dt, "converged"):
             warn_caller(message)
+        for message in long_times(settings):
+            warn_caller(message)
+
+    def _warn_of_positions(self, request: Vector) -> None:
+        """Warn of requested positions (n,) that are most likely in degrees, once."""
+        self._warned.add("position")
+        problem = self.robot.outside(request)
+        if problem and self.robot.in_degrees(request):
+            warn_caller(f"the requested posture {problem}")
+
+
+def check_held(loop: Any, dt: float | None) -> None:
+    """Refuse a stated period [s] above that of a shield or shields whose periods are constant."""
+    if loop.longest_period is None and dt is not None and dt > loop.dt * (1.0 + SLACK):
+        problem = f"must be at most {loop.dt:g} s, the control period, without a longest_period"
+        raise InvalidInputError("dt", problem, dt)

@@ -13,9 +13,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.arms import ArmInput, halt_arm, motion_of, place_arm, rest_arm, step_arms
+from iiwa_dnn.control.arms import (
+    ArmInput,
+    halt_arm,
+    motion_of,
+    place_arm,
+    rest_arm,
+    step_arms,
+    write_margins,
+)
 from iiwa_dnn.control.requests import one_request
-from iiwa_dnn.control.shield import Margin, Shield
+from iiwa_dnn.control.shield import Margin, Shield, called_parts, check_held
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.qp.layout import IntVector
@@ -64,9 +72,17 @@ class Shields:
         robot: The robot, n joints.
         count: Number of arms, N.
         dt: Control period [s].
+        longest_period: Longest control period where periods vary [s]; None: they are constant.
         frame: Frame of twists.
-        threads: Largest number of threads of a step.
+        threads: Largest number of threads of a step. It alone may be set later.
     """
+
+    robot: Robot
+    count: int
+    dt: float
+    longest_period: float | None
+    frame: str
+    threads: int
 
     def __init__(
         self,
@@ -87,7 +103,8 @@ class Shields:
             settings: Arguments of `Shield`, with a robot.
 
         Raises:
-            InvalidInputError: An argument is out of range; the message names it.
+            InvalidInputError: An argument is out of range, or the step of many arms would call a
+                limit or an obstacle in Python; the message names it.
             NotFoundError: There is no setting, frame, link or obstacle of a name.
         """
         checks.known("setting of a shield", settings, inspect.signature(Shield).parameters)
@@ -96,13 +113,29 @@ class Shields:
         else:
             shield = Shield(robot, **settings)  # type: ignore[arg-type]
         self._shield = shield
-        self.robot = shield.robot
-        self.count = checks.integer("count", count, 1)
-        self.dt = shield.dt
-        self.frame = frame or shield.robot.tip
-        self.threads = checks.integer("threads", threads or os.cpu_count() or 1, 1)
-        memory = shield.layout(self.frame).memory
+        checks.fix(
+            self,
+            robot=shield.robot,
+            count=checks.integer("count", count, 1),
+            dt=shield.dt,
+            longest_period=shield.longest_period,
+            frame=frame or shield.robot.tip,
+        )
+        self.threads = threads or os.cpu_count() or 1
+        layout = shield.layout(self.frame)
+        if names := called_parts(shield, layout.step.program):
+            problem = f"are in Python: {', '.join(names)}; take a Shield for each arm"
+            raise InvalidInputError("limits", problem, names)
+        memory = layout.memory
         self._memories: Matrix = np.tile(memory, (self.count, 1))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        checks.settable("the shields", name, value, ("threads",))
+        own = checks.integer(name, value, 1) if name == "threads" else value
+        super().__setattr__(name, own)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
 
     def __getstate__(self) -> dict[str, Any]:
         with self._shield._lock:
@@ -143,7 +176,8 @@ class Shields:
         """
         shape = (self.count, self.robot.dof)
         kind, request = one_request(shape, dq, twist, position)
-        stated_periods(self.dt, self._shield.longest_period, dt, elapsed)
+        check_held(self, dt)
+        stated_periods(self.dt, self.longest_period, dt, elapsed)
         measured = checks.array("q", q, shape)
         inputs = ArmInput(measured.ravel(), kind, request.ravel(), dt or 0.0, elapsed or 0.0)
         kinds = self._flags("given", given) * kind
@@ -219,10 +253,19 @@ class Shields:
         with self._shield._lock:
             return self._shield.layout(self.frame).active_limits(self._memories[i])
 
-    def margin(self, i: int) -> Margin:
-        """Return the distances of arm i at the positions that its last command starts from."""
+    def margin(self, i: int | None = None) -> Margin:
+        """Return the distances of arm i at the positions that its last command starts from.
+
+        If i is None, those of all arms, as arrays (N,).
+        """
+        layout = self._shield.layout(self.frame)
         with self._shield._lock:
-            return self._shield.layout(self.frame).margin(self._memories[i])
+            if i is not None:
+                return layout.margin(self._memories[i])
+            joint = np.empty(self.count)
+            distance = np.empty(self.count)
+            write_margins(layout.plan, self._memories, joint, distance)
+            return Margin(joint, distance)
 
     def stopping_time(self, i: int) -> float:
         """Return the time of arm i's stopping motion from its last command [s]."""

@@ -235,9 +235,12 @@ def _widen_bounds(log: StepLog, qp: QPViews, limits: MotionConstants) -> None:
     """Replace the joints' bounds in a program by those of position and velocity limits alone.
 
     Overwrites the first entries of qp.lb and qp.ub [rad/s], and their kinds in the log; nothing
-    without acceleration or jerk limits.
+    without acceleration or jerk limits, and of a joint outside of its range, which comes back
+    within these.
     """
     for i in range(limits.velocity.size):
+        if log.q[i] < limits.lower[i] or log.q[i] > limits.upper[i]:
+            continue
         fastest = limits.velocity[i]
         qp.lb[i] = min(max(POSITION_GAIN * (limits.lower[i] - log.q[i]), -fastest), fastest)
         qp.ub[i] = min(max(POSITION_GAIN * (limits.upper[i] - log.q[i]), -fastest), fastest)

@@ -40,7 +40,7 @@ from iiwa_dnn.control.paths import by_frame
 from iiwa_dnn.control.plan import ControlPlan, PathColumn, Paths
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.requests import REASONS, Reason, Request
-from iiwa_dnn.control.shield import Shield
+from iiwa_dnn.control.shield import Shield, called_parts
 from iiwa_dnn.control.state import count_as_sent
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.tables import (
@@ -254,7 +254,11 @@ def limit_words(program: ProgramLayout) -> list[str]:
 
 def shield_code(shield: Shield, frame: str) -> dict[str, Any]:
     """Translate a shield with twists of one frame; return texts as `controller_code` does."""
-    plan, step, memory, _ = shield.layout(frame)
+    layout = shield.layout(frame)
+    plan, step, memory = layout[:3]
+    if names := called_parts(shield, step.program):
+        problem = f"are in Python, which C cannot call: {', '.join(names)}"
+        raise InvalidInputError("limits", problem, names)
     written = ("jacobian", "placements", "inertia", "fallback")
     code = _Code(step.program, [], dict.fromkeys(written, "/* each arm's */ NULL"), folds=False)
     text = code.initializer("plan", plan._replace(step=code.numbered(plan.step)))

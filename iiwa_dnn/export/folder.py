@@ -264,7 +264,7 @@ def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
             if kind == Request.POSITION:
                 request[: q.size] = q + 0.2 * request[: q.size]
             request[0] = np.inf if k == 200 else request[0]
-        period = 2.0 * shield.dt if k % 10 == 7 and shield.longest_period is None else 0.0
+        period = 0.5 * shield.dt if k % 10 == 7 and shield.longest_period is None else 0.0
         asked = request[np.newaxis]
         command = arms.step(
             q[np.newaxis],

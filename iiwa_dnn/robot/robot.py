@@ -195,12 +195,10 @@ class Robot:
     def outside(self, q: ArrayLike) -> str:
         """Describe the first joint of q (n,) [rad] that is beyond its limits; "" if none is.
 
-        An excess of 1e-9 is allowed: a run may end there, and the next one begin. If positions
-        beyond a turn would be within the limits in degrees, the text asks about the unit.
+        An excess of 1e-9 is allowed: a run may end there, and the next one begin. If they are
+        `in_degrees`, the text asks about the unit.
         """
-        turns = np.radians(q)
-        fit = (turns >= self.q_lower) & (turns <= self.q_upper)
-        hint = "; are the positions in degrees?" * bool(fit.all() and np.abs(q).max() > 2.0 * np.pi)
+        hint = "; are the positions in degrees?" * self.in_degrees(q)
         for i, (lower, upper, each) in enumerate(
             zip(*self.limits[:2], np.asarray(q), strict=True), 1
         ):
@@ -214,6 +212,15 @@ class Robot:
         """Return the same robot with a tool or a held object, whose frame becomes the tip.
 
         Distances are kept of its shapes as of a link that goes by its name. It has no mass.
+
+    def in_degrees(self, q: ArrayLike) -> bool:
+        """Test whether positions q (n,) beyond a turn would be within the limits in degrees."""
+        turns = np.radians(q)
+        fit = (turns >= self.q_lower) & (turns <= self.q_upper)
+        return bool(fit.all() and np.abs(q).max() > 2.0 * np.pi)
+
+    def with_tool(self, tool: pin.SE3 | ArrayLike, name: str = "tool") -> Robot:
+        """Return the same robot with a frame fixed to its tip, which becomes the tip.
 
         Args:
             tool: Pose of the tool in the tip's frame, the flange: a Pinocchio SE3, or x, y, z [m]

@@ -165,14 +165,15 @@ class ProgramLayout:
         Args:
             q: Joint positions [rad], (dof,), at which `kinematics` was updated last.
             last: Last command [rad/s], (dof,).
-            targets: Targets of the tracked frames, (k, 18).
+            targets: Targets of the tracked frames, (k, 18); of a shield none, (0, 18).
             t: Time [s].
             dt: Control period [s]; inf outside of a loop.
 
         Raises:
             InvalidInputError: A method in numpy returns something wrong; its part is named.
         """
-        named = dict(zip(self.target_frames, map(Target.from_data, targets), strict=True))
+        frames = self.target_frames[: len(targets)]
+        named = dict(zip(frames, map(Target.from_data, targets), strict=True))
         step = Step(self.robot, q, named, dt, t, last, self.kinematics)
         for k in self.refreshed:
             part = self.parts[k]

@@ -187,6 +187,11 @@ def motion_limits(
         )
         step.lower_kind[i] = upper_kind if lb[i] > upper else lower_kind
         step.upper_kind[i] = lower_kind if ub[i] < lower else upper_kind
+        # Outside of the range other limits may ask for a return that ends far within it.
+        if below < 0.0:
+            lb[i] = lower
+        if above < 0.0:
+            ub[i] = upper
         lb[i] = min(max(lb[i], lower), upper)
         ub[i] = min(max(ub[i], lower), upper)
 

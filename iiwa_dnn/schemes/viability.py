@@ -135,6 +135,14 @@ def _acceleration_bounds(
         lower = -unit * approach(below / (unit * periods.hold), periods.vary)
     lower = min(max(min(max(lower, -fastest), fastest), first), final)
     upper = min(max(min(max(upper, -fastest), fastest), first), final)
+    # From outside of the range the joint comes to rest at its limit.
+    unit = rates.deceleration * periods.hold
+    if below < 0.0:
+        back = unit * approach(-below / (unit * periods.hold), periods.vary)
+        lower = min(lower, max(back, first))
+    if above < 0.0:
+        back = unit * approach(-above / (unit * periods.hold), periods.vary)
+        upper = max(upper, min(-back, final))
     position = _position_kind(rates)
     lower_kind = _rate_kind(lower, -fastest, first, position)
     return lower, upper, lower_kind, _rate_kind(upper, fastest, final, position)
@@ -199,6 +207,12 @@ def _jerk_bounds(
     else:
         upper = _ceiling(lb, ub, above - margin, last, periods, profile)
         lower = -_ceiling(-ub, -lb, below - margin, -last, periods, profile)
+    # From outside of the range the joint comes to rest where one does that is held at its limit.
+    end = 0.0 if periods.vary else REST * unit * dt
+    if below < 0.0:
+        lower = min(lower, _ceiling(lb, ub, end - below, last, periods, profile))
+    if above < 0.0:
+        upper = max(upper, -_ceiling(-ub, -lb, end - above, -last, periods, profile))
     if lower < upper and max(abs(last), abs(last - before)) < unit:
         # Held at that bound, a joint at its margin would swing by it, 2 + sqrt(3) times as far in
         # each period (the zeros of a sampled triple integrator): all but at rest, it comes to rest.

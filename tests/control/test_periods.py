@@ -252,15 +252,18 @@ def test_a_shield_passes_no_limit_whatever_period_comes(said: str, jerk: float) 
 
 
 def test_a_shield_takes_the_period_of_a_command_without_a_longest_one() -> None:
-    """Velocity and acceleration limits hold at the stated period; `elapsed` is refused."""
+    """Velocity and acceleration limits hold at a shorter period; others are refused."""
     panda = d.load_robot("panda").with_limits(jerk=np.inf)
     shield, q, last = d.Shield(panda, 1e-3), np.array(panda.start_posture()), np.zeros(7)
-    for period in (1e-3, 2e-3, 5e-4, 4e-3):
+    for period in (1e-3, 2e-4, 5e-4, 1e-3):
         command = shield.step(q, np.full(7, 9.0), dt=period)
         assert (np.abs(command.dq - last) <= period * panda.ddq_max + 1e-12).all()
         q, last = q + period * command.dq, command.dq
     with pytest.raises(d.InvalidInputError, match="elapsed: needs a longest_period"):
         shield.step(q, elapsed=1e-3)
+    for loop in (shield, d.Shields(shield, 1)):
+        with pytest.raises(d.InvalidInputError, match=r"dt: must be at most 0\.001 s"):
+            loop.step(q if loop is shield else q[None], dt=2e-3)
     np.testing.assert_array_equal(shield.step(q, dt=1e-3).log.q, q)
 
 

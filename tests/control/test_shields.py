@@ -53,9 +53,9 @@ def requests(kind: str, steps: int) -> Iterator[dict[str, np.ndarray]]:
 
 
 def periods(k: int, longest: float | None) -> dict[str, float]:
-    """Periods that are stated now and then, one of them too long."""
+    """Periods that are stated now and then; of those that vary, one is too long."""
     if longest is None:
-        return {"dt": 2.0 * DT} if k % 7 == 3 else {}
+        return {"dt": 0.5 * DT} if k % 7 == 3 else {}
     spread = DT * (0.2 + k * 0.37 % 3.3)
     return [{}, {"dt": min(spread, longest)}, {"elapsed": spread}][k % 3]
 

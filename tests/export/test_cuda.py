@@ -55,7 +55,7 @@ def test_periods_moving_obstacles_and_numbers_of_other_types(package: Any) -> No
     for k in range(40):
         request = random.standard_normal((COUNT, 7)).astype(np.float32)
         places = near + 0.1 * random.standard_normal((COUNT, 1, 3) if k % 2 else (1, 3))
-        own = {"dq": request, "obstacles": places, "dt": 2.0 * DT if k % 5 == 0 else None}
+        own = {"dq": request, "obstacles": places, "dt": 0.5 * DT if k % 5 == 0 else None}
         expected = cpu.step(q, **own)
         wide = to_device(np.repeat(q, 2, axis=1))[:, ::2]
         own |= {"dq": to_device(request), "obstacles": to_device(places)}
