@@ -308,7 +308,9 @@ def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> None:
     if inputs.elapsed > 0.0 and arm.reasons[Reason.PERIOD_REFUSED] == 0.0:
         _correct_last_period(arm, motion_of(plan, arm), inputs.elapsed)
     arm.reasons[Reason.PERIOD_EXCEEDED] = 1.0 if periods.exceeded else 0.0
-    _update_positions(plan, arm, inputs)
+    stated = inputs.dt + inputs.elapsed
+    unstated = arm.reasons[Reason.PERIOD_REFUSED] != 0.0 or stated == 0.0
+    _update_positions(plan, arm, inputs.q, unstated and settings.longest > 0.0)
     _update_request(arm, settings, inputs)
     if arm.reason != Reason.NONE:
         arm.reasons[arm.reason] = 1.0
@@ -360,39 +362,50 @@ def _correct_last_period(arm: ArmState, motion: MotionState, elapsed: float) -> 
 
 
 @compiled
-def _update_positions(plan: ArmPlan, arm: ArmState, inputs: ArmInput) -> None:
+def _update_positions(plan: ArmPlan, arm: ArmState, measured: Vector, unstated: bool) -> None:
     """Set the commanded positions to the measured ones, where these count.
 
     They count at the first step; where they differ by more than the tracking error; and where
     periods vary and none is stated, since the time for which the last command was held is then
-    unknown. The displacement that the delay still hides is added to them. Of a joint without
-    position limits they count up to whole turns: its encoder may begin anew after one.
+    unknown. The displacement that the delay still hides is added to them.
+
+    Args:
+        plan: Layout of the step.
+        arm: The arm.
+        measured: Measured joint positions [rad], (n,), or longer.
+        unstated: Whether periods vary, and none is stated.
     """
     settings = plan.settings
-    q = inputs.q[: arm.positions.size].copy()
+    q = arm.measured
+    copied(q, measured[: q.size])
     _add_pending(arm, settings.delay, q)
+    if arm.has_begun:
+        _add_turns(plan, arm, q)
     far = 0
     beyond = 0
     for i in range(q.size):
-        turns = 0.0
-        if arm.has_begun and abs(q[i]) <= LARGEST and _is_endless(plan, i):
-            turns = _turns_between(q[i], arm.positions[i])
-        if turns != 0.0:
-            q[i] += TURN * turns
-            arm.wraps[i] = 1.0
         far += not abs(q[i] - arm.positions[i]) <= settings.tracking_error
         beyond += not abs(q[i]) <= LARGEST
-    copied(arm.measured, q)
-    stated = inputs.dt + inputs.elapsed
-    if arm.reasons[Reason.PERIOD_REFUSED] != 0.0:
-        stated = 0.0
-    unstated = settings.longest > 0.0 and stated == 0.0
     if beyond > 0:
         arm.reasons[Reason.Q_NOT_FINITE] = 1.0
     elif far > 0 or unstated or not arm.has_begun:
         arm.reasons[Reason.RESYNCHRONISED] = 1.0 if arm.has_begun and not unstated else 0.0
         arm.has_begun = True
         copied(arm.positions, q)
+
+
+@compiled
+def _add_turns(plan: ArmPlan, arm: ArmState, q: Vector) -> None:
+    """Add whole turns to measured positions q (n,) [rad] of joints without position limits.
+
+    Their encoders may begin anew after a turn: that nearest to the commanded position is meant.
+    """
+    for i in range(q.size):
+        if abs(q[i]) <= LARGEST and _is_endless(plan, i):
+            turns = _turns_between(q[i], arm.positions[i])
+            if turns != 0.0:
+                q[i] += TURN * turns
+                arm.wraps[i] = 1.0
 
 
 @compiled
@@ -454,28 +467,34 @@ def _note_sent(arm: ArmState, period: float, dq: Vector) -> None:
 @compiled
 def _update_request(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> None:
     """Set the request that counts: the new one, else the last one, or zero for a `Reason`."""
-    count = 0
     kind = inputs.kind
-    is_known = kind >= Request.NONE and kind <= Request.POSITION
-    if is_known and kind != Request.NONE:
-        arm.kind = kind
+    count = 0
+    if kind != Request.NONE:
         count = TWIST if kind == Request.TWIST else arm.positions.size
+        arm.kind = kind
     arm.age += arm.period
     if count > 0 and arm.reason != Reason.HALTED:
         arm.age = 0.0
-        finite = all_finite(inputs.request, 0, count)
-        arm.reason = Reason.NONE if finite else Reason.NOT_FINITE
-    if not is_known and arm.reason != Reason.HALTED:
-        arm.reason = Reason.UNKNOWN_KIND
+        arm.reason = _fault_of(kind, inputs.request, count)
     if arm.reason == Reason.NONE and arm.age > settings.timeout + 0.5 * arm.period:
         arm.reason = Reason.TIMED_OUT
     before = arm.request.copy()
     for i in range(arm.request.size):
-        now = inputs.request[i] if i < count else before[i]
-        arm.request[i] = now if arm.reason == Reason.NONE else 0.0
+        if arm.reason != Reason.NONE:
+            arm.request[i] = 0.0
+        elif i < count:
+            arm.request[i] = inputs.request[i]
     refused = _is_refused(arm)
     changes = differing(arm.request, before)
     arm.is_repeated = not refused and changes == 0
+
+
+@compiled
+def _fault_of(kind: int, request: Vector, count: int) -> int:
+    """Return the `Reason` for which a new request of `count` numbers does not count, or `NONE`."""
+    if kind < Request.NONE or kind > Request.POSITION:
+        return Reason.UNKNOWN_KIND
+    return Reason.NONE if all_finite(request, 0, count) else Reason.NOT_FINITE
 
 
 @compiled

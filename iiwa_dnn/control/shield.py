@@ -356,6 +356,7 @@ class Shield:
             settings=settings,
         )
         self._warned: set[str] = set()
+        self._unseen = tuple(Request)  # kinds whose first request has warnings
         self._halted = False
         self._is_within = False
         self._kept: tuple[Vector, str]  # memory of the arm, never overwritten; frame of twists
@@ -528,9 +529,7 @@ class Shield:
         """
         robot = self.robot
         kind, request = one_request((robot.dof,), dq, twist, position)
-        measured: Vector = np.full(robot.dof, np.nan)
-        if q is not None:
-            measured = checks.joint_positions("q", q, robot.dof)
+        measured = self._measured(q)
         with self._turn():
             memory, last = self._kept
             memory = memory.copy()
@@ -538,12 +537,8 @@ class Shield:
             layout = self._layouts.get(seen) or self.layout(seen)
             plan = layout.plan
             step = layout.step
-            if q is None and not layout.state(memory).has_begun:
-                raise InvalidInputError("q", "is needed at the first step", q)
-            if "start" not in self._warned:
-                self._warn_of_start(Configuration(robot, measured))
-            if kind is Request.POSITION and "position" not in self._warned:
-                self._warn_of_positions(request)
+            if kind in self._unseen:
+                self._warn(measured, kind, request)
             periods = step.plan.timing
             if step.varies or not dt is elapsed is None:
                 check_held(self, dt)
@@ -586,22 +581,38 @@ class Shield:
         finally:
             self._is_within = False
 
-    def _warn_of_start(self, start: Configuration) -> None:
-        """Warn of settings or a start posture that are most likely wrong, once."""
-        self._warned.add("start")
-        program = self.layout(self.robot.tip).step.program
-        settings = {"timeout": self.settings.timeout, "delay": self.delay}
-        for message in setup_warnings(program, start, 0.0, self.dt, "converged"):
-            warn_caller(message)
-        for message in long_times(settings):
-            warn_caller(message)
+    def _measured(self, q: ArrayLike | None) -> Vector:
+        """Return measured joint positions (n,); NaN for None, which the first step refuses."""
+        if q is not None:
+            return checks.joint_positions("q", q, self.robot.dof)
+        memory, frame = self._kept
+        if not self.layout(frame).state(memory).has_begun:
+            raise InvalidInputError("q", "is needed at the first step")
+        return np.full(self.robot.dof, np.nan)
 
-    def _warn_of_positions(self, request: Vector) -> None:
-        """Warn of requested positions (n,) that are most likely in degrees, once."""
-        self._warned.add("position")
-        problem = self.robot.outside(request)
-        if problem and self.robot.in_degrees(request):
-            warn_caller(f"the requested posture {problem}")
+    def _warn(self, measured: Vector, kind: Request, request: Vector) -> None:
+        """Warn of what is most likely wrong at the first step, and at the first one of positions.
+
+        Args:
+            measured: Measured joint positions [rad], (n,).
+            kind: Kind of the request.
+            request: Its numbers.
+        """
+        found: list[str] = []
+        if len(self._unseen) > 1 and np.isfinite(measured).all():
+            self._unseen = (Request.POSITION,)
+            start = Configuration(self.robot, measured)
+            program = self.layout(self.robot.tip).step.program
+            found += setup_warnings(program, start, 0.0, self.dt, "converged")
+            found += long_times({"timeout": self.settings.timeout, "delay": self.delay})
+        if kind is Request.POSITION:
+            self._unseen = self._unseen[:-1]
+            problem = self.robot.outside(request)
+            found += [f"the requested posture {problem}"] * bool(
+                problem and self.robot.in_degrees(request)
+            )
+        for message in found:
+            warn_caller(message)
 
 
 def check_held(loop: Any, dt: float | None) -> None:

@@ -207,12 +207,8 @@ def _jerk_bounds(
     else:
         upper = _ceiling(lb, ub, above - margin, last, periods, profile)
         lower = -_ceiling(-ub, -lb, below - margin, -last, periods, profile)
-    # From outside of the range the joint comes to rest where one does that is held at its limit.
-    end = 0.0 if periods.vary else REST * unit * dt
-    if below < 0.0:
-        lower = min(lower, _ceiling(lb, ub, end - below, last, periods, profile))
-    if above < 0.0:
-        upper = max(upper, -_ceiling(-ub, -lb, end - above, -last, periods, profile))
+    lower = min(lower, _return(lb, ub, below, last, periods, profile))
+    upper = max(upper, -_return(-ub, -lb, above, -last, periods, profile))
     if lower < upper and max(abs(last), abs(last - before)) < unit:
         # Held at that bound, a joint at its margin would swing by it, 2 + sqrt(3) times as far in
         # each period (the zeros of a sampled triple integrator): all but at rest, it comes to rest.
@@ -227,6 +223,28 @@ def _jerk_bounds(
     if upper != ub:
         upper_kind = _position_kind(rates)
     return lower, upper, lower_kind, upper_kind
+
+
+@compiled
+def _return(
+    lb: float,
+    ub: float,
+    below: float,
+    last: float,
+    periods: Periods,
+    profile: tuple[float, float, float],
+) -> float:
+    """Compute the largest command in [lb, ub] that returns from below a limit to rest at it.
+
+    If the joint is not below the limit, it is inf. `below` is the distance to the limit [rad],
+    negative below it; `last`, `periods` and `profile` are those of `highest`.
+    """
+    if not below < 0.0:
+        return np.inf
+    jerk, _, _ = profile
+    # Where a joint rests that is held at its limit.
+    rest = 0.0 if periods.vary else REST * jerk * periods.dt * periods.dt * periods.dt
+    return _ceiling(lb, ub, rest - below, last, periods, profile)
 
 
 @compiled

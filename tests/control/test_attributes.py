@@ -99,14 +99,12 @@ def test_a_fuzz_over_all_attributes_ends_in_errors_of_the_package(name: str, see
     for k in range(150):
         attribute = random.choice(public(made))
         value = random.choice(np.array([*values(random), None], dtype=object))
-        before = getattr(made, attribute, None)
+        before = vars(made).get(attribute)
         try:
             setattr(made, attribute, value)
-        except (d.IiwaDnnError, AttributeError) as error:
-            assert attribute in str(error) or isinstance(value, d.Scheme | d.Robot | tuple | list)
-            assert getattr(made, attribute, None) is before or callable(before) or k >= 0
-        else:
             assert name == "controller" or attribute in ("limits", "threads")
+        except (d.IiwaDnnError, AttributeError):
+            assert vars(made).get(attribute) is before
         if k % 10 == 0:
             made = pickle.loads(pickle.dumps(copy.deepcopy(made)))
         try:
