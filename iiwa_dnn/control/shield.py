@@ -608,9 +608,8 @@ class Shield:
         if kind is Request.POSITION:
             self._unseen = self._unseen[:-1]
             problem = self.robot.outside(request)
-            found += [f"the requested posture {problem}"] * bool(
-                problem and self.robot.in_degrees(request)
-            )
+            if problem and self.robot.in_degrees(request):
+                found.append(f"the requested posture {problem}")
         for message in found:
             warn_caller(message)
 
