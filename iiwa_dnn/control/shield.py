@@ -530,7 +530,7 @@ class Shield:
         robot = self.robot
         kind, request = one_request((robot.dof,), dq, twist, position)
         measured = self._measured(q)
-        with self._turn():
+        with self._lock:
             memory, last = self._kept
             memory = memory.copy()
             seen = (frame or robot.tip) if kind is Request.TWIST else last
@@ -568,6 +568,7 @@ class Shield:
         plan = layout.plan
         arm = layout.state(memory)
         t = float(arm.time)
+        self._turn()
         self._is_within = True
         try:
             last = motion_of(plan, arm).last.copy()

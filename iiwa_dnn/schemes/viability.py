@@ -207,8 +207,9 @@ def _jerk_bounds(
     else:
         upper = _ceiling(lb, ub, above - margin, last, periods, profile)
         lower = -_ceiling(-ub, -lb, below - margin, -last, periods, profile)
-    lower = min(lower, _return(lb, ub, below, last, periods, profile))
-    upper = max(upper, -_return(-ub, -lb, above, -last, periods, profile))
+    if min(above, below) < 0.0:
+        lower = min(lower, _return(lb, ub, below, last, periods, profile))
+        upper = max(upper, -_return(-ub, -lb, above, -last, periods, profile))
     if lower < upper and max(abs(last), abs(last - before)) < unit:
         # Held at that bound, a joint at its margin would swing by it, 2 + sqrt(3) times as far in
         # each period (the zeros of a sampled triple integrator): all but at rest, it comes to rest.
