@@ -206,21 +206,18 @@ class Robot:
                 return f"is not between {lower:g} and {upper:g} rad: joint {i} is at {each:g}{hint}"
         return ""
 
-    def with_tool(
-        self, tool: pin.SE3 | ArrayLike, name: str = "tool", tool_shapes: ToolShapes = None
-    ) -> Robot:
-        """Return the same robot with a tool or a held object, whose frame becomes the tip.
-
-        Distances are kept of its shapes as of a link that goes by its name. It has no mass.
-
     def in_degrees(self, q: ArrayLike) -> bool:
         """Test whether positions q (n,) beyond a turn would be within the limits in degrees."""
         turns = np.radians(q)
         fit = (turns >= self.q_lower) & (turns <= self.q_upper)
         return bool(fit.all() and np.abs(q).max() > 2.0 * np.pi)
 
-    def with_tool(self, tool: pin.SE3 | ArrayLike, name: str = "tool") -> Robot:
-        """Return the same robot with a frame fixed to its tip, which becomes the tip.
+    def with_tool(
+        self, tool: pin.SE3 | ArrayLike, name: str = "tool", tool_shapes: ToolShapes = None
+    ) -> Robot:
+        """Return the same robot with a tool or a held object, whose frame becomes the tip.
+
+        Distances are kept of its shapes as of a link that goes by its name. It has no mass.
 
         Args:
             tool: Pose of the tool in the tip's frame, the flange: a Pinocchio SE3, or x, y, z [m]
