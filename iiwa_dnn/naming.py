@@ -78,6 +78,11 @@ def short_names(settings: Mapping[str, Any]) -> list[str]:
     return [" ".join(word for word in name if word not in common) for name in names]
 
 
+def unguarded(pairs: Iterable[str]) -> str:
+    """Report pairs of links that may meet and that no collision row keeps apart everywhere."""
+    return f"these links may meet, and are not kept apart everywhere: {', '.join(pairs)}"
+
+
 def unwatched(links: Iterable[str]) -> str:
     """Report links that no collision row keeps clear, and the reason."""
     return f"nothing keeps these links clear, they have no <collision> geometry: {', '.join(links)}"

@@ -9,6 +9,7 @@ import pinocchio as pin
 import iiwa_dnn
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot.collision import coal_geometry, collision_model
+from iiwa_dnn.robot.meetings import TOUCH
 
 SLACK = 1e-6
 """Distance that coal's own tolerance may cost [m]."""
@@ -30,7 +31,9 @@ class Judge:
         self._obstacles = avoidance.obstacles
         self._promised = avoidance.distance
         model = collision_model(robot)
-        pairs = model.pairs(robot) if avoidance.self_collision else ()
+        pairs = model.pairs(robot) if avoidance.self_collision else []
+        beyond = max(0.0, avoidance.distance - TOUCH)  # a close pair keeps no more than `TOUCH`
+        self._allowed = [each.overlap + beyond if each.overlap else 0.0 for each in pairs]
         self._geometry = geometry = coal_geometry(robot, model, pairs)
         self._first = geometry.ngeoms
         self._rest = []
@@ -38,7 +41,7 @@ class Judge:
             shape, place = _coal(obstacle)
             self._rest.append(place)
             geometry.addGeometryObject(pin.GeometryObject(str(number), 0, place, shape))
-            for k in range(self._first):
+            for k in range(len(model.capsules)):
                 if geometry.geometryObjects[k].parentJoint:
                     geometry.addCollisionPair(pin.CollisionPair(self._first + number, k))
         self._data = robot.model.createData()
@@ -52,7 +55,9 @@ class Judge:
                 self._geometry.geometryObjects[self._first + number].placement = moved
         scene = self._geometry, self._found
         pin.computeDistances(self._robot.model, self._data, *scene, q)
-        return np.array([found.min_distance for found in self._found.distanceResults])
+        distances = np.array([found.min_distance for found in self._found.distanceResults])
+        distances[: len(self._allowed)] += self._allowed
+        return distances
 
     def distance(self, q: Vector, t: float) -> float:
         """Return the least distance [m] at joint positions q (n,) [rad] and a time [s]."""

@@ -11,11 +11,12 @@ from pinocchio import log3
 from iiwa_dnn import checks
 from iiwa_dnn.control.command import SINGULAR
 from iiwa_dnn.errors import IiwaDnnError, InvalidInputError, warn_caller
-from iiwa_dnn.naming import unwatched
+from iiwa_dnn.naming import unguarded, unwatched
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.references import Reference
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.robot.collision import CLEARANCE, TOO_NEAR, collision_model, unwatched_links
+from iiwa_dnn.robot.collision import TOO_NEAR, collision_model, unwatched_links
+from iiwa_dnn.robot.meetings import CLEARANCE
 from iiwa_dnn.robot.robot import model_limits
 from iiwa_dnn.schemes import Limit, OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
@@ -135,6 +136,8 @@ def _body_warnings(robot: Robot, limits: Sequence[Limit]) -> Iterator[str]:
         unwatched_pairs: Sequence[tuple[str, str, str]] = ()
         with suppress(IiwaDnnError):  # a step raises it, with its reason
             unwatched_pairs = collision_model(robot).unwatched
+            if pairs := part.unguarded(robot):
+                yield unguarded(pairs)
         for first, second, reason in unwatched_pairs:
             if part.self_collision and reason == TOO_NEAR:
                 yield (

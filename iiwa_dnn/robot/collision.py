@@ -1,24 +1,25 @@
-"""Collision geometry of a robot: capsules around its links, and the pairs that may meet.
+"""Collision geometry of a robot: bodies around its links, and the pairs that are kept apart.
 
 It is read from ``NAME.collisions.toml`` beside the URDF, or made from the URDF's own shapes: a
-cylinder gets two round ends, any other body a capsule around it along one of its principal axes.
-The files of the named arms have smaller ones, along axes of any direction. As in an SRDF file some
-pairs are left out: neighbours, pairs that never meet, and pairs that meet in the start posture
-already, as capsules do that overlap in every posture. Tools and held objects are further capsules,
-by the names of their frames.
+cylinder gets two round ends, any other shape capsules around its parts, and boxes where these are
+much smaller. As in an SRDF file some pairs are left out: neighbours, pairs that never meet, and
+pairs that are assembled in contact. Those that may meet and are left out all the same are named.
+Tools and held objects are further capsules, by the names of their frames.
 """
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from itertools import chain, combinations, product
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 from typing import Any, ClassVar
+from xml.etree import ElementTree
 
 import coal
 import numpy as np
@@ -28,15 +29,20 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, warn_caller
 from iiwa_dnn.files import one_line, read_toml, write_text
 from iiwa_dnn.robot.arms import ARMS, robots_folder
-from iiwa_dnn.robot.obstacles import box_around
+from iiwa_dnn.robot.fitting import Body, fit_bodies
+from iiwa_dnn.robot.meetings import CLEARANCE, MEETS, SAMPLES, Meetings, Watched, geometry_of
+from iiwa_dnn.robot.obstacles import PlacedBox, box_around, extents, turned
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.shapes import read_shapes, source_of, tool_shapes
 
-SAMPLES = 10_000
-"""Random postures in which the distances of the pairs are measured."""
+Part = tuple[str, Body]
+"""A body in the frame of a link, whose name comes first."""
 
-CLEARANCE = 0.02
-"""Distance beyond which a pair never meets [m]."""
+LONG = 2.0
+"""Time of making a geometry above which a warning says how to keep it [s]."""
+
+DIGITS = 6
+"""Digits of lengths behind the point, in [m]."""
 
 TOOL_SAMPLES = 300
 """Random postures in which the distances of tools from links are measured."""
@@ -68,6 +74,39 @@ class LinkCapsule(checks.Checked):
     b: Sequence[float]
     radius: float
 
+    @property
+    def box(self) -> PlacedBox:
+        """Its segment as a box."""
+        return box_around(self.a, self.b)
+
+
+@dataclass(frozen=True)
+class LinkBox(checks.Checked):
+    """A box fixed to a link.
+
+    Attributes:
+        link: Name of the link's frame.
+        center: Its middle in that frame [m], (3,).
+        half_extents: Halves of its edges [m], (3,), above 0.
+        rotation: Its axes in that frame as columns, (3, 3).
+    """
+
+    _checks: ClassVar[checks.Checks] = {
+        "center": checks.vector3,
+        "half_extents": extents,
+        "rotation": turned,
+    }
+    link: str
+    center: Sequence[float]
+    half_extents: Sequence[float]
+    rotation: Sequence[Sequence[float]]
+    radius: ClassVar[float] = 0.0
+
+    @property
+    def box(self) -> PlacedBox:
+        """The box itself."""
+        return PlacedBox(*map(np.array, (self.center, self.rotation, self.half_extents)))
+
 
 def _reasons(argument: str, value: Iterable[Any]) -> tuple[tuple[str, str, str], ...]:
     """Return pairs of links with their reasons as tuples; refuse any other value."""
@@ -78,22 +117,37 @@ def _reasons(argument: str, value: Iterable[Any]) -> tuple[tuple[str, str, str],
         raise InvalidInputError(argument, problem, value) from error
 
 
+def _watched(argument: str, value: Iterable[Any]) -> tuple[Watched, ...]:
+    """Return numbers of bodies, with overlaps, as pairs; refuse any other value."""
+    try:
+        return tuple(Watched(int(i), int(k), float(overlap)) for i, k, overlap in value)
+    except (TypeError, ValueError) as error:
+        problem = "must have two numbers of bodies and an overlap in each entry"
+        raise InvalidInputError(argument, problem, value) from error
+
+
 @dataclass(frozen=True)
 class CollisionModel(checks.Checked):
-    """Capsules of a robot's links, and the pairs of links that are not kept apart.
+    """Bodies of a robot's links, and the pairs that are kept apart.
 
     Attributes:
         capsules: The capsules.
-        left_out: Pairs of links that are left out, each with the reason: ``"adjacent"``,
-            ``"never"``, ``"start"`` or a text of one's own.
+        left_out: Pairs of links that are left out, or not watched in whole, each with the reason:
+            ``"adjacent"``, ``"never"``, ``"always"``, one that begins with `MEETS`, or a text of
+            one's own.
+        boxes: Boxes that stand for a link as the first body of a pair.
+        watched: The pairs that are kept apart, by the numbers of their bodies: capsules first, then
+            boxes. None: all pairs of capsules but those that are left out.
         too_near: Pairs of a tool's capsule and a link's, by their indices, that are within
             `CLEARANCE` in every posture, as at the wrist, and are not kept apart; each with the
             reason: ``"no joint moves it"`` or `TOO_NEAR`.
     """
 
-    _checks: ClassVar[checks.Checks] = {"left_out": _reasons}
+    _checks: ClassVar[checks.Checks] = {"left_out": _reasons, "watched": _watched}
     capsules: tuple[LinkCapsule, ...]
     left_out: tuple[tuple[str, str, str], ...]
+    boxes: tuple[LinkBox, ...] = ()
+    watched: tuple[Watched, ...] | None = None
     too_near: tuple[tuple[int, int, str], ...] = ()
 
     @property
@@ -103,33 +157,46 @@ class CollisionModel(checks.Checked):
         near = ((names[i], names[k], reason) for i, k, reason in self.too_near)
         return (*self.left_out, *near)
 
-    def pairs(self, robot: Robot) -> list[tuple[int, int]]:
-        """List the pairs of capsules that are kept apart, by their indices, the inner link first.
+    @property
+    def bodies(self) -> tuple[LinkCapsule | LinkBox, ...]:
+        """The capsules, then the boxes."""
+        return (*self.capsules, *self.boxes)
+
+    @property
+    def unguarded(self) -> list[tuple[str, str]]:
+        """Pairs of links that may meet and are not watched, or not in whole."""
+        return [(a, b) for a, b, why in self.left_out if why.startswith(MEETS)]
+
+    def pairs(self, robot: Robot) -> list[Watched]:
+        """List the pairs that are kept apart, the inner link first.
 
         Raises:
             NotFoundError: The robot has no link of a name.
         """
-        links = [capsule.link for capsule in self.capsules]
+        links = [body.link for body in self.bodies]
         joints = [_joint(robot, link) for link in links]
         left_out = {frozenset(pair[:2]) for pair in self.left_out}
-        too_near = {pair[:2] for pair in self.too_near}
         for link in chain.from_iterable(left_out):
             robot.frame_id(link)
-        outward = sorted(range(len(joints)), key=joints.__getitem__)
-        return [
-            (i, k)
+        outward = sorted(range(len(self.capsules)), key=joints.__getitem__)
+        every = [
+            Watched(i, k)
             for i, k in combinations(outward, 2)
-            if joints[i] != joints[k]
-            and frozenset((links[i], links[k])) not in left_out
-            and (i, k) not in too_near
+            if frozenset((links[i], links[k])) not in left_out
         ]
+        pairs = every if self.watched is None else self.watched
+        return [each for each in pairs if joints[each.first] != joints[each.second]]
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the model as a TOML file that `collision_model` reads; lengths in [m]."""
-        import tomli_w  # for those who use it
-
-        capsules = [asdict(capsule) for capsule in self.capsules]
-        write_text(path, tomli_w.dumps({"left_out": self.left_out, "capsule": capsules}))
+        lines = ["# Collision geometry: links left out, bodies that are kept apart; lengths in [m]"]
+        for name, entries in (("left_out", self.left_out), ("watched", self.watched)):
+            if entries is not None:
+                lines += [f"{name} = [", *(f"  {json.dumps(each)}," for each in entries), "]"]
+        for body in self.bodies:
+            lines += ["", "[[capsule]]" if isinstance(body, LinkCapsule) else "[[box]]"]
+            lines += [f"{key} = {json.dumps(value)}" for key, value in asdict(body).items()]
+        write_text(path, "\n".join([*lines, ""]))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> CollisionModel:
@@ -141,7 +208,9 @@ class CollisionModel(checks.Checked):
         tables = read_toml(path)
         try:
             capsules = tuple(LinkCapsule(**entry) for entry in tables["capsule"])
-            return cls(capsules, tables["left_out"])
+            boxes = tuple(LinkBox(**entry) for entry in tables.get("box", ()))
+            watched = tables.get("watched")
+            return cls(capsules, tables["left_out"], boxes=boxes, watched=watched)
         except (KeyError, ValueError, TypeError) as error:
             problem = one_line(error).rpartition("__init__() ")[2]  # of Python's own message
             raise FileError(path, f"no collision geometry: {problem}") from error
@@ -168,13 +237,21 @@ def collision_model(robot: Robot) -> CollisionModel:
         InvalidInputError, FileError: As of `link_model`.
     """
     links = link_model(robot)
-    tools = _capsules(robot, tool_shapes(robot))
+    tools = [_capsule(*part) for shape in tool_shapes(robot) for part in _bodies(robot, [shape])[0]]
     if not tools:
         return links
-    model = replace(links, capsules=(*links.capsules, *tools))
     first = len(links.capsules)
-    pairs = [pair for pair in model.pairs(robot) if max(pair) >= first]
-    return replace(model, too_near=_too_near(robot, coal_geometry(robot, model, pairs)))
+    model = replace(links, capsules=(*links.capsules, *tools), watched=None)
+    of_tools = [pair for pair in model.pairs(robot) if max(pair[:2]) >= first]
+    near = _too_near(robot, coal_geometry(robot, model, of_tools))
+    barred = {pair[:2] for pair in near}
+    watched = [
+        # The tools come before the boxes.
+        each._replace(first=each.first + len(tools) * (each.first >= first))
+        for each in links.pairs(robot)
+    ]
+    watched += [pair for pair in of_tools if pair[:2] not in barred]
+    return replace(model, watched=tuple(watched), too_near=near)
 
 
 def _too_near(robot: Robot, geometry: pin.GeometryModel) -> tuple[tuple[int, int, str], ...]:
@@ -196,7 +273,7 @@ def _too_near(robot: Robot, geometry: pin.GeometryModel) -> tuple[tuple[int, int
 def link_model(robot: Robot) -> CollisionModel:
     """Read the collision geometry of a robot's links; if it has no file, make it from the URDF.
 
-    No file is written. If making takes more than a second, a warning says how to keep the result.
+    No file is written. If making takes longer than `LONG`, a warning says how to keep the result.
     It is made once for all robots that differ in tools and rates alone.
 
     Raises:
@@ -239,9 +316,9 @@ class _Arm:
 def _made(arm: _Arm) -> CollisionModel:
     """Make the collision geometry of an arm, and warn if that takes long."""
     robot = arm.robot
-    began = perf_counter()
+    began = process_time()
     model = make_collision_model(robot)
-    if (taken := perf_counter() - began) > 1.0:
+    if (taken := process_time() - began) > LONG:
         warn_caller(
             f"capsules and pairs of {robot.name} took {taken:.1f} s; "
             f"`iiwa-dnn collisions` keeps them beside {robot.path}"
@@ -256,134 +333,148 @@ def unwatched_links(robot: Robot) -> tuple[str, ...]:
     Raises:
         InvalidInputError, FileError, NotFoundError: As of `link_model`.
     """
-    watched = {_joint(robot, capsule.link) for capsule in link_model(robot).capsules}
+    watched = {_joint(robot, body.link) for body in link_model(robot).bodies}
     heavy = {joint for joint, body in enumerate(robot.model.inertias) if joint and body.mass > 0.0}
     links = [frame for frame in robot.model.frames if frame.type == pin.FrameType.BODY]
     first = {link.parentJoint: link.name for link in reversed(links)}
     return tuple(first[joint] for joint in sorted(heavy - watched))
 
 
-def make_collision_model(robot: Robot, samples: int = SAMPLES) -> CollisionModel:
-    """Fit the capsules of a robot's URDF and find the pairs that may meet by sampling.
+def read_srdf(path: str | os.PathLike[str]) -> dict[frozenset[str], str]:
+    """Read the pairs of links that an SRDF file disables, each with its reason.
+
+    Raises:
+        FileError: It cannot be read.
+    """
+    try:
+        found = ElementTree.parse(path).iter("disable_collisions")
+    except (OSError, ElementTree.ParseError) as error:
+        raise FileError(path, one_line(error)) from error
+    return {
+        frozenset((each.get("link1", ""), each.get("link2", ""))): each.get("reason", "disabled")
+        for each in found
+    }
+
+
+def make_collision_model(
+    robot: Robot, samples: int = SAMPLES, srdf: str | os.PathLike[str] | None = None
+) -> CollisionModel:
+    """Fit bodies to the shapes of a robot's URDF, and search for the pairs that may meet.
 
     Postures are drawn evenly within the robot's limits, with a fixed seed.
+
+    Args:
+        robot: The robot.
+        samples: Number of random postures.
+        srdf: SRDF file whose disabled pairs are not watched; None: the one beside the URDF, if any.
+
+    Raises:
+        InvalidInputError: The robot does not come from a file.
+        FileError: A mesh or the SRDF file cannot be read.
     """
+    beside = source_of(robot)[0].with_suffix(".srdf")
+    file = srdf or (beside if beside.exists() else None)
     shapes = read_shapes(robot, pin.GeometryType.COLLISION).geometryObjects
-    whole = CollisionModel(tuple(_capsules(robot, shapes)), ())
-    links = [capsule.link for capsule in whole.capsules]
-    joints = {link: _joint(robot, link) for link in links}
-    pairs = whole.pairs(robot)
-    of_links: dict[tuple[str, str], set[int]] = {}
-    for number, (i, k) in enumerate(pairs):
-        of_links.setdefault((links[i], links[k]), set()).add(number)
-    geometry = coal_geometry(robot, whole, pairs)
-    near = _near_pairs(robot, geometry, robot.draw(np.random.default_rng(0), samples))
-    at_start = _near_pairs(robot, geometry, robot.start_posture()[np.newaxis])
-    left_out = []
-    for (first, second), numbers in of_links.items():
-        if robot.model.parents[joints[second]] == joints[first]:
-            left_out.append((first, second, "adjacent"))
-        elif not numbers & near:
-            left_out.append((first, second, "never"))
-        elif numbers & at_start:
-            left_out.append((first, second, "start"))
-    return CollisionModel(whole.capsules, tuple(left_out))
+    return watch(robot, *_bodies(robot, shapes), samples, read_srdf(file) if file else {})
 
 
-def _near_pairs(robot: Robot, geometry: pin.GeometryModel, postures: checks.Array) -> set[int]:
-    """Number the pairs that come within `CLEARANCE` in any of the postures (k, n)."""
-    data = robot.model.createData()
-    scratch = pin.GeometryData(geometry)
-    for request in scratch.collisionRequests:
-        request.security_margin = CLEARANCE
-    near: set[int] = set()
-    for q in postures:
-        if pin.computeCollisions(robot.model, data, geometry, scratch, q):
-            for i, result in enumerate(scratch.collisionResults):
-                if result.isCollision():
-                    near.add(i)
-                    scratch.deactivateCollisionPair(i)
-    return near
+def watch(
+    robot: Robot,
+    capsules: Sequence[Part],
+    boxes: Sequence[Part],
+    samples: int,
+    disabled: Mapping[frozenset[str], str],
+) -> CollisionModel:
+    """Search for the pairs of bodies that may meet.
+
+    Args:
+        robot: The robot.
+        capsules: Capsules around all links.
+        boxes: Boxes around some of them.
+        samples: Number of random postures.
+        disabled: Pairs of links that are not watched, with the reasons.
+    """
+    parts = [*capsules, *boxes]
+    left_out, pairs = _candidates(robot, parts)
+    meetings = Meetings(robot, parts, pairs, samples)
+    watched, other = meetings.sort(meetings.near(), disabled)
+    for each in watched:
+        left_out.pop((parts[each.first][0], parts[each.second][0]), None)
+    reasons = tuple((*links, why) for links, why in {**left_out, **other}.items())
+    used = sorted({each.first for each in watched} - {*range(len(capsules))})
+    number = {old: len(capsules) + new for new, old in enumerate(used)}
+    return CollisionModel(
+        tuple(_capsule(*part) for part in capsules),
+        reasons,
+        boxes=tuple(_box(*parts[i]) for i in used),
+        watched=tuple(each._replace(first=number.get(each.first, each.first)) for each in watched),
+    )
+
+
+def _candidates(
+    robot: Robot, parts: Sequence[Part]
+) -> tuple[dict[tuple[str, str], str], list[tuple[int, int]]]:
+    """Pair each body of a link, its boxes if it has any, with the capsules of links further out.
+
+    Returns:
+        The pairs of links, each with the reason to leave it out if it never comes near; and the
+        pairs of bodies, without those of neighbours.
+    """
+    joints = [_joint(robot, link) for link, _ in parts]
+    boxed = {link for link, body in parts if not body.radius}
+    inner = [i for i, (link, body) in enumerate(parts) if link not in boxed or not body.radius]
+    outer = [k for k, (_, body) in enumerate(parts) if body.radius]
+    left_out = {}
+    pairs = []
+    for i, k in product(inner, outer):
+        if joints[i] < joints[k]:
+            is_adjacent = robot.model.parents[joints[k]] == joints[i]
+            left_out[parts[i][0], parts[k][0]] = "adjacent" if is_adjacent else "never"
+            pairs += [] if is_adjacent else [(i, k)]
+    return left_out, pairs
+
+
+def _bodies(robot: Robot, shapes: Iterable[pin.GeometryObject]) -> tuple[list[Part], list[Part]]:
+    """Fit capsules to the shapes of links and tools, and boxes where they are much smaller."""
+    of_links: dict[str, list[tuple[coal.CollisionGeometry, pin.SE3]]] = {}
+    for shape in shapes:
+        frame = robot.model.frames[shape.parentFrame]
+        pose = frame.placement.actInv(shape.placement)
+        of_links.setdefault(frame.name, []).append((shape.geometry, pose))
+    capsules: list[Part] = []
+    boxes: list[Part] = []
+    for link, own in of_links.items():
+        round_ones, flat_ones = fit_bodies(own)
+        boxes += [(link, each) for each in flat_ones]
+        capsules += [(link, each) for each in round_ones]
+    return capsules, boxes
+
+
+def _capsule(link: str, body: Body) -> LinkCapsule:
+    """Return the capsule of a part, with rounded lengths."""
+    a, b = np.round(body.ends, DIGITS).tolist()
+    return LinkCapsule(link, a, b, max(round(body.radius, DIGITS), 10.0**-DIGITS))
+
+
+def _box(link: str, body: Body) -> LinkBox:
+    """Return the box of a part, with rounded lengths."""
+    center, half = np.round([body.center, body.half_extents], DIGITS).tolist()
+    return LinkBox(link, center, half, body.rotation.tolist())
 
 
 def coal_geometry(
-    robot: Robot, model: CollisionModel, pairs: Iterable[tuple[int, int]]
+    robot: Robot, model: CollisionModel, pairs: Iterable[tuple[int, int, float]]
 ) -> pin.GeometryModel:
-    """Make Pinocchio's geometry model of capsules and of pairs of their indices."""
-    geometry = pin.GeometryModel()
-    for i, capsule in enumerate(model.capsules):
-        center, rotation, half = box_around(capsule.a, capsule.b)
-        shape = coal.Capsule(capsule.radius, 2.0 * half[2])
-        frame = robot.model.frames[robot.frame_id(capsule.link)]
-        pose = frame.placement * pin.SE3(rotation, center)
-        name = f"{capsule.link}_{i}"
-        geometry.addGeometryObject(pin.GeometryObject(name, frame.parentJoint, pose, shape))
-    for i, k in pairs:
-        geometry.addCollisionPair(pin.CollisionPair(i, k))
-    return geometry
+    """Make Pinocchio's geometry model of the bodies and of pairs of their indices."""
+    placed = []
+    for body in model.bodies:
+        center, rotation, half = body.box
+        long = 2.0 * half[2]
+        shape = coal.Capsule(body.radius, long) if body.radius else coal.Box(*2.0 * half)
+        placed.append((body.link, (shape, pin.SE3(rotation, center))))
+    return geometry_of(robot, placed, [pair[:2] for pair in pairs])
 
 
 def _joint(robot: Robot, link: str) -> int:
     """Return the number of the joint that carries a link."""
     return int(robot.model.frames[robot.frame_id(link)].parentJoint)
-
-
-def _capsules(robot: Robot, shapes: Iterable[pin.GeometryObject]) -> list[LinkCapsule]:
-    """Fit a capsule to each shape of a robot, in the frame of its link.
-
-    Spheres that another capsule of the link holds, such as the ends of a cylinder, are left out.
-    """
-    found: list[LinkCapsule] = []
-    for shape in sorted(shapes, key=lambda each: isinstance(each.geometry, coal.Sphere)):
-        frame = robot.model.frames[shape.parentFrame]
-        pose = frame.placement.actInv(shape.placement)
-        a, b, radius = _fit(shape.geometry)
-        fitted = LinkCapsule(frame.name, pose.act(a), pose.act(b), radius)
-        if not any(_holds(each, fitted) for each in found):
-            found.append(fitted)
-    return found
-
-
-def _holds(capsule: LinkCapsule, sphere: LinkCapsule) -> bool:
-    """Test whether a round end of a capsule encloses a sphere of the same link, to 0.03 mm."""
-    away = np.linalg.norm(np.subtract(sphere.a, [capsule.a, capsule.b]), axis=1).min()
-    return (
-        sphere.link == capsule.link
-        and sphere.a == sphere.b
-        and bool(away + sphere.radius <= capsule.radius + 3e-5)
-    )
-
-
-def _fit(shape: coal.CollisionGeometry) -> tuple[checks.Array, checks.Array, float]:
-    """Fit a capsule around a shape in its own frame [m]; return its ends (3,) and its radius."""
-    if isinstance(shape, coal.Sphere):
-        return np.zeros(3), np.zeros(3), float(shape.radius)
-    if isinstance(shape, coal.Cylinder | coal.Capsule):
-        half = np.array([0.0, 0.0, shape.halfLength])
-        return -half, half, float(shape.radius)
-    if hasattr(shape, "vertices"):
-        return _enclosing_capsule(np.array(shape.vertices(), dtype=np.float64))
-    corners = product(*zip(-shape.halfSide, shape.halfSide, strict=True))
-    return _enclosing_capsule(np.array(list(corners)))
-
-
-def _enclosing_capsule(points: checks.Array) -> tuple[checks.Array, checks.Array, float]:
-    """Fit a capsule around points (k, 3) [m], along the principal axis that makes it smallest.
-
-    For an axis and a radius the shortest segment is known in closed form. The ends of a sphere are
-    equal.
-    """
-    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    fitted = []
-    for axis in np.linalg.svd(points - middle, full_matrices=False)[2]:
-        along = (points - middle) @ axis
-        across = np.linalg.norm(points - middle - along[:, np.newaxis] * axis, axis=1)
-        radius = float(across.max()) + 1e-9
-        cap = np.sqrt(radius**2 - across**2)
-        low = float((along + cap).min())
-        high = float((along - cap).max())
-        if low > high:  # any point between them is the middle of a sphere that holds all
-            low = high = 0.5 * (low + high)
-        volume = radius**2 * (high - low + 4.0 / 3.0 * radius)
-        fitted.append((volume, middle + low * axis, middle + high * axis, radius))
-    return min(fitted, key=lambda capsule: capsule[0])[1:]

@@ -131,6 +131,11 @@ def extents(argument: str, value: Sequence[float]) -> checks.Vector3:
     return found
 
 
+def turned(argument: str, axes: ArrayLike) -> tuple[tuple[float, ...], ...]:
+    """Return a rotation (3, 3) as a tuple of its rows; refuse any other value."""
+    return tuple(map(tuple, checks.rotation(argument, axes).tolist()))
+
+
 @dataclass(frozen=True)
 class Box(Obstacle):
     """A box.
@@ -144,7 +149,7 @@ class Box(Obstacle):
     _checks: ClassVar[checks.Checks] = {
         "center": checks.vector3,
         "half_extents": extents,
-        "rotation": lambda name, axes: tuple(map(tuple, checks.rotation(name, axes).tolist())),
+        "rotation": turned,
     }
     center: Sequence[float]
     half_extents: Sequence[float]

@@ -347,6 +347,12 @@ class CollisionAvoidance(Limit):
         """Return for each watched pair its name in words and the distance it has to keep [m]."""
         return [(f"{b} and {a}", self.distance) for a, b in self.scene(robot).pairs]
 
+    def unguarded(self, robot: Robot) -> list[str]:
+        """Return in words the pairs of links that may meet, and that it does not keep apart."""
+        given = {frozenset(pair) for pair in self.may_touch}
+        told = collision_model(robot).unguarded if self.self_collision else ()
+        return [" and ".join(pair) for pair in told if frozenset(pair) not in given]
+
     def row_count(self, robot: Robot) -> int:
         """Return the number of rows: two for each pair, at most `nearest`."""
         return min(self.nearest, ENDS * len(self.scene(robot).pairs))

@@ -2,7 +2,8 @@ r"""Scene of a robot among obstacles: bodies, pairs of bodies that may meet, and
 
 A body is a box that is grown by a radius; a box may be flat, a segment or a point. In each pair the
 second body is a segment, a + s u with s in [0, 1], and the distance is computed in the coordinates
-of the first one, a box with half-extents h about the origin. Points are tuples (x, y, z) [m].
+of the first one, a box with half-extents h about the origin. Points are tuples (x, y, z) [m]. The
+distance of a close pair, whose bodies overlap before its links meet, has an allowance on top.
 
 Let the joints :math:`1 \dots n` between two bodies move by :math:`\delta_k`, and a point of the
 second body be at most :math:`r_k` away from the axis of joint k. The displacement of the point is
@@ -36,7 +37,8 @@ from iiwa_dnn.references.rotations import combined, dot, triple
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics, Placement
-from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox, box_around
+from iiwa_dnn.robot.meetings import TOUCH, Watched
+from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox
 from iiwa_dnn.schemes.step import axis_at, rate_along, seen_from
 
 ROUNDS = 60
@@ -98,6 +100,7 @@ class Pair(Record):
         second: Index of the second body, a segment.
         first: Index of the first body, any box.
         unmoved_end: 1 or 2 for the end of the segment that no joint moves along the normal, else 0.
+        allowance: What is added to the distance of the bodies [m].
         support: For each joint 1 if it moves the second body alone, -1 if it moves the first alone,
             else 0, (n,).
         radii: For each joint the largest distance of the second body from its axis [m], -1 for a
@@ -107,6 +110,7 @@ class Pair(Record):
     second: int
     first: int
     unmoved_end: int
+    allowance: float
     support: Vector = part()
     radii: Vector = part()
 
@@ -118,7 +122,7 @@ class SceneViews(NamedTuple):
         head: Settings of the scene.
         dq_max: Velocity limits of the joints [rad/s], (n,).
         bodies: A `Body` in each row, (b, 17).
-        pairs: A `Pair` in each row, (k, 3 + 2 n).
+        pairs: A `Pair` in each row, (k, 4 + 2 n).
     """
 
     head: SceneHead
@@ -134,7 +138,8 @@ class Contact(NamedTuple):
         second: Nearest point on the segment of the second body, without its radius [m], (3,).
         normal: Unit normal from the first to the second body, (3,); zero where the first one is a
             segment or a point and touches the segment.
-        distance: Distance of the bodies with their radii [m], negative where they overlap.
+        distance: Distance of the bodies with their radii and the pair's allowance [m], negative
+            where they overlap by more than that.
     """
 
     second: Vector3
@@ -208,7 +213,9 @@ def make_scene(
     distances: tuple[float, float],
     may_touch: Sequence[tuple[str, str]] = (),
 ) -> Scene:
-    """Lay out the capsules of a robot's links, the obstacles, and the pairs that are watched.
+    """Lay out the bodies of a robot's links, the obstacles, and the pairs that are watched.
+
+    A close pair keeps the least distance too, or what it has where its links are `TOUCH` apart.
 
     Args:
         robot: The robot.
@@ -228,19 +235,20 @@ def make_scene(
         name = robot.joint_names[int(np.argmax(robot.dq_max))]
         problem = f"must have a velocity limit on {name}, or no distance can be kept"
         raise InvalidInputError("robot", problem, robot)
-    links = [each.link for each in collision_model(robot).capsules]
+    model = collision_model(robot)
+    links = [each.link for each in model.bodies]
     names = links + [f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)]
     bodies = _bodies(robot, obstacles)
-    numbered = [*collision_model(robot).pairs(robot)] if self_collision else []
-    numbered += _obstacle_pairs(robot, bodies, len(links))
-    rows = [_pair(robot, bodies, i, k) for i, k in numbered]
+    numbered = model.pairs(robot) if self_collision else []
+    numbered += _obstacle_pairs(robot, bodies, len(model.capsules), len(links))
+    rows = [_pair(robot, bodies, each, distances[0]) for each in numbered]
     pairs = np.reshape(rows, (-1, Pair.width(robot.dof)))
     frames = tuple(dict.fromkeys(links))
     moved = _moved_ends(robot, frames, _constants(robot, distances, bodies, pairs))
     unmoved = np.where(moved.all(axis=1), 0, 1 + moved[:, 0])
     for row, end in zip(pairs, unmoved, strict=True):
         Pair.of(row).unmoved_end = end
-    named = [(names[i], names[k]) for i, k in numbered]
+    named = [(names[i], names[k]) for i, k, _ in numbered]
     watched = moved.any(axis=1) & ~_are_given(named, may_touch, names)
     if not watched.any():
         bare = unwatched_links(robot)
@@ -265,18 +273,35 @@ def _are_given(
 
 
 def _bodies(robot: Robot, obstacles: Sequence[Obstacle]) -> list[Body]:
-    """Return the bodies of a robot's capsules, then those of the obstacles."""
+    """Return the bodies of a robot's links, then those of the obstacles."""
     bodies = [
-        _body(robot.frame_id(each.link), box_around(each.a, each.b), each.radius, 0.0)
-        for each in collision_model(robot).capsules
+        _body(robot.frame_id(each.link), each.box, each.radius, 0.0)
+        for each in collision_model(robot).bodies
     ]
     return bodies + [_body(0, each.box, each.thickness, each.speed) for each in obstacles]
 
 
-def _obstacle_pairs(robot: Robot, bodies: list[Body], links: int) -> list[tuple[int, int]]:
-    """Pair each obstacle with each link that a joint moves; the first `links` bodies are links."""
-    carried = [k for k in range(links) if robot.support[bodies[k].frame].any()]
-    return [*itertools.product(range(links, len(bodies)), carried)]
+def _obstacle_pairs(robot: Robot, bodies: list[Body], capsules: int, links: int) -> list[Watched]:
+    """Pair each obstacle with each capsule that a joint moves.
+
+    Args:
+        robot: The robot.
+        bodies: All bodies: capsules, boxes, obstacles.
+        capsules: Number of capsules.
+        links: Number of capsules and boxes.
+    """
+    carried = [k for k in range(capsules) if robot.support[bodies[k].frame].any()]
+    return [Watched(*each) for each in itertools.product(range(links, len(bodies)), carried)]
+
+
+def _allowance(overlap: float, distance: float) -> float:
+    """Return what is added to the distance of a pair of links [m].
+
+    Args:
+        overlap: Overlap of its bodies where the links of a close pair touch [m]; 0 of another one.
+        distance: Least distance that is to be kept [m].
+    """
+    return overlap + max(0.0, distance - TOUCH) if overlap else 0.0
 
 
 def _body(frame: int, box: PlacedBox, radius: float, speed: float) -> Body:
@@ -323,7 +348,7 @@ def _constants(
         robot: The robot, n joints.
         distances: As in `make_scene`.
         bodies: All bodies.
-        pairs: A `Pair` in each row, (pairs, 3 + 2 n).
+        pairs: A `Pair` in each row, (pairs, 4 + 2 n).
     """
     least, gain = distances
     count, size = pairs.shape
@@ -333,11 +358,12 @@ def _constants(
     return np.concatenate([head, robot.dq_max, *bodies, pairs.ravel()])
 
 
-def _pair(robot: Robot, bodies: list[Body], i: int, k: int) -> Pair:
-    """Make the pair of body i and body k, a segment: which joints move one relative to the other.
+def _pair(robot: Robot, bodies: list[Body], watched: Watched, distance: float) -> Pair:
+    """Make a pair of bodies, the second a segment: which joints move one relative to the other.
 
-    Its `unmoved_end` is 0.
+    Its `unmoved_end` is 0; `distance` is the least one that is to be kept [m].
     """
+    i, k, overlap = watched
     model = robot.model
     second = bodies[k]
     placement = model.frames[second.frame].placement
@@ -360,7 +386,10 @@ def _pair(robot: Robot, bodies: list[Body], i: int, k: int) -> Pair:
         radii[j] = reach
     slides = list(robot.slides)
     radii[slides] = np.where(support[slides], -1.0, 0.0)
-    return Pair.make(second=k, first=i, unmoved_end=0, support=support, radii=radii)
+    allowance = _allowance(overlap, distance)
+    return Pair.make(
+        second=k, first=i, unmoved_end=0, allowance=allowance, support=support, radii=radii
+    )
 
 
 @compiled
@@ -445,7 +474,8 @@ def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
         normal = (flat * x, flat * y, flat * z)
     outward = axis_at(base, normal)
     radius = first.radius + Body.of(scene.bodies[pair.second]).radius
-    return Contact(combined(1.0, a, s, path), outward, core - radius)
+    distance = core - radius + pair.allowance
+    return Contact(combined(1.0, a, s, path), outward, distance)
 
 
 @compiled

@@ -20,7 +20,7 @@ def test_pairs_are_written_once_and_read_by_every_run(
     written = tmp_path / "arm.collisions.toml"
     assert collision_file(robot) == written
     count = len(made.pairs(robot))
-    said = f"written to {written}: {len(made.capsules)} capsules, {count} pairs that may meet\n"
+    said = f"written to {written}: {len(made.bodies)} bodies, {count} pairs that may meet\n"
     assert capsys.readouterr().out == said
     assert collision_model(robot) == made
     before = written.read_bytes()

@@ -10,7 +10,14 @@ import numpy as np
 import pytest
 
 import iiwa_dnn
-from iiwa_dnn import InvalidInputError, Shield, Shields, Sphere, load_robot
+from iiwa_dnn import (
+    CollisionAvoidance,
+    InvalidInputError,
+    Shield,
+    Shields,
+    Sphere,
+    load_robot,
+)
 from iiwa_dnn.control.requests import REASONS, Reason
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
@@ -166,10 +173,11 @@ def test_an_episode_that_begins_anew_repeats() -> None:
 
 def test_obstacles_may_differ_from_arm_to_arm() -> None:
     balls = [[0.36, 0.16, 0.64], [0.4, 0.0, 0.7], [2.0, 2.0, 2.0]]
-    shields = Shields(SMOOTH, 3, dt=DT, obstacles=[BALL])
+    among = [CollisionAvoidance([Sphere(ball, 0.05)], self_collision=False) for ball in balls]
+    shields = Shields(SMOOTH, 3, dt=DT, obstacles=among[0])
     places = np.array(balls)[:, np.newaxis]
     q = np.tile(START, (3, 1))
-    singles = [Shields(SMOOTH, 1, dt=DT, obstacles=[Sphere(ball, 0.05)]) for ball in balls]
+    singles = [Shields(SMOOTH, 1, dt=DT, obstacles=each) for each in among]
     for k in range(150):
         command = shields.step(q, np.full((3, 7), 0.5), obstacles=places if k == 0 else None)
         for i, own in enumerate(singles):

@@ -229,7 +229,7 @@ def test_a_ball_that_no_joint_can_evade_is_said_to_be_limiting() -> None:
 )
 def test_joints_that_slide_and_turn_curve_a_path(support, radii, expected) -> None:
     travel = np.array([0.2, 0.1])
-    pair = Pair.make(second=0, first=0, unmoved_end=0, support=support, radii=radii)
+    pair = Pair.make(second=0, first=0, unmoved_end=0, allowance=0.0, support=support, radii=radii)
     assert second_order(pair, travel) == pytest.approx(expected)
 
 

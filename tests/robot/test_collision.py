@@ -1,10 +1,13 @@
 """Collision geometry: capsules around the shapes of the URDF, the pairs that may meet."""
 
-import dataclasses
+import warnings
+from collections import Counter
 from functools import partial
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
+import coal
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -12,12 +15,14 @@ import tomli_w
 
 import iiwa_dnn
 from iiwa_dnn.robot import collision
+from iiwa_dnn.robot.arms import robots_folder
 from iiwa_dnn.robot.collision import (
-    coal_geometry,
     collision_model,
     make_collision_model,
     unwatched_links,
 )
+from iiwa_dnn.robot.fitting import fit_bodies
+from iiwa_dnn.robot.shapes import read_shapes
 
 BALL = iiwa_dnn.Sphere([0.36, 0.16, 0.64], 0.05)
 
@@ -101,8 +106,8 @@ BALL_OF_P2 = "<collision><geometry><sphere radius='0.02'/></geometry></collision
         (0.01, 1.0, None),  # near without a touch, at the end of the range of joint 1
         (-0.01, 1.0, None),
         (0.03, 1.0, "never"),
-        (0.01, "start", "start"),
-        (-1.0, 1.0, "start"),
+        (0.01, "start", None),
+        (-1.0, 1.0, "always"),
     ],
 )
 def test_a_pair_is_watched_if_it_may_come_near(gap, joint_1, reason, tmp_path) -> None:
@@ -118,32 +123,47 @@ def test_a_pair_is_watched_if_it_may_come_near(gap, joint_1, reason, tmp_path) -
     reasons = {frozenset(links): why for *links, why in model.left_out}
     assert reasons.get(frozenset(("base", "p2"))) == reason
     assert reasons[frozenset(("base", "p1"))] == "adjacent"
-    watched = [{model.capsules[i].link for i in pair} for pair in model.pairs(robot)]
+    watched = [{model.bodies[i].link for i in pair[:2]} for pair in model.pairs(robot)]
     assert ({"base", "p2"} in watched) == (reason is None)
     still = robot.with_limits(*(robot.start_posture() + [[-0.01], [0.01]]))  # it never comes near
     assert make_collision_model(still).pairs(robot) == []
 
 
-@pytest.mark.parametrize("name", ["fr3", "so101"])
-def test_pairs_are_those_of_all_distances(name: str) -> None:
-    robot = iiwa_dnn.load_robot(name)
-    model = make_collision_model(robot, samples=300)
-    reasons = {frozenset(links): why for *links, why in model.left_out}
-    whole = dataclasses.replace(model, left_out=())
-    pairs = whole.pairs(robot)
-    geometry = coal_geometry(robot, whole, pairs)
-    data, scratch = robot.model.createData(), pin.GeometryData(geometry)
-    postures = [robot.start_posture(), *robot.draw(np.random.default_rng(0), 300)]
-    distances = []
+def touching_links(robot: iiwa_dnn.Robot, postures: np.ndarray) -> Counter[frozenset[str]]:
+    """Count the postures (k, n) in which links that no joint joins touch by their own shapes."""
+    shapes = read_shapes(robot, pin.GeometryType.COLLISION)
+    parents = robot.model.parents
+    pairs = []
+    for i, k in combinations(range(shapes.ngeoms), 2):
+        first, second = (shapes.geometryObjects[each] for each in (i, k))
+        a, b = first.parentJoint, second.parentJoint
+        if a != b and parents[a] != b and parents[b] != a:
+            names = (robot.model.frames[each.parentFrame].name for each in (first, second))
+            pairs.append(frozenset(names))
+            shapes.addCollisionPair(pin.CollisionPair(i, k))
+    data, scratch = robot.model.createData(), pin.GeometryData(shapes)
+    found: Counter[frozenset[str]] = Counter()
     for q in postures:
-        pin.computeDistances(robot.model, data, geometry, scratch, q)
-        distances.append([result.min_distance for result in scratch.distanceResults])
-    links = [frozenset(model.capsules[i].link for i in pair) for pair in pairs]
-    for each in set(links):
-        start, *others = np.array(distances)[:, [other == each for other in links]].min(axis=1)
-        expected = "never" if min(others) > 0.02 else "start" if start <= 0.02 else None
-        assert reasons.get(each) in (expected, "adjacent")
-    assert len(set(reasons.values())) > 1
+        pin.computeCollisions(robot.model, data, shapes, scratch, q, False)
+        results = zip(pairs, scratch.collisionResults, strict=True)
+        found.update({pair for pair, result in results if result.isCollision()})
+    return found
+
+
+@pytest.mark.parametrize("name", sorted(robots_folder().iterdir()), ids=lambda each: each.name)
+def test_pairs_that_touch_are_watched_or_told(name: Path) -> None:
+    """The links' own shapes judge the file of a named arm, in postures that no search had."""
+    robot = iiwa_dnn.load_robot(name.name)
+    model = collision_model(robot)
+    touched = touching_links(robot, robot.draw(np.random.default_rng(7), 400))
+    touched |= touching_links(robot, robot.start_posture()[np.newaxis])
+    reasons = {frozenset(links): why for *links, why in model.left_out}
+    watched = {frozenset(model.bodies[i].link for i in pair[:2]) for pair in model.pairs(robot)}
+    told = {frozenset(pair) for pair in model.unguarded}
+    always = {pair for pair, count in touched.items() if count > 360}
+    assert always == {pair for pair, why in reasons.items() if why == "always"}
+    assert touched.keys() - always <= watched | told
+    assert not watched & {pair for pair, why in reasons.items() if pair not in told}
 
 
 CAPSULE = {"link": "p1", "a": [0, 0, 0], "b": [0, 0, 0.1], "radius": 0.1}
@@ -217,7 +237,7 @@ def test_a_mesh_without_triangles_is_left_out_and_said_and_the_others_are_watche
     said = f"the mesh .*parts/{name} of p2, p3 has no triangles: it is left out$"
     with pytest.warns(UserWarning, match=said):
         model = make_collision_model(robot, samples=9)
-    assert sorted(capsule.link for capsule in model.capsules) == ["p1", "p2"]
+    assert {capsule.link for capsule in model.capsules} == {"p1", "p2"}
 
 
 @pytest.mark.parametrize("version", ["", "version='1.0'", "version='1.1'", "version='1.2'"])
@@ -231,7 +251,7 @@ def test_a_capsule_of_a_file_is_a_shape_whatever_its_version(version: str, tmp_p
 
 
 def test_pairs_that_take_long_are_said(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(collision, "perf_counter", iter([0.0, 0.9, 0.0, 2.5]).__next__)
+    monkeypatch.setattr(collision, "process_time", iter([0.0, 1.9, 0.0, 2.5]).__next__)
     robot = arm_of(tmp_path, p1=COVER)
     assert collision_model(robot) is collision_model(robot)  # once
     said = f"^capsules and pairs of arm took 2.5 s; .* beside {robot.path}$"
@@ -254,3 +274,104 @@ def test_a_controller_warns_of_links_that_no_row_watches(tmp_path, monkeypatch) 
     bare = arm_of(tmp_path, p1=MASS, p2=MASS)
     with pytest.raises(iiwa_dnn.InvalidInputError, match=r"could meet; .* geometry: p1, p2$"):
         avoidance.scene(bare)
+
+
+@pytest.mark.parametrize(
+    ("name", "links"),
+    [("ur5", ("forearm_link", "wrist_2_link")), ("iiwa7", ("iiwa7_link_5", "iiwa7_link_7"))],
+)
+def test_a_close_pair_moves_and_its_shapes_do_not_touch(name, links) -> None:
+    """Bodies of a wrist overlap before its links touch: a shield lets them, and no further."""
+    robot = iiwa_dnn.load_robot(name).with_limits(acceleration=10.0)
+    random = np.random.default_rng(1)
+    start = robot.start_posture()
+    goals = [
+        q for q in robot.draw(random, 2000) if frozenset(links) in touching_links(robot, q[None])
+    ]
+    assert len(goals) > 10
+    for goal in goals[:4]:
+        shield = iiwa_dnn.Shield(robot, 0.01, obstacles=[])
+        path = [start]
+        bent = np.where(np.arange(robot.dof) < robot.dof - 3, start, goal)
+        for _ in range(600):
+            path.append(path[-1] + 0.01 * shield.step(path[-1], position=bent).dq)
+        assert not touching_links(robot, np.array(path[::5]))[frozenset(links)]
+        assert np.abs(path[-1] - start).max() > 0.3
+
+
+BALL_BESIDE = """<collision><origin xyz='0.55 0.2 0'/><geometry><sphere radius='0.05'/></geometry>
+</collision>"""
+BALL_FAR = BALL_BESIDE.replace("0.55 0.2", "0.85 0.3")
+WALL = """<collision><origin xyz='0.3 0.5 0'/><geometry><box size='2 0.04 1.6'/></geometry>
+</collision>"""
+
+
+def srdf(folder: Path, *pairs: str) -> None:
+    """Write an SRDF file beside `arm_of` that disables pairs of links."""
+    lines = "".join(
+        "<disable_collisions link1='{}' link2='{}' reason='{}'/>".format(*each.split())
+        for each in pairs
+    )
+    (folder / "arm.srdf").write_text(f"<robot name='arm'>{lines}</robot>")
+
+
+@pytest.mark.filterwarnings("ignore:capsules and pairs")
+def test_an_srdf_file_is_believed_unless_the_shapes_meet(tmp_path) -> None:
+    robot = arm_of(tmp_path, base=BALL_BESIDE + BALL_FAR, p1=COVER, p2=BALL_OF_P2, p3=BALL_OF_P2)
+    assert make_collision_model(robot).left_out == (
+        ("base", "p1", "adjacent"),
+        ("p1", "p2", "adjacent"),
+        ("p1", "p3", "never"),
+        ("p2", "p3", "adjacent"),
+    )
+    srdf(tmp_path, "p2 base User", "p3 p1 Never")
+    model = make_collision_model(robot)
+    assert ("base", "p2", "may meet, disabled: User") in model.left_out
+    assert ("p1", "p3", "never") in model.left_out
+    assert model.unguarded == [("base", "p2")]
+    said = "these links may meet, and are not kept apart everywhere: base and p2$"
+    limited = robot.with_limits(acceleration=10.0)
+    with pytest.warns(UserWarning, match=said):
+        iiwa_dnn.Shield(limited, obstacles=[])
+    given = iiwa_dnn.CollisionAvoidance(may_touch=[("p2", "base")])
+    scheme = iiwa_dnn.DoubleIndicator(extra_limits=(iiwa_dnn.CollisionAvoidance(),))
+    with pytest.warns(UserWarning, match=said):
+        iiwa_dnn.Controller(robot, scheme)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        iiwa_dnn.Shield(limited, obstacles=given)
+        iiwa_dnn.Shield(limited)
+    (tmp_path / "arm.srdf").write_text("<robot>")
+    with pytest.raises(iiwa_dnn.errors.FileError, match=r"arm.srdf: .*no element"):
+        make_collision_model(robot)
+
+
+@pytest.mark.filterwarnings("ignore:capsules and pairs")
+def test_a_table_that_is_a_link_is_kept_as_one_that_is_an_obstacle(tmp_path) -> None:
+    box = iiwa_dnn.Box([0.3, 0.5, 0.0], [1.0, 0.02, 0.8])
+    one = arm_of(tmp_path, base=WALL, p2=COVER, p3=COVER)
+    table = iiwa_dnn.CollisionAvoidance().scene(one)
+    (tmp_path / "b").mkdir()
+    other = arm_of(tmp_path / "b", p2=COVER, p3=COVER)
+    obstacle = iiwa_dnn.CollisionAvoidance([box], self_collision=False).scene(other)
+    assert table.pairs == [("base", "p3")]  # p2 never comes near
+    assert obstacle.pairs[-1] == ("Box 1", "p3")
+    postures = one.draw(np.random.default_rng(0), 50)
+    found = [scene.distances(postures, np.zeros(50)) for scene in (table, obstacle)]
+    np.testing.assert_allclose(found[0][:, 0], found[1][:, -1], atol=1e-5)
+
+
+@pytest.mark.parametrize("size", [(1.0, 0.8, 0.02), (0.6, 0.1, 0.1), (0.3, 0.3, 0.3)])
+def test_capsules_of_a_cut_shape_hold_all_of_it(size) -> None:
+    """Points drawn inside of a box, far from its corners too, are in one of its capsules."""
+    capsules, boxes = fit_bodies([(coal.Box(*size), pin.SE3.Identity())])
+    points = np.random.default_rng(0).uniform(-0.5, 0.5, (2000, 3)) * size
+    away = []
+    for body in capsules:
+        a, b = body.ends
+        along = np.clip((points - a) @ (b - a) / max((b - a) @ (b - a), 1e-12), 0.0, 1.0)
+        away.append(np.linalg.norm(points - a - along[:, None] * (b - a), axis=1) - body.radius)
+    assert np.min(away, axis=0).max() < 1e-9
+    sphere = 4.0 / 3.0 * np.pi * (np.linalg.norm(size) / 2.0) ** 3
+    assert sum(body.volume for body in capsules) <= sphere * (1.0 + 1e-6)
+    assert [sorted(2.0 * body.half_extents) for body in boxes] == [pytest.approx(sorted(size))]
