@@ -108,9 +108,10 @@ def test_halt_reset_and_send(package: Any) -> None:
 
 def test_obstacles_are_where_they_are_said_to_be(package: Any) -> None:
     far = package.Shield().step(START, obstacles=[[3.0, 3.0, 3.0]])
-    near = package.Shield().step(START)
+    beside = [[0.36, 0.18, 0.64]]  # nearer than the links of the wrist are to each other
+    near = package.Shield().step(START, obstacles=beside)
     assert far.margin.distance > near.margin.distance
-    places = np.array([[[3.0, 3.0, 3.0]], [[0.36, 0.16, 0.64]]])
+    places = np.array([[[3.0, 3.0, 3.0]], beside])
     shields = package.Shields(2)
     shields.step(np.tile(START, (2, 1)), obstacles=places)
     assert [shields.margin(i) for i in range(2)] == [far.margin, near.margin]
