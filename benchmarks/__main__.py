@@ -1,8 +1,9 @@
 """``python -m benchmarks``, a name and options: measure, and print tables in Markdown.
 
 ``loop`` measures steps of every kind, beside PlaCo, Pink and mink; ``solvers`` the network beside
-QP solvers; ``export`` controllers in C; ``shields`` the shield beside other filters; ``cuda``
-shields of many arms on a GPU; ``figures`` all but that, the heart, the paper's tables, the league
+QP solvers; ``export`` controllers in C; ``shields`` the shield beside other filters, and arrivals
+beside Ruckig's; ``sns`` saturation in the null space; ``cuda`` shields of many arms on a GPU;
+``figures`` all but that, the heart, the paper's tables, the league
 of networks and hostile motion: every figure that the pages quote.
 """
 
@@ -16,7 +17,7 @@ from benchmarks.report import machine
 def main() -> int:
     """Carry out one of the commands; returns the exit code."""
     parser = argparse.ArgumentParser("python -m benchmarks", description=__doc__)
-    commands = ("loop", "solvers", "export", "shields", "cuda", "figures")
+    commands = ("loop", "solvers", "export", "shields", "sns", "cuda", "figures")
     parser.add_argument("command", choices=commands)
     parser.add_argument("--steps", type=int, default=10_000, help="number of steps of a kind")
     for library in ("placo", "mink", "cbfpy"):
@@ -43,6 +44,10 @@ def main() -> int:
         from benchmarks import shields
 
         shields.report(options.cbfpy)
+    if options.command in ("sns", "figures"):
+        from benchmarks import sns
+
+        sns.report()
     if options.command == "cuda":
         from benchmarks import cuda
 

@@ -70,6 +70,7 @@ def paper(
     duration: Number = None,
     table: Annotated[Literal[1, 2] | None, shown("N")] = None,
     weights: Annotated[tuple[float, ...], shown("X ...")] = (),
+    identify: Flag = False,
 ) -> int:
     """Run every experiment of the paper, each number beside the paper's.
 
@@ -80,13 +81,19 @@ def paper(
         duration: length of each run [s] (10)
         table: table of the paper to run alone, 1 or 2 (everything)
         weights: weights xi in [0, 1] of columns of Table I: 0.1, 0.2, 0.4, 0.5, 0.6, 0.8, 0.9 (all)
+        identify: seek in a grid the settings that the paper leaves out, half an hour, in place of
+            its experiments
     """
-    from iiwa_dnn.studies import paper_report, paper_tables, runs, sweeps
+    from iiwa_dnn.studies import identify as grid, paper_report, paper_tables, runs, sweeps
 
     given = {"seeds": seeds, "duration": duration, "weights": weights or None}
     scope = replace(runs.QUICK if quick else runs.FULL, **_chosen(given))
     names = [*paper_tables.EXPERIMENTS] if table is None else [f"table{table}"]
     folder, compute = start_sweep(sweep, "paper")
+    if identify:
+        text = grid.identify(folder, partial(compute, runs.measure), scope)
+        print(*[text] * (not sweep.quiet), end="")
+        return 0
     tables = {}
     early: list[str] = []
     for name in names:
@@ -131,6 +138,7 @@ def atlas(
     whole: Flag = False,
     seeds: Count = None,
     networks: Names = (),
+    arm: Annotated[str | None, shown("NAME")] = None,
     schemes: Names = (),
     disturbances: Names = (),
     work: Annotated[float, shown("X")] = 1e4,
@@ -145,6 +153,7 @@ def atlas(
         whole: run 100 seeds and all schemes: hours in place of minutes
         seeds: number of noises, two or more (5, whole: 100)
         networks: networks (every one; beside your own too)
+        arm: arm: iiwa7, fr3 or "iiwa7 at a bound" (iiwa7)
         schemes: schemes, all but the first undisturbed (the first; whole: every one)
         disturbances: disturbances beside the undisturbed runs (every one)
         work: work a control period [operations] (1e4)
@@ -154,6 +163,7 @@ def atlas(
     alone = league.NETWORKS.keys().isdisjoint(networks)  # one's own beside all others
     given = {
         "networks": (*league.NETWORKS, *networks) if alone else networks,
+        "arm": arm,
         "schemes": schemes or (tuple(league.SCHEMES) if whole else None),
         "disturbances": disturbances or None,
         "work": work,

@@ -49,11 +49,13 @@ from iiwa_dnn import (
     ProjectionNetwork,
     PseudoInverse,
     Reference,
+    Robot,
     Scheme,
     SimplifiedDualNetwork,
     TrackingSolver,
     ZeroingNetwork,
     checks,
+    load_robot,
     simulate,
 )
 from iiwa_dnn.files import one_line
@@ -66,8 +68,15 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Sizes
 from iiwa_dnn.results.metrics import position_error
 from iiwa_dnn.schemes import literature
-from iiwa_dnn.studies.paper import START
 from iiwa_dnn.studies.runs import paper_robot
+
+ARMS: dict[str, Callable[[], Robot]] = {
+    "iiwa7": paper_robot,
+    "iiwa7 at a bound": partial(paper_robot, (0.1, *(np.inf,) * 6)),
+    "fr3": partial(load_robot, "fr3"),
+}
+"""Arms by name: the paper's; the same, its first joint limited to 0.1 rad/s, which the paths reach
+in more than half of their steps; another."""
 
 DT = 2e-3
 """Control period [s]."""
@@ -96,21 +105,23 @@ PATHS: tuple[Callable[[], Reference], ...] = (
 
 _TASKS = [PositionTask(), OrientationTask()]
 
-SCHEMES: dict[str, Callable[[], Scheme]] = {
-    "double indicator": lambda: DoubleIndicator(home=START),
-    "double indicator, the paper's rows": lambda: DoubleIndicator(orientation="block", home=START),
-    "double indicator, position only": lambda: DoubleIndicator(orientation="none", home=START),
-    "minimum velocity": lambda: Scheme([KineticEnergy()], _TASKS, [JointLimits()]),
-    "minimum kinetic energy": lambda: Scheme(
+SCHEMES: dict[str, Callable[[Robot], Scheme]] = {
+    "double indicator": lambda robot: DoubleIndicator(),
+    "double indicator, the paper's rows": lambda robot: DoubleIndicator(orientation="block"),
+    "double indicator, position only": lambda robot: DoubleIndicator(orientation="none"),
+    "minimum velocity": lambda robot: Scheme([KineticEnergy()], _TASKS, [JointLimits()]),
+    "minimum kinetic energy": lambda robot: Scheme(
         [KineticEnergy(kinetic="inertia")], _TASKS, [JointLimits()]
     ),
-    "infinity norm": lambda: literature.bi_criteria(paper_robot(), 0.0),
-    "bi-criteria": lambda: literature.bi_criteria(paper_robot()),
-    "manipulability": lambda: Scheme([KineticEnergy(), Manipulability()], _TASKS, [JointLimits()]),
-    "soft rotation": lambda: Scheme(
+    "infinity norm": lambda robot: literature.bi_criteria(robot, 0.0),
+    "bi-criteria": literature.bi_criteria,
+    "manipulability": lambda robot: Scheme(
+        [KineticEnergy(), Manipulability()], _TASKS, [JointLimits()]
+    ),
+    "soft rotation": lambda robot: Scheme(
         [KineticEnergy(weight=0.01)], [PositionTask(), OrientationTask(weight=1.0)], [JointLimits()]
     ),
-    "pseudo-inverse": PseudoInverse,
+    "pseudo-inverse": lambda robot: PseudoInverse(),
 }
 """Schemes by name; the first is the league's."""
 
@@ -355,6 +366,7 @@ class Cell:
         fraction: Fraction of the linear limit.
         seeds: Number of runs.
         dt: Control period [s].
+        arm: Name of the arm.
         source: Hash of the file of a user's network, so that a changed one is computed anew.
     """
 
@@ -366,6 +378,7 @@ class Cell:
     fraction: float = FRACTIONS[-1]
     seeds: int = 1
     dt: float = DT
+    arm: str = next(iter(ARMS))
     source: str = field(default="", init=False)
 
     def __post_init__(self) -> None:
@@ -389,6 +402,7 @@ class Size:
         disturbances: Names of the disturbances, ``none`` among them.
         work: Operations a control period.
         seeds: Runs of each disturbed cell, two or more, so that there is an interval.
+        arm: Name of the arm.
     """
 
     networks: Sequence[str] = tuple(NETWORKS)
@@ -396,15 +410,17 @@ class Size:
     disturbances: Sequence[str] = tuple(NOISES)
     work: float = 1e4
     seeds: int = 5
+    arm: str = next(iter(ARMS))
 
     def __post_init__(self) -> None:
         """Check names and numbers, and add the undisturbed runs, by which gains are chosen.
 
         Raises:
             NotFoundError: There is no network of a name.
-            InvalidInputError: There is no scheme or disturbance of a name, a number is out of
+            InvalidInputError: There is no arm, scheme or disturbance of a name, a number is out of
                 range, or a network from outside is none.
         """
+        checks.one_of("arm", self.arm, tuple(ARMS))
         for name in self.schemes:
             checks.one_of("schemes", name, tuple(SCHEMES))
         for name in self.disturbances:
@@ -423,7 +439,7 @@ def gain_cells(size: Size) -> list[Cell]:
     They are every fraction with one evaluation a period and with all that the work allows.
     """
     return [
-        Cell(network, size.schemes[0], work=size.work, fraction=fraction, most=most)
+        Cell(network, size.schemes[0], arm=size.arm, work=size.work, fraction=fraction, most=most)
         for network in size.networks
         for fraction, most in product(FRACTIONS, (None, 1))
         if entry_of(network).paced or (fraction == FRACTIONS[-1] and most is None)
@@ -459,7 +475,7 @@ def cells(size: Size, gains: Mapping[str, Mapping[str, Any]]) -> list[Cell]:
     """
     found = []
     for network in size.networks:
-        settings = {"work": size.work, "seeds": size.seeds, **gains[network]}
+        settings = {"arm": size.arm, "work": size.work, "seeds": size.seeds, **gains[network]}
         found += [Cell(network, size.schemes[0], kind, **settings) for kind in size.disturbances]
         found += [Cell(network, scheme, **settings) for scheme in size.schemes[1:]]
         if isinstance(entry_of(network).network, ZeroingNetwork):
@@ -513,8 +529,9 @@ def _run(cell: Cell, seed: int) -> dict[str, Any]:
     Raises:
         IiwaDnnError: The network has diverged, or the tool is 1 m away from its target.
     """
-    robot = paper_robot()
-    scheme = SCHEMES[cell.scheme]()
+    robot = ARMS[cell.arm]()
+    start = robot.start_posture()
+    scheme = SCHEMES[cell.scheme](robot)
     entry = entry_of(cell.network)
     sizes = scheme.program(robot).sizes
     count = evaluations_within(entry, sizes, cell.work)
@@ -523,7 +540,7 @@ def _run(cell: Cell, seed: int) -> dict[str, Any]:
     times = cell.dt * np.arange(round(DURATION / cell.dt), dtype=np.float64)
     noise = NOISES[cell.disturbance](np.random.default_rng(seed), times)
     solver = entry.make(count, cell.fraction, cell.dt)
-    path = PATHS[seed % len(PATHS)]().anchored(Configuration(robot, START))
+    path = PATHS[seed % len(PATHS)]().anchored(Configuration(robot, start))
     measured: dict[str, Any] = {}
     if cell.disturbance == "measurement":
         measured = {"noise": noise, "noise_at": "measurement"}
@@ -533,7 +550,7 @@ def _run(cell: Cell, seed: int) -> dict[str, Any]:
         robot,
         scheme,
         path.feed_forward(cell.dt) if cell.scheme in AHEAD else path,
-        START,
+        start,
         dt=cell.dt,
         duration=DURATION,
         mode="continuous",

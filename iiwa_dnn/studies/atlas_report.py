@@ -188,27 +188,22 @@ def orders(rows: Sequence[Row]) -> list[list[str]]:
     return found
 
 
-class Table(NamedTuple):
-    """A table of texts: the name of its files, its caption, heads of the columns, and rows."""
-
-    name: str
-    caption: str
-    head: Sequence[str]
-    rows: Sequence[Sequence[str]]
-
-
 def report(folder: Path, size: Size, rows: Sequence[Row], head: str) -> str:
     """Write each table as NAME.tex into a folder; return the report in Markdown."""
     parts = ["# Atlas of neurodynamic control", head]
-    for table in _tables(size, rows):
-        latex = lay_out(table.rows, table.head, "latex_booktabs", disable_numparse=True)
-        write_text(folder / f"{table.name}.tex", latex + "\n")
-        parts += [f"## {table.caption}", markdown_table(table.head, table.rows)]
+    for name, caption, columns, texts in _tables(size, rows):
+        latex = lay_out(texts, columns, "latex_booktabs", disable_numparse=True)
+        write_text(folder / f"{name}.tex", latex + "\n")
+        parts += [f"## {caption}", markdown_table(columns, texts)]
     return "\n\n".join([*parts, _REMARKS]) + "\n"
 
 
-def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
-    """Lay out the tables of a report."""
+def _tables(size: Size, rows: Sequence[Row]) -> list[Any]:
+    """Lay out the tables of a report that have rows and more than two columns.
+
+    Returns:
+        Of each the name of its file, its caption, the heads of its columns, and its rows of texts.
+    """
     ranking = ranks(rows)
     head = ["rank", "network", "evaluations", *size.disturbances]
     of = f"{size.schemes[0]}, {size.work:g} operations a control period"
@@ -220,8 +215,8 @@ def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
     ]
     position = partial(_shown, measure="rms_error_m")
     tables = [
-        Table("league", f"RMS KKT residual: {of}", head, _league(rows, ranking, _shown)),
-        Table(
+        ("league", f"RMS KKT residual: {of}", head, _league(rows, ranking, _shown)),
+        (
             "failures",
             "Runs that failed: the first reason",
             ["network", "disturbance", "reason"],
@@ -231,25 +226,25 @@ def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
                 if row["failures"]
             ],
         ),
-        Table(
+        (
             "errors",
             f"RMS position error [m], the places by the residual: {of}",
             head,
             _league(rows, ranking, position),
         ),
-        Table(
+        (
             "verdicts",
             "Claims of the papers, by the residual of pairs of runs, gains chosen undisturbed",
             ["claim", "disturbance", "network of the claim", "network beside it", "verdict"],
             claims,
         ),
-        Table(
+        (
             "orders",
             "RMS KKT residual against the control period, one evaluation each",
             ["network", *(f"{1e3 * dt:g} ms" for dt in PERIODS), "slope"],
             orders(rows),
         ),
-        Table(
+        (
             "schemes",
             "RMS KKT residual of each scheme, undisturbed",
             ["network", *size.schemes],
@@ -265,7 +260,7 @@ def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
             ],
         ),
     ]
-    return [table for table in tables if table.rows and len(table.head) > 2]
+    return [table for table in tables if table[3] and len(table[2]) > 2]
 
 
 def _league(

@@ -24,25 +24,16 @@ _ROWS = {
     "joint_drift_rad": "MAX |q(T) − q(0)| [rad]",
     "max_kinetic_index_times_dt": "MAX q̇ᵀGq̇ · Δt",
     "max_orientation_error_rad": "MAX orientation error [rad]",
-    "total_variation_rad_s": "total variation of q̇ [rad/s]",
     "max_kkt_residual": "MAX KKT residual",
 }
 _MEASURES = {"max_position_error_m": "MAX E", "mse_position_error_m2": "MSE"}
-_ABLATION = (
-    "max_position_error_m",
-    "max_orientation_error_rad",
-    "joint_drift_rad",
-    "total_variation_rad_s",
-    "max_kinetic_index_times_dt",
-)
-
 _LIMITS = """\
 - The paper gives neither the heart's scale nor its period. The scale here, 3.45 mm, is inferred
   from its kinetic index, read as multiplied by Δt: agreement with that row is by construction
   (erratum 8), and errors compare in magnitude only.
 - It gives neither velocity limits nor κ; here the data sheet's and 20 1/s.
 - It names no integrator for the network. Here explicit Euler, in as many sub-steps as are computed
-  to be stable, the state carried from step to step; the ablation tries others.
+  to be stable, the state carried from step to step; `--identify` tries others.
 - Its noise amplitude 0.01 has no unit: taken as the standard deviation, in rad/s on the commanded
   velocity or on the network's x, in rad on the measured angle.
 - MAX E: its text contradicts the table's trend over ξ (erratum 12), and Table II prints 6.70e-5 m
@@ -50,8 +41,8 @@ _LIMITS = """\
 - Four cells of its drift row cannot be read; verdicts are on the other three. A network whose steps
   are stable stays far below them (erratum 13).
 - Fewer explicit sub-steps than 8 (block) or 4 (SO(3)) are not stable along the whole heart. Such
-  rows of the ablation are chaotic: their digits depend on the last bit of every sum, and so on the
-  versions and the machine.
+  runs are chaotic: their digits depend on the last bit of every sum, and so on the versions and the
+  machine.
 - A verdict: *reproduced* if all numbers are within a factor 2 of the paper's, else *same trend* if
   Kendall's tau over ξ has the paper's sign, else *not reproduced*. The four cases of Table II have
   no order, and so no trend. A change (filter, noise) is of the same trend if its interval lies on
@@ -105,15 +96,15 @@ def summary(tables: Mapping[str, Table]) -> list[str]:
 def _table1(table: Table) -> list[str]:
     """Lay out Table I: the paper's rows, then each variant's."""
     head = ("", *(f"ξ = {weight:g}" for weight in table["weights"]))
-    rows = [[_ROWS[key], *map(_short, values)] for key, values in table["paper"].items()]
+    rows = [[_ROWS[key], *map(short, values)] for key, values in table["paper"].items()]
     parts = ["## Table I: weights, without noise", "### The paper's", markdown_table(head, rows)]
     for name, variant in table["variants"].items():
         rows = []
         for key, label in _ROWS.items():
-            rows.append([label, *map(_short, variant["rows"][key])])
+            rows.append([label, *map(short, variant["rows"][key])])
             if key in variant["verdicts"]:
                 ratios = variant["verdicts"][key]["ours_over_paper"]
-                rows.append(["ours / paper's", *map(_short, ratios)])
+                rows.append(["ours / paper's", *map(short, ratios)])
         parts += [f"### {name}", markdown_table(head, rows)]
     return parts
 
@@ -122,7 +113,7 @@ def _laps(table: Table) -> list[str]:
     """Lay out the drift after each lap."""
     laps = range(1, 1 + max(map(len, table.values())))
     head = ("MAX |q − q(0)| [rad] after lap", *map(str, laps))
-    rows = [[name, *map(_short, drifts)] for name, drifts in table.items()]
+    rows = [[name, *map(short, drifts)] for name, drifts in table.items()]
     return ["## Drift over laps", markdown_table(head, rows)]
 
 
@@ -139,7 +130,7 @@ def _table2(table: Table) -> list[str]:
                 ratios = measures[key]["verdict"]["ours_over_paper"]
                 columns = zip(table["paper"][key], measures[key]["cases"], ratios, strict=True)
                 for row, (paper, case, ratio) in zip(rows, columns, strict=True):
-                    row += [_short(paper), _interval(case), _short(ratio)]
+                    row += [short(paper), _interval(case), short(ratio)]
                 for change, effect in measures[key]["changes"].items():
                     paper = f"{100.0 * table['paper_changes'][key][change]:+.1f} %"
                     effects.append([label, change, paper, _change(effect)])
@@ -151,21 +142,10 @@ def _table2(table: Table) -> list[str]:
     return parts
 
 
-def _ablation(table: Table) -> list[str]:
-    """Lay out a row for each ablation run."""
-    head = ("orientation", "noise at", "sub-steps", *(_ROWS[key] for key in _ABLATION))
-    rows = []
-    for row in table["rows"]:
-        choice = [row["orientation"], row["noise_at"], str(row["substeps"])]
-        rows.append([*choice, *(_short(row[key]) for key in _ABLATION)])
-    return ["## Ablation: what the paper leaves out", markdown_table(head, rows)]
-
-
 _SECTIONS: dict[str, Callable[[Table], list[str]]] = {
     "table1": _table1,
     "laps": _laps,
     "table2": _table2,
-    "ablation": _ablation,
 }
 
 
@@ -179,11 +159,12 @@ def _change(change: Mapping[str, Any]) -> str:
 def _interval(estimate: Mapping[str, Any]) -> str:
     """Format a mean with the ends of its interval; an exact value alone."""
     if estimate["samples"] == 1:
-        return _short(estimate["mean"])
+        return short(estimate["mean"])
     return f"{estimate['mean']:.4g} [{estimate['low']:.4g}, {estimate['high']:.4g}]"
 
 
-def _short(value: float | None) -> str:
+def short(value: float | None) -> str:
+    """Format a number by three digits, or one that is missing."""
     return "–" if value is None else f"{value:.3g}"
 
 

@@ -1,13 +1,12 @@
-"""The paper's tables beside ours: Table I, laps, Table II, and ablations."""
+"""The paper's tables beside ours: Table I, laps, and Table II."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import NOISE_ENTRIES
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import HeartRun, Scope
@@ -49,9 +48,6 @@ MODES: dict[str, HeartRun] = {
     "converged, SO(3)": _SETTLED,
 }
 """Ways to run Table II; the first is the paper's own."""
-
-ORIENTATIONS: tuple[Orientation, ...] = ("block", "so3")
-SUBSTEPS: tuple[int | Literal["implicit"], ...] = (1, 2, 4, 7, 8, 16, "implicit")
 
 _WINDOWS = (1, paper.WINDOW)
 
@@ -168,25 +164,6 @@ def _changes_of_paper(values: Sequence[float]) -> dict[str, float]:
     }
 
 
-def ablation_runs(scope: Scope) -> Runs:
-    """Make a run of each orientation, entry of the noise and advance of the network, one seed."""
-    runs: Runs = {}
-    for orientation, substeps in product(ORIENTATIONS, SUBSTEPS):
-        quiet = HeartRun(
-            orientation=orientation, substeps=substeps, dt=scope.dt, duration=scope.duration
-        )
-        runs[orientation, "none", substeps] = quiet
-        for entry in NOISE_ENTRIES:
-            runs[orientation, entry, substeps] = replace(quiet, noise=paper.NOISE, noise_at=entry)
-    return runs
-
-
-def ablation(scope: Scope, results: Results) -> Table:
-    """Lay out a row for each of `ablation_runs`."""
-    names = ("orientation", "noise_at", "substeps")
-    return {"rows": [{**dict(zip(names, key, strict=True)), **results[key]} for key in results]}
-
-
 class Experiment(NamedTuple):
     """An experiment of the paper: its runs, and the table that is made of their results."""
 
@@ -198,7 +175,6 @@ EXPERIMENTS: dict[str, Experiment] = {
     "table1": Experiment(table1_runs, table1),
     "laps": Experiment(lap_runs, laps),
     "table2": Experiment(table2_runs, table2),
-    "ablation": Experiment(ablation_runs, ablation),
 }
 
 

@@ -13,7 +13,7 @@ from iiwa_dnn.app import sweeps as app
 from iiwa_dnn.studies import runs
 from iiwa_dnn.studies.runs import QUICK
 
-TABLES = ("table1.json", "laps.json", "table2.json", "ablation.json")
+TABLES = ("table1.json", "laps.json", "table2.json")
 TINY = ("--quick", "--duration", "0.002", "--seeds", "2")
 
 

@@ -17,10 +17,12 @@ FEW = ("projection (the paper's)", "dual", "zeroing, Euler", "primal-dual, fixed
 
 @pytest.mark.parametrize("name", atlas.SCHEMES)
 def test_every_scheme_answers_the_task(name: str) -> None:
-    conf = Configuration(paper_robot(), paper.START)
+    robot = paper_robot()
+    conf = Configuration(robot, paper.START)
     asked = [0.1, -0.05, 0.02]
     target = Target(conf.position, conf.rotation, asked)
-    x = DNNSolver(tol=1e-8).solve(atlas.SCHEMES[name]().build_qp(conf, target, dt=1e-3)).x
+    scheme = atlas.SCHEMES[name](robot)
+    x = DNNSolver(tol=1e-8).solve(scheme.build_qp(conf, target, dt=1e-3)).x
     np.testing.assert_allclose(conf.jacobian[:3] @ x[:7], asked, atol=1e-6)
 
 

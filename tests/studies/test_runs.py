@@ -8,9 +8,9 @@ import pytest
 
 from helpers_records import make_record
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.results.metrics import compute_metrics
+from iiwa_dnn.results.metrics import compute_metrics, position_error
 from iiwa_dnn.studies import paper
-from iiwa_dnn.studies.runs import HeartRun, Scope, lap_drift, measure, total_variation
+from iiwa_dnn.studies.runs import HeartRun, Scope, lap_drift, measure
 
 SHORT = HeartRun(duration=3e-3)
 
@@ -47,6 +47,31 @@ def test_every_setting_reaches_the_run() -> None:
     assert implicit["max_kkt_residual"] != measure(SHORT)["max_kkt_residual"]
 
 
+def test_what_the_paper_leaves_out_reaches_the_run() -> None:
+    quiet = SHORT.run()
+    run = replace(
+        SHORT, scale=1e-3, period=5.0, limit_gain=0.5, orientation_gain=3.0, velocity=0.25,
+    )  # fmt: skip
+    asked = run.run().settings
+    assert asked["reference"] == {"name": "heart", "scale": 1e-3, "period": 5.0}
+    assert asked["scheme"]["limit_gain"] == 0.5
+    assert asked["scheme"]["orientation_gain"] == 3.0
+    assert asked["dq_max"] == [0.25] * 7
+    # A quarter of a lap on, the heart moves at once, and begins where the arm is.
+    shifted = replace(SHORT, phase=0.25).run()
+    np.testing.assert_allclose(shifted.position_desired[0], shifted.position[0], atol=1e-15)
+    velocity = np.diff(shifted.position_desired[:2], axis=0)[0] / 1e-4
+    rate = 2.0 * np.pi / 10.0
+    slope = -13.0 - 6.0  # of 13 cos p - 5 cos 2p - 2 cos 3p - cos 4p at a quarter of a turn
+    np.testing.assert_allclose(velocity, [0.0, 3.45e-3 * rate * slope, 0.0], atol=1e-5)
+    # A drawn state of the network moves the joints in the first step; a fresh one does not.
+    assert not quiet.dq[0].any()
+    begun = [replace(SHORT, start=0.1, seed=seed).run().dq[0] for seed in (1, 1, 2)]
+    np.testing.assert_array_equal(begun[0], begun[1])
+    assert np.abs(begun[0]).max() > 1e-3
+    assert np.abs(begun[0] - begun[2]).max() > 1e-3
+
+
 def test_the_numbers_are_those_of_the_record() -> None:
     run = replace(SHORT, noise=0.01)
     values = measure(run)
@@ -54,15 +79,10 @@ def test_the_numbers_are_those_of_the_record() -> None:
     for name in set(values) & set(metrics):
         assert values[name] == metrics[name], name
     assert values["status"] == "completed"
+    error = position_error(run.run())
+    assert values["max_axis_error_m"] == np.abs(error).max()
+    assert values["time_of_max_error_s"] == 1e-4 * np.linalg.norm(error, axis=1).argmax()
     assert values["max_kinetic_index_times_dt"] == metrics["max_kinetic_index"] * 1e-4
-
-
-def test_total_variation_of_made_up_records() -> None:
-    dq = np.zeros((10, 7))
-    dq[:, 2] = np.linspace(0.0, 0.9, 10)  # a ramp: its height
-    dq[:, 4] = 0.1 * (-1.0) ** np.arange(10)  # chatter: twice its height, nine times
-    assert total_variation(make_record(dq=dq)) == pytest.approx(1.8)
-    assert total_variation(make_record(steps=1)) == 0.0
 
 
 def test_drift_after_each_lap_of_a_made_up_record() -> None:
