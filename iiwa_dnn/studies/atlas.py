@@ -20,6 +20,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.signal import lfilter
 
 from iiwa_dnn import (
     QP,
@@ -143,19 +144,30 @@ def _along(course: Callable[[Vector], Vector]) -> Callable[[np.random.Generator,
 STATES = 100
 """Number of states that a noise is drawn for; no network has more."""
 
+KEPT = float(np.exp(-DT / 0.05))
+"""Correlation of the coloured noise from period to period: 1 / e over 50 ms."""
+
 NOISES: dict[str, Callable[[np.random.Generator, Vector], Matrix]] = {
     "none": _along(np.zeros_like),
     "constant": _along(np.ones_like),
     "ramp": _along(lambda times: times),
     "sinusoid": _along(lambda times: np.sin(10.0 * np.pi * times)),
     "white": lambda rng, times: 0.01 * rng.standard_normal((times.size, STATES)),
+    "coloured": lambda rng, times: (
+        lfilter(
+            [0.01 * np.sqrt(1.0 - KEPT**2)],
+            [1.0, -KEPT],
+            rng.standard_normal((times.size, STATES)).T,
+        ).T
+    ),
     "measurement": lambda rng, times: 1e-4 * rng.standard_normal((times.size, 7)),
 }
 """Noise of each period, drawn for the times of a run [s], by the name of a disturbance.
 
 All but the last are added to x in the network's state, before each period's answer is read, or to
 all states of a network that computes x from them: constant 1 rad/s^2, ramp 1 rad/s^3, sinusoid
-1 rad/s^2 of 5 Hz, along a direction that the seed draws; white, 0.01 rad/s a period (the paper's).
+1 rad/s^2 of 5 Hz, along a direction that the seed draws; white, 0.01 rad/s a period (the paper's);
+coloured, the same, correlated by `KEPT`.
 Measurement: 1e-4 rad on the joint positions.
 """
 

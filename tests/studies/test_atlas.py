@@ -51,6 +51,10 @@ def test_disturbances_are_as_large_as_they_are_said_to_be() -> None:
     np.testing.assert_allclose(rates["sinusoid"], np.outer(wave, direction), atol=1e-12)
     assert 0.5 < np.linalg.norm(direction[:7]) < 1.6
     assert drawn["white"].std() == pytest.approx(0.01, rel=0.05)
+    # As large as the white one at last, and correlated by a factor e over 50 ms, 25 periods.
+    long = atlas.NOISES["coloured"](np.random.default_rng(3), 2e-3 * np.arange(5000.0))[500:]
+    assert long.std() == pytest.approx(0.01, rel=0.05)
+    assert np.mean(long[25:] * long[:-25]) == pytest.approx(1e-4 / np.e, rel=0.1)
     assert drawn["measurement"].std() == pytest.approx(1e-4, rel=0.05)
     assert not drawn["none"].any()
 
