@@ -60,3 +60,18 @@ def test_without_active_bounds_saturation_is_the_pseudo_inverse() -> None:
     dq, _ = sns.saturate(J, task, *sns.bounds(robot, conf.q, 1e-3))
     qp = iiwa_dnn.PseudoInverse().build_qp(conf, target)
     np.testing.assert_allclose(dq, iiwa_dnn.solve_problem(qp).x, atol=1e-8)
+
+
+def test_arrival_counts_the_last_period_away_from_the_goal(monkeypatch) -> None:
+    pytest.importorskip("ruckig")
+    pytest.importorskip("pylibfranka")
+    from benchmarks import shields
+
+    goal = np.ones(2)
+    path = [np.zeros(2), goal, np.array([1.0, 0.99]), goal + 5e-4, goal]
+    assert shields.arrival(path, goal, 0.1) == pytest.approx(0.3)
+    assert shields.arrival([goal], goal, 0.1) == 0.0
+    # Nothing is quicker than a time-optimal motion by the same rule.
+    monkeypatch.setattr(shields, "GOALS", 3)
+    found = shields.arrivals("iiwa7")
+    assert 1.0 <= found["least"] <= found["median"] <= found["most"] < 1.02

@@ -97,6 +97,10 @@ def test_the_block_leaves_a_sign_open() -> None:
 def test_the_block_loses_the_tilt_where_the_tool_is_vertical() -> None:
     upright = np.array([[0.6, 0.8, 0.0], [0.8, -0.6, 0.0], [0.0, 0.0, -1.0]])
     np.testing.assert_allclose(np.linalg.svd(block_map(upright))[1][1:], 0.0, atol=1e-15)
+    # At second order it does.
+    tilt = np.array([[1.0, 0.0, 0.0], [0.0, math.cos(1e-2), -1e-2], [0.0, 1e-2, math.cos(1e-2)]])
+    change = np.abs(block_vector(tilt @ upright) - block_vector(upright)).max()
+    assert change == pytest.approx(0.5e-4 * 0.8, rel=1e-3)
     rotation = paper_start().rotation
     assert math.degrees(math.acos(-rotation[2, 2])) == pytest.approx(11.08, abs=0.01)
     # At the paper's start a tilt moves the block by a seventh of what a turn moves it.
@@ -184,7 +188,7 @@ def test_what_the_paper_calls_xi_and_nu_are_four_things() -> None:
 
 
 def test_the_text_and_the_tables_disagree() -> None:
-    # Section V-B's words, in the order of Table II's cases [m], [m^2]; None: it says nothing.
+    # Section V-C's words, in the order of Table II's cases [m], [m^2]; None: it says nothing.
     largest = (5.63e-5, None, 7.75e-5, 6.71e-5)
     squared = (1.94e-10, None, 3.42e-10, 2.67e-10)
     for text, table in zip((largest, squared), paper.TABLE2.values(), strict=True):
@@ -286,3 +290,18 @@ def test_without_delta_an_error_of_the_position_stays() -> None:
         left.append(np.linalg.norm(target.position - d.Configuration(robot, q).position))
     assert left[0] == pytest.approx(1e-3, rel=1e-3)
     assert left[1] == pytest.approx(1e-3 * (1 - 0.102) ** 100, rel=0.1)
+
+
+def test_without_nu_an_error_of_the_orientation_stays() -> None:
+    robot, start = paper_robot(), paper_start()
+    turned = np.array(PAPER_Q0) + [0, 0, 0, 0, 0, 0, 1e-2]  # about the tool's axis
+    left = []
+    for gain in (1e-9, 10.2):  # as printed in (6), as if it were zero; as in (5)
+        scheme = d.DoubleIndicator(orientation="block", orientation_gain=gain, home=PAPER_Q0)
+        controller = d.Controller(robot, scheme, dt=1e-2)
+        q = turned
+        for k in range(100):
+            q = controller.step(q, 1e-2 * k, d.Target(start.position, start.rotation)).next_q
+        left.append(rotation_angle(d.Configuration(robot, q).rotation, start.rotation))
+    assert left[0] == pytest.approx(1e-2, rel=1e-2)
+    assert left[1] == pytest.approx(1e-2 * (1 - 0.102) ** 100, rel=0.2)
