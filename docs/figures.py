@@ -5,6 +5,7 @@ by MuJoCo (extra ``sim``); a page that is served is photographed in Chromium. Ea
 draws the file of its name; the tests call them all.
 """
 
+import csv
 import io
 import re
 import runpy
@@ -27,7 +28,7 @@ from scipy.interpolate import CubicSpline
 import iiwa_dnn
 from iiwa_dnn.files import write_text
 from iiwa_dnn.results.metrics import position_error
-from iiwa_dnn.studies import atlas, paper
+from iiwa_dnn.studies import atlas, identify, paper
 from iiwa_dnn.studies.runs import paper_robot
 
 IMAGES = Path(__file__).parent / "images"
@@ -279,6 +280,25 @@ def push() -> Figure:
 
 PAPER_DT = 1e-4
 """Control period of the runs beside Table I [s]."""
+
+
+@figure
+def identified() -> Figure:
+    """Draw the distance of the settings of the grid from each row of the paper.
+
+    The distances are those of ``iiwa-dnn paper --identify``, of which identified.csv is a copy.
+    """
+    with (Path(__file__).parent / "identified.csv").open(encoding="utf-8", newline="") as file:
+        table = [*csv.DictReader(file)]
+    fits = [
+        {
+            "changes": row.pop("changes"),
+            "rows": {title: float(value) for title, value in row.items()},
+        }
+        for row in table
+    ]
+    (inferred,) = (each for each in fits if each["changes"] == "none")
+    return identify.draw(fits, inferred)
 
 
 @figure

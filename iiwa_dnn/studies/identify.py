@@ -248,8 +248,8 @@ def draw(fits: Sequence[Fit], inferred: Fit) -> Any:
         axes.plot([*each["rows"].values()], range(len(ROWS)), mark, label=name)
     axes.axvline(np.log10(2.0), color="0.4", linestyle="--", label="a factor of 2")
     axes.set(xscale="symlog", xlim=(0.0, None), yticks=range(len(ROWS)), yticklabels=ROWS)
-    axes.invert_yaxis()
-    axes.set_xlabel("distance from the printed numbers [decades]")
+    axes.set_xticks((0.0, 0.3, 1.0, 3.0), ("0", "0.3", "1", "3"))
+    axes.set(xlabel="distance from the printed numbers [decades]", ylim=(len(ROWS) - 0.5, -0.5))
     axes.legend(ncols=3, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return figure
 

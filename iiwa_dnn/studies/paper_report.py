@@ -39,7 +39,7 @@ _LIMITS = """\
 - MAX E: its text contradicts the table's trend over ξ (erratum 12), and Table II prints 6.70e-5 m
   for the run that has 5.59e-5 m in Table I, ξ = 0.2 (erratum 7).
 - Four cells of its drift row cannot be read; verdicts are on the other three. A network whose steps
-  are stable stays far below them (erratum 13).
+  are stable stays far below them (erratum 13), unless a joint limit is active (`--identify`).
 - Fewer explicit sub-steps than 8 (block) or 4 (SO(3)) are not stable along the whole heart. Such
   runs are chaotic: their digits depend on the last bit of every sum, and so on the versions and the
   machine.
