@@ -86,13 +86,15 @@ def paper(
     """
     from iiwa_dnn.studies import identify as grid, paper_report, paper_tables, runs, sweeps
 
-    given = {"seeds": seeds, "duration": duration, "weights": weights or None}
-    scope = replace(runs.QUICK if quick else runs.FULL, **_chosen(given))
+    scope = replace(
+        runs.QUICK if quick else runs.FULL,
+        **_chosen({"seeds": seeds, "duration": duration, "weights": weights or None}),
+    )
     names = [*paper_tables.EXPERIMENTS] if table is None else [f"table{table}"]
     folder, compute = start_sweep(sweep, "paper")
     if identify:
-        text = grid.identify(folder, partial(compute, runs.measure), scope)
-        print(*[text] * (not sweep.quiet), end="")
+        found = grid.identify(folder, partial(compute, runs.measure), scope)
+        print("" if sweep.quiet else found, end="")
         return 0
     tables = {}
     early: list[str] = []
@@ -110,8 +112,9 @@ def paper(
         "seeds": str(scope.seeds),
         "ended early": "; ".join(early) or "none",
     }
-    figures = _figures(compute, scope, folder) if table is None else []
-    text = paper_report.report(tables, head, figures)
+    text = paper_report.report(
+        tables, head, _figures(compute, scope, folder) if table is None else []
+    )
     write_text(folder / "report.md", text)
     if not sweep.quiet:
         said = paper_report.summary(tables) if table is None else [text]
