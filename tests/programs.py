@@ -166,6 +166,52 @@ def badly_scaled(rng: np.random.Generator) -> QP:
     return QP(P, q, e[:, None] * G, e * h, f[:, None] * A, f * (A @ x))
 
 
+def repeated_rows(rng: np.random.Generator) -> tuple[QP, Vector]:
+    """A program of 7 to 27 variables with a cost of half the rank, and a solution of it.
+
+    Each row stands there three times, twice times 1e-2 to 1e2; of the active ones a third has no
+    multiplier.
+    """
+    n = int(rng.integers(7, 28))
+    m = int(rng.integers(1, 2 * n + 1))
+    factor = rng.standard_normal((n // 2, n))
+    x = rng.standard_normal(n)
+    lb, ub, z_box = _bounds(rng, x, int(rng.integers(0, n // 3 + 1)))
+    G = rng.standard_normal((m, n))
+    active = rng.permutation(m)[: int(rng.integers(1, min(m, n) + 1))]
+    slack = rng.exponential(size=m) + 1e-3
+    slack[active] = 0.0
+    z = np.zeros(m)
+    z[active] = rng.exponential(size=active.size) * (rng.integers(0, 3, active.size) > 0)
+    q = -(factor.T @ (factor @ x) + G.T @ z + z_box)
+    units = np.concatenate([np.ones(m), 10.0 ** rng.uniform(-2.0, 2.0, 2 * m)])
+    h = np.tile(G @ x + slack, 3)
+    return QP(factor.T @ factor, q, units[:, None] * np.tile(G, (3, 1)), units * h, lb=lb, ub=ub), x
+
+
+def heavy_task(rng: np.random.Generator) -> tuple[QP, Vector]:
+    """A soft task of weight 2^7 to 2^30 beside a cost of 2^-6 to 1; its solution, bounds or rows.
+
+    The numbers have so few digits that none is rounded: the solution is exact.
+    """
+    n = int(rng.integers(2, 41))
+    x = rng.integers(-32, 33, n) / 16.0
+    lb, ub, z_box = _bounds(rng, x, int(rng.integers(0, n // 3 + 1)))
+    z_box = np.sign(z_box) * np.ceil(16.0 * np.abs(z_box)) / 16.0
+    J = rng.integers(-16, 17, (int(rng.integers(1, min(n, 6) + 1)), n)) / 8.0
+    P = 2.0 ** rng.integers(7, 31) * J.T @ J + 2.0 ** rng.integers(-6, 1) * np.eye(n)
+    qp = QP(P, -(P @ x + z_box), lb=lb, ub=ub)
+    return (rows_for_bounds(qp) if rng.uniform() < 0.5 else qp), x
+
+
+def rows_for_bounds(qp: QP) -> QP:
+    """The same program, its finite bounds as rows of plus and minus one."""
+    eye = np.eye(qp.q.size)
+    above, below = np.isfinite(qp.ub), np.isfinite(qp.lb)
+    G = np.vstack([qp.G, eye[above], -eye[below]])
+    return QP(qp.P, qp.q, G, np.concatenate([qp.h, qp.ub[above], -qp.lb[below]]), qp.A, qp.b)
+
+
 def in_other_units(
     qp: QP, point: Vector, units: Vector, rows: Vector, cost: float
 ) -> tuple[QP, Vector]:

@@ -45,7 +45,7 @@ from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
 from iiwa_dnn.qp.layout import QPViews, Sizes, copied
-from iiwa_dnn.qp.residuals import within
+from iiwa_dnn.qp.residuals import is_small_enough, within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.base import FeedForward, enter_path
 from iiwa_dnn.references.rotations import set_mean_twist
@@ -332,7 +332,7 @@ def _answer(log: StepLog, arrays: ProgramArrays, network: CompiledAnswer, state:
         network.address, qp, network.rates, network.settings, state, log.point
     )
     log.fraction = 1.0
-    log.status = status_of(stats, network.settings, state)
+    log.status = status_of(qp, log.point, stats, network.settings, state)
     if log.status >= NOT_CONVERGED:
         copied(state, before)
         return False
@@ -340,8 +340,12 @@ def _answer(log: StepLog, arrays: ProgramArrays, network: CompiledAnswer, state:
 
 
 @compiled
-def status_of(stats: SolveStats, settings: AnswerSettings, state: Vector) -> int:
+def status_of(
+    qp: QPViews, point: Vector, stats: SolveStats, settings: AnswerSettings, state: Vector
+) -> int:
     """Return the status of an answer, its index in `STATUSES`, from its residuals.
+
+    A point (2n + m + p,) whose residuals are above the tolerance by rounding alone is an answer.
 
     If the network was advanced by a duration, its state (size,) has to be finite too: the point of
     an infinite state may be finite, since it is clipped to the bounds.
@@ -354,8 +358,10 @@ def status_of(stats: SolveStats, settings: AnswerSettings, state: Vector) -> int
         return NOT_FINITE
     if settings.duration > 0.0:
         return ADVANCED
-    converged = within(stats.primal, stats.dual, stats.gap, settings.tolerance)
-    return SOLVED if converged else NOT_CONVERGED
+    tol = settings.tolerance
+    if within(stats.primal, stats.dual, stats.gap, tol) or is_small_enough(qp, point, tol, 0.0):
+        return SOLVED
+    return NOT_CONVERGED
 
 
 @compiled

@@ -48,7 +48,7 @@ from iiwa_dnn.networks.integrators.implicit import solve_within
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry, row_dot
 from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, copied, data_size, qp_views
-from iiwa_dnn.qp.residuals import cost_size, within
+from iiwa_dnn.qp.residuals import cost_size, is_small_enough, within
 from iiwa_dnn.schemes.program import add_soft
 from iiwa_dnn.schemes.rate_limits import MotionConstants
 
@@ -142,7 +142,7 @@ def solve_warm(qp: QPViews, tol: float, state: Vector, point: Vector, stats: Sol
             overwritten.
 
     Returns:
-        True if the residuals of `point` are within the tolerance.
+        True if the residuals of `point` are within the tolerance, or above it by rounding alone.
     """
     for _ in range(2):
         linear_solves, time, primal, dual, gap = solve_within(
@@ -150,7 +150,7 @@ def solve_warm(qp: QPViews, tol: float, state: Vector, point: Vector, stats: Sol
         )
         stats.iterations += linear_solves
         stats.time = time
-        if within(primal, dual, gap, tol):
+        if within(primal, dual, gap, tol) or is_small_enough(qp, point, tol, 0.0):
             return True
         state[:] = 0.0
     return False

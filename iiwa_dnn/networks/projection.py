@@ -27,8 +27,8 @@ import numpy as np
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record
 from iiwa_dnn.networks.base import Network, kkt_product
-from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, times
-from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, larger
+from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, largest_entry, times
+from iiwa_dnn.qp.layout import QPViews, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
@@ -93,22 +93,26 @@ def unprojected_rates(qp: QPViews, s: Vector, rates: Vector) -> float:
     for k in range(n + qp.b.size, s.size):
         if not s[k] + rates[k] > 0.0:  # the multiplier decays
             rates[k] = -s[k]
-    largest = 0.0
-    for k in range(s.size):
-        largest = larger(largest, abs(rates[k]))
-    return largest
+    return largest_entry(rates)
 
 
 @compiled
-def mark_active(qp: QPViews, s: Vector, rates: Vector, active: Vector) -> None:
+def mark_active(qp: QPViews, s: Vector, rates: Vector, active: Vector) -> int:
     """Mark the rows [A; G; I; -I] that are active by 1, others by 0, (p + m + 2n,).
 
     Equalities are active, inequalities where mu + Omega x - chi > 0. A multiplier that is not
     active decays: it and its rate add up to zero exactly.
+
+    Returns:
+        Number of rows whose mark has changed.
     """
     n = qp.q.size
+    changed = 0
     for k in range(active.size):
-        active[k] = 1.0 if k < qp.b.size or s[n + k] + rates[n + k] > 0.0 else 0.0
+        now = 1.0 if k < qp.b.size or s[n + k] + rates[n + k] > 0.0 else 0.0
+        changed += 1 if now != active[k] else 0
+        active[k] = now
+    return changed
 
 
 class ProjectionConstants(Record):

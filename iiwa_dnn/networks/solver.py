@@ -145,9 +145,9 @@ class DNNSolver:
 
         If `ProjectionNetwork` does not converge and no certificate is found, further attempts
         follow: from a state of zero on the program in scaled units, with a largest entry of the
-        cost of 1e3, and from there of 1, and in the program's units. If the largest entry of the
-        cost or of a row is below 1e-3 or above 1e3, the attempt in the program's units that comes
-        first is left out. Other networks have one attempt, in the program's units.
+        cost of 1e3, and from there of 1, and in the program's units. If the largest entry of a row
+        is below 1e-3 or above 1e3, or that of the cost below 1e-3, the attempt in the program's
+        units that comes first is left out. Other networks have one attempt, in the program's units.
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).

@@ -77,10 +77,23 @@ def times(rows: Matrix, x: Vector, out: Vector) -> None:
 
 
 @compiled
+def add_multiple(out: Vector, factor: float, values: Vector) -> None:
+    """Add a multiple of a vector (k,) to the first k entries of `out`."""
+    for k in range(values.size):
+        out[k] += factor * values[k]
+
+
+@compiled
 def add_row(out: Vector, factor: float, rows: Matrix, j: int) -> None:
     """Add a multiple of row j of a matrix (k, n) to the first n entries of `out`."""
-    for k in range(rows.shape[1]):
-        out[k] += factor * rows[j, k]
+    add_multiple(out, factor, rows[j])
+
+
+@compiled
+def weighted_sum(a: Vector, factor: float, b: Vector, out: Vector) -> None:
+    """Write the sum of a vector (k,) and a multiple of another one into `out` (k,)."""
+    for k in range(a.size):
+        out[k] = a[k] + factor * b[k]
 
 
 @compiled

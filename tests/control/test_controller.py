@@ -334,3 +334,20 @@ def test_a_loop_that_jitters_says_the_period_of_each_step(mode) -> None:
         t += period
     assert told.control_layout is laid_out
     assert np.linalg.norm(dh_pose(q)[0] - heart().at(t).position) < 5e-5
+
+
+@pytest.mark.parametrize("weight", [5e7, 1e9])
+def test_a_soft_task_of_any_weight_is_carried_out(weight: float) -> None:
+    """Limits are idle: numpy's solution of the normal equations is the answer."""
+    robot = d.load_robot("iiwa7")
+    q = robot.start_posture()
+    path = d.Heart(period=4.0).anchored(d.Configuration(robot, q))
+    costs, tasks = [d.CyclicMotion(weight=1.0, gain=10.2)], [d.PoseTask(weight=weight)]
+    controller = d.Controller(robot, d.Scheme(costs, tasks, [d.JointLimits()]), path, dt=1e-3)
+    for k in range(400):
+        command = controller.step(q, k * 1e-3)
+        assert command.solution.found, k
+        q = command.next_q
+        if k % 50 == 0:
+            known = np.linalg.solve(command.qp.P, -command.qp.q)
+            np.testing.assert_allclose(command.dq, known, rtol=0.0, atol=1e-6)

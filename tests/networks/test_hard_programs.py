@@ -15,6 +15,27 @@ def test_degenerate_vertices_converges() -> None:
         assert iiwa_dnn.solve_problem(problem).is_optimal(2e-9), seed
 
 
+def test_repeated_rows_beside_a_singular_cost_converge() -> None:
+    for seed in range(60):
+        rng = np.random.default_rng([61, seed])
+        qp, known = programs.repeated_rows(rng)
+        solution = DNNSolver().solve(qp)
+        assert solution.found, seed
+        change = 0.5 * (solution.x - known) @ qp.P @ (solution.x + known)
+        assert abs(change + qp.q @ (solution.x - known)) < 1e-7, seed
+
+
+def test_soft_tasks_of_any_weight_are_solved_within_few_steps() -> None:
+    for seed in range(200):
+        rng = np.random.default_rng([62, seed])
+        qp, known = programs.heavy_task(rng)
+        solution = DNNSolver().solve(qp)
+        assert solution.found, seed
+        assert solution.iterations < 60, seed
+        rounding = 2e-16 * np.linalg.cond(qp.P)
+        np.testing.assert_allclose(solution.x, known, atol=1e-7 + rounding, err_msg=str(seed))
+
+
 # The cost is 1e8 and more: gaps of 1e-8 and 1e-6 are one rounding.
 def test_a_large_cold_program_converges() -> None:
     qp, known = programs.strictly_convex(np.random.default_rng(44), 160, 1e2, spoilt=False)

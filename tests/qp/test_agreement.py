@@ -88,7 +88,7 @@ def way(program: Known, x: np.ndarray, step: np.ndarray) -> float:
 def right_answers(rng: np.random.Generator, program: Known) -> list[np.ndarray]:
     """The solution, the solver's answer, and points on the boundary of the optimal face."""
     free = null_space(program.fixed)
-    found = [program.x, solve_problem(program.qp, tol=1e-10).x]
+    found = [program.x, solve_problem(program.qp, tol=1e-10, sharpen=True).x]
     for _ in range(2 * (free.size > 0)):
         step = free @ rng.standard_normal(free.shape[1])
         found.append(program.x + way(program, program.x, step) * step)

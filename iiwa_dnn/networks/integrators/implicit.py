@@ -2,8 +2,9 @@ r"""Implicit Euler with growing steps: pseudo-transient continuation to the equi
 
 **The rules** of `solve`: first a linearly implicit step that is so long that it is Newton's step
 on the active set. A warm start in a control loop needs only that. If it does not halve the largest
-rate, a backward Euler step follows, ten times as long as the last one. Both may undo each other's
-work, so the end comes when some rounds have not halved the smallest of all rates.
+rate, a backward Euler step follows, ten times as long as the last one; its first direction is that
+of the refused step. Both may undo each other's work, so the end comes when some rounds have not
+halved the smallest of all rates.
 
 **The primal projection.** `advance` integrates the network as it is. `solve` leaves the projection
 of x out, with which a step would no longer be a convex problem
@@ -38,6 +39,7 @@ from iiwa_dnn.networks.integrators.implicit_steps import (
     linear_step,
 )
 from iiwa_dnn.networks.integrators.pseudo_transient import LONGEST
+from iiwa_dnn.networks.integrators.scaling import LARGE
 from iiwa_dnn.networks.projection import is_projection, mark_active, unprojected_rates
 from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, check_size, copied, qp_views
 from iiwa_dnn.qp.program import QP
@@ -50,6 +52,8 @@ GROWTH = 10.0
 STALLED = 15
 """Rounds in which the smallest rate so far is not halved, before the end: there is no solution, or
 rounding keeps the residuals above the tolerance."""
+UNKNOWN = -1.0
+"""Mark of a row where the condensed matrix is no factor for a linearly implicit step."""
 MAX_NEWTON = 50
 """Newton iterations of one backward Euler step of `solve`, half as many as one of `advance`."""
 
@@ -123,7 +127,7 @@ def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -
     matrix = Condensed(
         np.empty(rows), np.zeros(m + p), np.zeros((n, n)), np.empty((n, n)), np.empty(rows)
     )
-    new = np.empty(s.size)
+    new = s.copy()
     linear_solves = backward_euler(
         qp_views(data, n, m, p), s, step, new, 1e-12, 2 * MAX_NEWTON, matrix
     )
@@ -157,11 +161,13 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
     )
     now = np.empty(s.size)
     then = np.empty(s.size)
-    new = np.empty(s.size)
+    new = s.copy()
     step = SHORTEST
     linear_solves = 0
     time = 0.0
     stalled = 0
+    longest = _longest_step(qp)
+    matrix.active[:] = UNKNOWN
     rate = unprojected_rates(qp, s, now)
     smallest = np.inf
     while linear_solves < budget:
@@ -173,15 +179,15 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
             primal, dual, gap = kkt_point(qp, s, point)
             if within(primal, dual, gap, tol):
                 return linear_solves, time, primal, dual, gap
-        mark_active(qp, s, now, matrix.active)
+        changed = mark_active(qp, s, now, matrix.active)
         linear_solves += 1
-        if linear_step(qp, s, now, LONGEST, matrix, new):
+        if linear_step(qp, s, now, longest, matrix, changed == 0, new):
             new_rate = unprojected_rates(qp, new, then)
             if new_rate < 0.5 * rate:
                 copied(s, new)
                 copied(now, then)
                 rate = new_rate
-                time += LONGEST
+                time += longest
                 continue
         if stalled > 0:
             kkt_point(qp, s, point)
@@ -190,6 +196,7 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
         taken = backward_euler(
             qp, s, step, new, 0.1 * rate, min(MAX_NEWTON, budget - linear_solves), matrix
         )
+        matrix.active[:] = UNKNOWN
         linear_solves += max(taken, -taken)
         if taken < 0:
             step *= 0.1
@@ -197,10 +204,23 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
         time += step
         copied(s, new)
         rate = unprojected_rates(qp, s, now)
-        if step < LONGEST:
+        if step < longest:
             step *= GROWTH
     primal, dual, gap = kkt_point(qp, s, point)
     return linear_solves, time, primal, dual, gap
+
+
+@compiled
+def _longest_step(qp: QPViews) -> float:
+    """Return the longest implicit step [rho]: `LONGEST`, longer for a curvature above `LARGE`.
+
+    A step of length h leaves the fraction 1 / (1 + h / c) of an error of a multiplier, c being the
+    curvature of the cost along its row.
+    """
+    largest = LARGE
+    for i in range(qp.q.size):
+        largest = max(largest, qp.P[i, i])
+    return LONGEST * (largest / LARGE)
 
 
 @released

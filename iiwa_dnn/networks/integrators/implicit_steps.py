@@ -24,6 +24,10 @@ quadratic function, for every h. It has one minimiser, and a semismooth Newton i
 search reaches it; its matrix is K again. A bare Newton iteration on the KKT conditions can cycle
 when many bounds are active; this one cannot.
 
+A multiplier is known to the rounding of its slack times h. So within a step the slacks are changed
+along with x, and are not computed anew from it: gradient and multipliers then agree to their own
+rounding, and what the slacks lack is left to the next step.
+
 Source: R. T. Rockafellar, "Augmented Lagrangians and applications of the proximal point algorithm
 in convex programming", Math. Oper. Res. 1 (1976), for the same step of the plain saddle-point flow,
 which is his method of multipliers.
@@ -35,10 +39,19 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.projection import add_transposed, rows_times, write_slacks
-from iiwa_dnn.qp.dense import add_outer, cholesky_factor, factor_solve, times
-from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, copied, larger
+from iiwa_dnn.qp.dense import (
+    add_multiple,
+    add_outer,
+    cholesky_factor,
+    dot,
+    factor_solve,
+    largest_entry,
+    times,
+    weighted_sum,
+)
+from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, copied
 
-SLOPE = 0.3
+SLOPE = 0.5
 """Slope at which a line search may end, relative to that at its start."""
 
 
@@ -68,8 +81,7 @@ def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
     _count_rows(matrix, qp.A, 0)
     _count_rows(matrix, qp.G, qp.b.size)
     for i in range(n):
-        for k in range(i, n):
-            matrix.K[i, k] = qp.P[i, k] + step * matrix.gram[i, k]
+        weighted_sum(qp.P[i, i:], step, matrix.gram[i, i:], matrix.K[i, i:])
         bounds = matrix.active[first + i] + matrix.active[first + n + i]
         matrix.K[i, i] += 1.0 / step + step * bounds
 
@@ -89,11 +101,17 @@ def _count_rows(matrix: Condensed, rows: Matrix, first: int) -> None:
 
 @compiled
 def linear_step(
-    qp: QPViews, s: Vector, rates: Vector, step: float, matrix: Condensed, new: Vector
+    qp: QPViews,
+    s: Vector,
+    rates: Vector,
+    step: float,
+    matrix: Condensed,
+    is_factored: bool,
+    new: Vector,
 ) -> bool:
     """Write the state after a linearly implicit step [rho] into `new`, like `s` (3n + m + p,).
 
-    `rates` and `matrix.active` are those at s.
+    `rates` and `matrix.active` are those at s. If `is_factored`, `matrix.K` holds the factor.
 
     Returns:
         False if K is not positive definite to working precision; `new` is then meaningless.
@@ -101,13 +119,13 @@ def linear_step(
     n = qp.q.size
     active = matrix.active
     values = matrix.values
-    build_condensed(qp, step, matrix)
-    if not cholesky_factor(matrix.K):
-        return False
+    if not is_factored:
+        build_condensed(qp, step, matrix)
+        if not cholesky_factor(matrix.K):
+            return False
     # The changes of the multipliers while x stays, and what they leave of its rates.
     decay = step / (1.0 + step)
-    for i in range(n):
-        values[i] = rates[i]
+    copied(values, rates[:n])
     for k in range(active.size):
         new[n + k] = rates[n + k] * (step if active[k] != 0.0 else decay)
     add_transposed(qp, -1.0, new, values)
@@ -115,8 +133,7 @@ def linear_step(
     rows_times(qp, new, values)
     for k in range(active.size):
         new[n + k] += step * active[k] * values[k]
-    for k in range(s.size):
-        new[k] += s[k]
+    add_multiple(new, 1.0, s)
     return True
 
 
@@ -130,120 +147,139 @@ def backward_euler(
     max_newton: int,
     matrix: Condensed,
 ) -> int:
-    """Solve new = s + step F(new) for `new` (3n + m + p,), the iteration starting at s.
+    """Solve new = s + step F(new) for `new` (3n + m + p,).
 
-    After at least one round, it stops as soon as the gradient of the step's own minimisation is at
-    most `tol` or lost in rounding; at the latest after `max_newton` rounds.
+    The iteration starts at s, and first goes towards the x that `new` holds before, if that is
+    downhill. After at least one linear solve, it stops as soon as the gradient of the step's own
+    minimisation is at most `tol` or lost in rounding; at the latest after `max_newton` of them.
 
     Returns:
-        Newton iterations; minus their number if the last matrix was not positive definite to
-        working precision.
+        Linear solves; minus their number if the last matrix was not positive definite to working
+        precision.
     """
     n = qp.q.size
-    descent = np.empty(n)
+    cost = np.empty(n)
+    curved = np.empty(n)
     direction = np.empty(n)
+    descent = np.empty(n)
     slacks = np.empty(matrix.values.size)
+    weighted_sum(new[:n], -1.0, s[:n], direction)
     copied(new, s)
-    # A slack is known to its rounding, and its multiplier to `step` times that.
-    largest = 1.0
-    for i in range(n):
-        largest = max(largest, abs(new[i]))
-    floor = 1e-15 * step * largest
-    write_slacks(qp, new, slacks)
-    taken = 0
-    while taken < max_newton:
-        _multipliers(qp, s, step, slacks, new, matrix.active)
-        size = _descent(qp, s, step, new, descent)
-        if taken > 0 and not size > max(tol, floor):
-            break
-        build_condensed(qp, step, matrix)
-        taken += 1
-        if not cholesky_factor(matrix.K):
-            return -taken
-        factor_solve(matrix.K, descent, direction)
-        rows_times(qp, direction, matrix.values)
-        length = _line_search(qp, s, step, slacks, matrix.values, direction, descent)
-        for i in range(n):
-            new[i] += length * direction[i]
-        for k in range(slacks.size):
-            slacks[k] += length * matrix.values[k]
-    # Once more from x itself: long steps would magnify the rounding of the updates.
+    times(qp.P, new, cost)
+    add_multiple(cost, 1.0, qp.q)
     write_slacks(qp, new, slacks)
     _multipliers(qp, s, step, slacks, new, matrix.active)
+    size = _descent(qp, cost, new, descent)
+    is_known = dot(0.0, direction, descent) > 0.0
+    taken = 0
+    while taken < max_newton:
+        if not is_known:
+            build_condensed(qp, step, matrix)
+            taken += 1
+            if not cholesky_factor(matrix.K):
+                return -taken
+            factor_solve(matrix.K, descent, direction)
+        is_known = False
+        rows_times(qp, direction, matrix.values)
+        times(qp.P, direction, curved)
+        add_multiple(curved, 1.0 / step, direction)
+        length = _line_search(
+            s[n:],
+            step,
+            qp.b.size,
+            slacks,
+            matrix.values,
+            dot(0.0, direction, descent),
+            dot(0.0, direction, cost),
+            dot(0.0, direction, curved),
+        )
+        add_multiple(new, length, direction)
+        add_multiple(cost, length, curved)
+        add_multiple(slacks, length, matrix.values)
+        changed = _multipliers(qp, s, step, slacks, new, matrix.active)
+        last = size
+        size = _descent(qp, cost, new, descent)
+        if taken > 0 and (not size > tol or (changed == 0 and size > 0.5 * last)):
+            break
     return taken
 
 
 @compiled
 def _multipliers(
     qp: QPViews, s: Vector, step: float, slacks: Vector, new: Vector, active: Vector
-) -> None:
-    """Write the multipliers after a step to an x with these slacks; mark the active rows."""
+) -> int:
+    """Write the multipliers after a step to an x with these slacks; mark the active rows.
+
+    Returns:
+        Number of rows that became active or ceased to be.
+    """
     n = qp.q.size
     p = qp.b.size
     keep = 1.0 / (1.0 + step)
+    changed = 0
     for k in range(active.size):  # no branch: several at once
         moving = s[n + k] + step * slacks[k]
         kept = s[n + k] * keep
         is_active = k < p or moving > kept
-        active[k] = 1.0 if is_active else 0.0
+        now = 1.0 if is_active else 0.0
+        changed += 1 if now != active[k] else 0
+        active[k] = now
         new[n + k] = moving if is_active else kept
+    return changed
 
 
 @compiled
-def _descent(qp: QPViews, s: Vector, step: float, new: Vector, descent: Vector) -> float:
+def _descent(qp: QPViews, cost: Vector, new: Vector, descent: Vector) -> float:
     """Write minus the gradient (n,) of the function that a step minimizes at `new`.
+
+    `cost` (n,) is the gradient without the rows' part.
 
     Returns:
         The largest absolute entry.
     """
-    size = 0.0
-    times(qp.P, new, descent)
     for i in range(qp.q.size):
-        descent[i] = -(descent[i] + (qp.q[i] + (new[i] - s[i]) / step))
+        descent[i] = -cost[i]
     add_transposed(qp, -1.0, new, descent)
-    for i in range(qp.q.size):
-        size = larger(size, abs(descent[i]))
-    return size
+    return largest_entry(descent)
 
 
 @compiled
 def _line_search(
-    qp: QPViews,
-    s: Vector,
+    multipliers: Vector,
     step: float,
+    p: int,
     slacks: Vector,
     change: Vector,
-    direction: Vector,
-    descent: Vector,
+    fall: float,
+    rate: float,
+    curvature: float,
 ) -> float:
-    """Minimize the function of a step along the Newton `direction` (n,), to `SLOPE`.
+    """Minimize the function of a step along a direction that is downhill, to `SLOPE`.
 
     The derivative along the direction is continuous, increasing and piecewise linear, so a Newton
-    iteration kept inside a bracket ends at the root. `change` is [A; G; I; -I] direction, and
-    `descent` minus the gradient at the start.
+    iteration kept inside a bracket ends at the root.
+
+    Args:
+        multipliers: Multipliers at the start of the step, (p + m + 2n,).
+        step: Length of the step [rho].
+        p: Number of equality rows, the first ones.
+        slacks: Slacks of the rows, (p + m + 2n,).
+        change: Rates of the slacks, [A; G; I; -I] direction, (p + m + 2n,).
+        fall: Minus the slope at the start.
+        rate: Slope of the cost at the start.
+        curvature: Curvature of the cost along the direction.
 
     Returns:
         The step length.
     """
-    n = qp.q.size
-    p = qp.b.size
-    start = 0.0
-    shortest = 0.0
-    for i in range(n):
-        start -= descent[i] * direction[i]
-        shortest += direction[i] * direction[i]
-    # direction^T K direction is -start: that is the curvature where the active rows stay active.
-    slope, second = _slope(n, p, s, step, slacks, change, 0.0)
-    constant = start - slope
-    curvature = max(-start - second, shortest / step)
     low = 0.0
     high = np.inf
     length = 1.0
     for _ in range(50):
-        slope, second = _slope(n, p, s, step, slacks, change, length)
-        slope = slope + constant + length * curvature
+        slope, second = _slope(multipliers, step, p, slacks, change, length)
+        slope += rate + length * curvature
         second += curvature
-        if abs(slope) <= SLOPE * abs(start):
+        if abs(slope) <= SLOPE * fall:
             break
         if slope > 0.0:
             high = length
@@ -257,17 +293,17 @@ def _line_search(
 
 @compiled
 def _slope(
-    n: int, p: int, s: Vector, step: float, slacks: Vector, change: Vector, length: float
+    multipliers: Vector, step: float, p: int, slacks: Vector, change: Vector, length: float
 ) -> tuple[float, float]:
-    """Sum the inequalities' part of slope and curvature of a step's function at a step length."""
+    """Sum the rows' part of slope and curvature of a step's function at a step length."""
     keep = 1.0 / (1.0 + step)
     slope = 0.0
     second = 0.0
-    for k in range(p, slacks.size):
+    for k in range(slacks.size):
         rate = change[k]
-        moving = s[n + k] + step * (slacks[k] + length * rate)
-        kept = s[n + k] * keep
-        is_active = moving > kept  # no branch: several rows at once
+        moving = multipliers[k] + step * (slacks[k] + length * rate)
+        kept = multipliers[k] * keep
+        is_active = k < p or moving > kept  # no branch: several rows at once
         slope += (moving if is_active else kept) * rate
         second += step * rate * rate if is_active else 0.0
     return slope, second

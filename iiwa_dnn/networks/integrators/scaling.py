@@ -23,8 +23,8 @@ from iiwa_dnn.qp.residuals import SLIGHT, cost_size
 from iiwa_dnn.qp.solution import Status
 
 LARGE = 1e3
-"""Largest coefficient of a row or the cost above which a program is scaled first; the largest entry
-of a cost in scaled units, at first."""
+"""Largest coefficient of a row above which a program is scaled first, curvature above which implicit
+steps are longer, and largest entry of a cost in scaled units, at first."""
 STRICTER = 1e-4
 """Tolerance in scaled units over that in the program's own, where the residuals grow."""
 SQRT2 = math.sqrt(2.0)
@@ -36,9 +36,10 @@ ROUNDS = 10
 
 @compiled
 def is_ordinary(data: Vector, n: int, m: int, p: int) -> bool:
-    """Check that the cost and each row of `QP.data` has a largest entry from `SLIGHT` to `LARGE`.
+    """Check that each row of `QP.data` has a largest entry from `SLIGHT` to `LARGE`.
 
-    A cost of zeros is ordinary, and so is a row of zeros that holds. P is symmetric to the bit.
+    A row of zeros that holds is ordinary too. The cost has a largest entry from `SLIGHT` on, or
+    none but zeros; P is symmetric to the bit.
     """
     qp = qp_views(data, n, m, p)
     for j in range(p):
@@ -51,12 +52,13 @@ def is_ordinary(data: Vector, n: int, m: int, p: int) -> bool:
         for k in range(i):
             if qp.P[i, k] != qp.P[k, i]:
                 return False
-    return _is_ordinary_size(cost_size(qp), True)
+    cost = cost_size(qp)
+    return cost >= SLIGHT or cost == 0.0
 
 
 @compiled
 def _is_ordinary_size(largest: float, holds: bool) -> bool:
-    """Check the largest entry of a row or the cost, which `holds` where that is zero."""
+    """Check the largest entry of a row, which `holds` where that is zero."""
     return SLIGHT <= largest <= LARGE or (largest == 0.0 and holds)
 
 
