@@ -6,7 +6,7 @@ alike. The same residuals judge all answers.
 """
 
 import gc
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from time import thread_time
 from typing import Any, NamedTuple
 
@@ -18,7 +18,7 @@ from benchmarks.report import show
 from iiwa_dnn.qp import QP
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
-from tests.programs import strictly_convex
+from tests.programs import degenerate, heavy_task, repeated_rows, rows_for_bounds, strictly_convex
 
 FAILED = 1e-8
 """An answer whose largest residual is above this has failed, whatever its solver says."""
@@ -132,16 +132,60 @@ def sized(count: int, warm: bool) -> Iterator[dict[str, Any]]:
     """Measure programs of each size, and with few active rows and many."""
     for n in (4, 7, 14, 18, 33, 50, 100):
         for active in (max(1, n // 16), n // 2):
-            peers = (
-                [peer(True) for peer in PEERS[:4]] if warm else [Outside(name) for name in OUTSIDE]
-            )
-            rows = measure(Stream("", moving(n, active, count), warm), peers)
-            cells = {
-                row["name"]: "{median:.0f}, {p99:.0f}".format_map(row)
-                + f" ({row['failed']} failed)" * (row["failed"] > 0)
-                for row in rows
-            }
-            yield {"n": n, "active": active, **cells}
+            yield {"n": n, "active": active, **cells(moving(n, active, count), warm)}
+
+
+def cells(programs: list[QP], warm: bool) -> dict[str, str]:
+    """Measure programs; return median, p99 and number of failures by the name of the solver."""
+    peers = [peer(True) for peer in PEERS[:4]] if warm else [Outside(name) for name in OUTSIDE]
+    return {
+        row["name"]: "{median:.0f}, {p99:.0f}".format_map(row)
+        + f" ({row['failed']} failed)" * (row["failed"] > 0)
+        for row in measure(Stream("", programs, warm), peers)
+    }
+
+
+KINDS: dict[str, Callable[[np.random.Generator, int], QP]] = {
+    "random": lambda rng, n: strictly_convex(rng, n, 1e4, False)[0],
+    "bounds as rows, twice": lambda rng, n: pink_rows(rng, n),
+    "repeated rows": lambda rng, n: repeated_rows(rng, n)[0],
+    "degenerate": degenerate,
+    "weights to 1e9": lambda rng, n: heavy_task(rng, n)[0],
+}
+"""Programs by their kind, of n variables."""
+
+
+def pink_rows(rng: np.random.Generator, n: int) -> QP:
+    """Return a program as Pink writes it: two limits of each joint, as rows of plus and minus one.
+
+    The cost is that of three tasks of six rows each and a damping.
+    """
+    J = rng.standard_normal((min(n, 18), n))
+    P = J.T @ J + 0.01 * np.eye(n)
+    x = rng.standard_normal(n)
+    push = np.where(rng.random(n) < 0.25, rng.standard_normal(n), 0.0)
+    lb = np.where(push < 0.0, x, x - rng.exponential(size=n))
+    ub = np.where(push > 0.0, x, x + rng.exponential(size=n))
+    one = rows_for_bounds(QP(P, -(P @ x + push), lb=lb, ub=ub))
+    wider = one.h + rng.exponential(size=2 * n)
+    return QP(P, one.q, np.vstack([one.G, one.G]), np.concatenate([one.h, wider]))
+
+
+def report_kinds(count: int) -> None:
+    """Print a table by kind and variables: through qpsolvers, each from a cold start."""
+    title = f"Programs of each kind, {count} a line, each from a cold start: median, p99 [µs]"
+    columns = {name: f"{{{name}}}" for name in OUTSIDE}
+    rows = (
+        {"kind": kind, "n": n, **cells(made(kind, n, count), False)}
+        for kind in KINDS
+        for n in (7, 14, 24, 33, 40)
+    )
+    show(title, {"programs": "{kind}", "variables": "{n}", **columns}, rows)
+
+
+def made(kind: str, n: int, count: int) -> list[QP]:
+    """Make seeded programs of a kind, of n variables."""
+    return [KINDS[kind](np.random.default_rng([11, 0, n, k]), n) for k in range(count)]
 
 
 def measure(stream: Stream, peers: list[Peer]) -> list[dict[str, Any]]:
@@ -175,8 +219,14 @@ def solve_once(peer: Peer, qp: QP, given: Any) -> tuple[float, float]:
     if x is None:
         return seconds, np.inf
     sizes = np.array(qp.sizes)[[2, 1, 0]]
-    rest = [np.zeros(k) if y is None else y for y, k in zip(multipliers, sizes, strict=True)]
-    largest = qp.residuals(np.concatenate([x, *rest])).largest
+    rest = [
+        np.zeros(k) if y is None or not y.size else y
+        for y, k in zip(multipliers, sizes, strict=True)
+    ]
+    point = np.concatenate([x, *rest])
+    largest = qp.residuals(point).largest
+    if qp.accepts(point, FAILED):  # beside weights of 1e9 residuals of 1e-6 are rounding
+        return seconds, min(largest, FAILED)
     return seconds, largest if np.isfinite(largest) else np.inf
 
 
@@ -185,3 +235,4 @@ def report(steps: int) -> None:
     for stream in streams(steps):
         show(stream.name, _COLUMNS, measure(stream, [peer(stream.warm) for peer in PEERS]))
     report_sizes(max(20, steps // 50))
+    report_kinds(max(20, steps // 50))

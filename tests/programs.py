@@ -109,12 +109,14 @@ def unbounded(rng: np.random.Generator) -> QP:
     return QP(factor.T @ factor, q, G, G @ x + rng.exponential(size=m), A, A @ x, lb, ub)
 
 
-def degenerate(rng: np.random.Generator) -> QP:
+def degenerate(rng: np.random.Generator, n: int | None = None) -> QP:
     """A feasible program around a vertex of the box: no interior point, multipliers up to 3e4.
+
+    There are n variables, by default 2 to 30.
 
     The condition of P is up to 1e6, |q| up to 1e2; half of the programs have a doubled equality.
     """
-    n = int(rng.integers(2, 31))
+    n = int(rng.integers(2, 31)) if n is None else n
     P = _positive_definite(rng, n, 1e6 ** rng.uniform())
     x = np.sign(rng.standard_normal(n))
     A = rng.standard_normal((int(rng.integers(0, n // 2 + 1)), n))
@@ -166,13 +168,13 @@ def badly_scaled(rng: np.random.Generator) -> QP:
     return QP(P, q, e[:, None] * G, e * h, f[:, None] * A, f * (A @ x))
 
 
-def repeated_rows(rng: np.random.Generator) -> tuple[QP, Vector]:
-    """A program of 7 to 27 variables with a cost of half the rank, and a solution of it.
+def repeated_rows(rng: np.random.Generator, n: int | None = None) -> tuple[QP, Vector]:
+    """A program of n variables, by default 7 to 27, and a solution; its cost has half the rank.
 
     Each row stands there three times, twice times 1e-2 to 1e2; of the active ones a third has no
     multiplier.
     """
-    n = int(rng.integers(7, 28))
+    n = int(rng.integers(7, 28)) if n is None else n
     m = int(rng.integers(1, 2 * n + 1))
     factor = rng.standard_normal((n // 2, n))
     x = rng.standard_normal(n)
@@ -189,12 +191,14 @@ def repeated_rows(rng: np.random.Generator) -> tuple[QP, Vector]:
     return QP(factor.T @ factor, q, units[:, None] * np.tile(G, (3, 1)), units * h, lb=lb, ub=ub), x
 
 
-def heavy_task(rng: np.random.Generator) -> tuple[QP, Vector]:
+def heavy_task(rng: np.random.Generator, n: int | None = None) -> tuple[QP, Vector]:
     """A soft task of weight 2^7 to 2^30 beside a cost of 2^-6 to 1; its solution, bounds or rows.
+
+    There are n variables, by default 2 to 40.
 
     The numbers have so few digits that none is rounded: the solution is exact.
     """
-    n = int(rng.integers(2, 41))
+    n = int(rng.integers(2, 41)) if n is None else n
     x = rng.integers(-32, 33, n) / 16.0
     lb, ub, z_box = _bounds(rng, x, int(rng.integers(0, n // 3 + 1)))
     z_box = np.sign(z_box) * np.ceil(16.0 * np.abs(z_box)) / 16.0

@@ -228,7 +228,7 @@ def is_convex(P: Matrix, K: Matrix) -> bool:
     """
     largest = largest_entry(P.reshape(P.size))
     for i in range(P.shape[0]):
-        for k in range(P.shape[0]):
+        for k in range(i, P.shape[0]):
             K[i, k] = 0.5 * (P[i, k] + P[k, i])
     for i in range(P.shape[0]):
         K[i, i] += ROUNDING * P.shape[0] * largest + 1e-300
@@ -238,7 +238,7 @@ def is_convex(P: Matrix, K: Matrix) -> bool:
 @compiled
 def all_finite(data: Vector, start: int, end: int) -> bool:
     """Check that the entries data[start:end] of an array (k,) are finite."""
-    total = 0.0
-    for k in range(start, end):
-        total += data[k] * 0.0
-    return total == 0.0
+    wrong = 0
+    for k in range(start, end):  # no branch: several at once
+        wrong += 0 if abs(data[k]) < np.inf else 1
+    return wrong == 0

@@ -23,8 +23,8 @@ from iiwa_dnn.qp.residuals import SLIGHT, cost_size
 from iiwa_dnn.qp.solution import Status
 
 LARGE = 1e3
-"""Largest coefficient of a row above which a program is scaled first, curvature above which implicit
-steps are longer, and largest entry of a cost in scaled units, at first."""
+"""Largest coefficient of a row above which a program is scaled first, curvature above which steps
+are longer, and largest entry of a cost in scaled units, at first."""
 STRICTER = 1e-4
 """Tolerance in scaled units over that in the program's own, where the residuals grow."""
 SQRT2 = math.sqrt(2.0)
@@ -148,9 +148,9 @@ def balance(kkt: Matrix, limits: Vector, rounds: int, units: Vector) -> None:
         sizes[:] = 0.0
         for i in range(units.size):
             for k in range(i + 1):
-                entry = abs(kkt[i, k])
-                sizes[i] = max(sizes[i], entry * units[k])
-                sizes[k] = max(sizes[k], entry * units[i])
+                if kkt[i, k] != 0.0:
+                    sizes[i] = max(sizes[i], abs(kkt[i, k]) * units[k])
+                    sizes[k] = max(sizes[k], abs(kkt[i, k]) * units[i])
         for i in range(units.size):
             size = units[i] * sizes[i]
             limit = abs(limits[i])
