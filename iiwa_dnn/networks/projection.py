@@ -27,47 +27,79 @@ import numpy as np
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record
 from iiwa_dnn.networks.base import Network, kkt_product
-from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, largest_entry, times
+from iiwa_dnn.qp.dense import (
+    add_multiple,
+    add_outer,
+    add_row,
+    dot,
+    extreme_eigenvalues,
+    largest_entry,
+    times,
+)
 from iiwa_dnn.qp.layout import QPViews, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
 @compiled
-def rows_times(qp: QPViews, x: Vector, values: Vector) -> None:
+def write_spans(qp: QPViews, spans: Vector) -> None:
+    """Write where the entries of each row of G (m, n) begin, and then where they end, (2m,).
+
+    Rows of one entry, as limits written as rows have, then cost next to nothing.
+    """
+    n = qp.q.size
+    m = qp.h.size
+    for j in range(m):
+        begin = 0
+        end = n
+        while begin < n and qp.G[j, begin] == 0.0:
+            begin += 1
+        while end > begin and qp.G[j, end - 1] == 0.0:
+            end -= 1
+        spans[j] = begin
+        spans[m + j] = end
+
+
+@compiled
+def rows_times(qp: QPViews, spans: Vector, x: Vector, values: Vector) -> None:
     """Write [A; G; I; -I] x into `values`, of size p + m + 2n."""
     n = qp.q.size
+    m = qp.h.size
     p = qp.b.size
-    first = p + qp.h.size
+    first = p + m
     times(qp.A, x, values)
-    times(qp.G, x, values[p:])
+    for j in range(m):
+        begin = int(spans[j])
+        values[p + j] = dot(0.0, qp.G[j, begin : int(spans[m + j])], x[begin:])
     for i in range(n):
         values[first + i] = x[i]
         values[first + n + i] = -x[i]
 
 
 @compiled
-def add_transposed(qp: QPViews, factor: float, s: Vector, out: Vector) -> None:
+def add_transposed(qp: QPViews, spans: Vector, factor: float, s: Vector, out: Vector) -> None:
     """Add factor (A^T y + G^T z + u - l) of a state s to the first n entries of `out` (size,)."""
     n = qp.q.size
+    m = qp.h.size
     p = qp.b.size
     at_z = n + p
-    at_u = at_z + qp.h.size
+    at_u = at_z + m
     for i in range(n):
         out[i] += factor * (s[at_u + i] - s[at_u + n + i])
     for j in range(p):
         add_row(out, factor * s[n + j], qp.A, j)
-    for j in range(qp.h.size):
+    for j in range(m):
         if s[at_z + j] != 0.0:
-            add_row(out, factor * s[at_z + j], qp.G, j)
+            begin = int(spans[j])
+            add_multiple(out[begin:], factor * s[at_z + j], qp.G[j, begin : int(spans[m + j])])
 
 
 @compiled
-def write_slacks(qp: QPViews, x: Vector, slacks: Vector) -> None:
+def write_slacks(qp: QPViews, spans: Vector, x: Vector, slacks: Vector) -> None:
     """Write A x - b, G x - h, x - ub and lb - x into `slacks` (p + m + 2n)."""
     n = qp.q.size
     p = qp.b.size
     first = p + qp.h.size
-    rows_times(qp, x, slacks)
+    rows_times(qp, spans, x, slacks)
     for j in range(p):
         slacks[j] -= qp.b[j]
     for j in range(qp.h.size):
@@ -78,8 +110,10 @@ def write_slacks(qp: QPViews, x: Vector, slacks: Vector) -> None:
 
 
 @compiled
-def unprojected_rates(qp: QPViews, s: Vector, rates: Vector) -> float:
+def unprojected_rates(qp: QPViews, spans: Vector, s: Vector, rates: Vector) -> float:
     """Write rho ds/dt at a state, both (size,), without the projection of x on its bounds.
+
+    `spans` (2m,) are those of `write_spans`.
 
     Returns:
         The largest absolute rate: zero exactly at a KKT point, NaN if one is NaN.
@@ -88,8 +122,8 @@ def unprojected_rates(qp: QPViews, s: Vector, rates: Vector) -> float:
     times(qp.P, s, rates)
     for i in range(n):
         rates[i] = -qp.q[i] - rates[i]
-    add_transposed(qp, -1.0, s, rates)
-    write_slacks(qp, s, rates[n:])
+    add_transposed(qp, spans, -1.0, s, rates)
+    write_slacks(qp, spans, s, rates[n:])
     for k in range(n + qp.b.size, s.size):
         if not s[k] + rates[k] > 0.0:  # the multiplier decays
             rates[k] = -s[k]
@@ -124,7 +158,9 @@ class ProjectionConstants(Record):
 @compiled
 def projection_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
     """Write rho ds/dt of `ProjectionNetwork` at a state s, both (size,), into `rates`."""
-    unprojected_rates(qp, state, rates)
+    spans = np.empty(2 * qp.h.size)
+    write_spans(qp, spans)
+    unprojected_rates(qp, spans, state, rates)
     if ProjectionConstants.of(constants).projects:
         for i in range(qp.q.size):
             rates[i] = min(max(state[i] + rates[i], qp.lb[i]), qp.ub[i]) - state[i]
@@ -138,9 +174,9 @@ def stable_step(qp: QPViews, active: Vector) -> float:
     first = p + qp.h.size
     K = np.zeros((n, n))
     for j in range(p):
-        add_outer(K, active[j], qp.A, j)
+        add_outer(K, active[j], qp.A[j], 0)
     for j in range(qp.h.size):
-        add_outer(K, active[p + j], qp.G, j)
+        add_outer(K, active[p + j], qp.G[j], 0)
     for i in range(n):
         K[i, i] += active[first + i] + active[first + n + i]
         for k in range(i):

@@ -97,12 +97,13 @@ def weighted_sum(a: Vector, factor: float, b: Vector, out: Vector) -> None:
 
 
 @compiled
-def add_outer(out: Matrix, factor: float, rows: Matrix, j: int) -> None:
-    """Add factor v v^T to the upper half of `out` (n, n), v being row j of a matrix (k, n)."""
-    for i in range(rows.shape[1]):
-        scaled = factor * rows[j, i]
-        for k in range(i, rows.shape[1]):
-            out[i, k] += scaled * rows[j, k]
+def add_outer(out: Matrix, factor: float, row: Vector, start: int) -> None:
+    """Add factor v v^T to the upper half of `out` (n, n).
+
+    The entries of v are 0 but for a row (k,) that stands at `start`.
+    """
+    for i in range(row.size):
+        add_multiple(out[start + i, start + i :], factor * row[i], row[i:])
 
 
 @compiled

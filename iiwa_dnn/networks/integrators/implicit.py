@@ -40,7 +40,7 @@ from iiwa_dnn.networks.integrators.implicit_steps import (
 )
 from iiwa_dnn.networks.integrators.pseudo_transient import LONGEST
 from iiwa_dnn.networks.integrators.scaling import LARGE
-from iiwa_dnn.networks.projection import is_projection, mark_active, unprojected_rates
+from iiwa_dnn.networks.projection import is_projection, mark_active, unprojected_rates, write_spans
 from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, check_size, copied, qp_views
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import is_small_enough, kkt_point, within
@@ -124,13 +124,14 @@ def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -
         Number of linear solves; 0, with a state of NaN, if a matrix is not positive definite.
     """
     rows = s.size - n
+    qp = qp_views(data, n, m, p)
+    spans = np.empty(2 * m)
+    write_spans(qp, spans)
     matrix = Condensed(
-        np.empty(rows), np.zeros(m + p), np.zeros((n, n)), np.empty((n, n)), np.empty(rows)
+        np.empty(rows), np.zeros(m + p), np.zeros((n, n)), np.empty((n, n)), np.empty(rows), spans
     )
     new = s.copy()
-    linear_solves = backward_euler(
-        qp_views(data, n, m, p), s, step, new, 1e-12, 2 * MAX_NEWTON, matrix
-    )
+    linear_solves = backward_euler(qp, s, step, new, 1e-12, 2 * MAX_NEWTON, matrix)
     if linear_solves < 0:
         new[:] = np.nan
     copied(s, new)
@@ -156,8 +157,15 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
     """
     n = qp.q.size
     rows = s.size - n
+    spans = np.empty(2 * qp.h.size)
+    write_spans(qp, spans)
     matrix = Condensed(
-        np.empty(rows), np.zeros(rows - 2 * n), np.zeros((n, n)), np.empty((n, n)), np.empty(rows)
+        np.empty(rows),
+        np.zeros(rows - 2 * n),
+        np.zeros((n, n)),
+        np.empty((n, n)),
+        np.empty(rows),
+        spans,
     )
     now = np.empty(s.size)
     then = np.empty(s.size)
@@ -168,7 +176,7 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
     stalled = 0
     longest = _longest_step(qp)
     matrix.active[:] = UNKNOWN
-    rate = unprojected_rates(qp, s, now)
+    rate = unprojected_rates(qp, spans, s, now)
     smallest = np.inf
     while linear_solves < budget:
         stalled += 1
@@ -182,7 +190,7 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
         changed = mark_active(qp, s, now, matrix.active)
         linear_solves += 1
         if linear_step(qp, s, now, longest, matrix, changed == 0, new):
-            new_rate = unprojected_rates(qp, new, then)
+            new_rate = unprojected_rates(qp, spans, new, then)
             if new_rate < 0.5 * rate:
                 copied(s, new)
                 copied(now, then)
@@ -203,7 +211,7 @@ def solve_within(qp: QPViews, tol: float, budget: int, s: Vector, point: Vector)
             continue
         time += step
         copied(s, new)
-        rate = unprojected_rates(qp, s, now)
+        rate = unprojected_rates(qp, spans, s, now)
         if step < longest:
             step *= GROWTH
     primal, dual, gap = kkt_point(qp, s, point)

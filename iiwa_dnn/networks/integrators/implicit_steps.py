@@ -64,6 +64,7 @@ class Condensed(NamedTuple):
         gram: Products of the counted rows, (n, n).
         K: Upper half of the condensed matrix, or its factor, (n, n).
         values: Values of all rows, (R,).
+        spans: Where the entries of the rows of G are (`write_spans`), (2m,).
     """
 
     active: Vector
@@ -71,6 +72,7 @@ class Condensed(NamedTuple):
     gram: Matrix
     K: Matrix
     values: Vector
+    spans: Vector
 
 
 @compiled
@@ -78,8 +80,13 @@ def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
     """Write the condensed matrix of the active set for a step [rho] into `matrix.K`."""
     n = qp.q.size
     first = matrix.counted.size
-    _count_rows(matrix, qp.A, 0)
-    _count_rows(matrix, qp.G, qp.b.size)
+    p = qp.b.size
+    m = qp.h.size
+    for j in range(p):
+        _count_row(matrix, j, qp.A[j], 0)
+    for j in range(m):
+        begin = int(matrix.spans[j])
+        _count_row(matrix, p + j, qp.G[j, begin : int(matrix.spans[m + j])], begin)
     for i in range(n):
         weighted_sum(qp.P[i, i:], step, matrix.gram[i, i:], matrix.K[i, i:])
         bounds = matrix.active[first + i] + matrix.active[first + n + i]
@@ -87,16 +94,15 @@ def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
 
 
 @compiled
-def _count_rows(matrix: Condensed, rows: Matrix, first: int) -> None:
-    """Add the products of rows (k, n) that became active to `gram`; subtract those that left.
+def _count_row(matrix: Condensed, j: int, row: Vector, start: int) -> None:
+    """Add the product of row j of [A; G] to `gram` if it became active; subtract it if it left.
 
-    `first` is the index of the first row in `active`. Few rows change between two steps.
+    Its entries (k,) stand at `start`. Few rows change between two steps.
     """
-    for j in range(rows.shape[0]):
-        change = matrix.active[first + j] - matrix.counted[first + j]
-        if change != 0.0:
-            add_outer(matrix.gram, change, rows, j)
-            matrix.counted[first + j] += change
+    change = matrix.active[j] - matrix.counted[j]
+    if change != 0.0:
+        add_outer(matrix.gram, change, row, start)
+        matrix.counted[j] += change
 
 
 @compiled
@@ -128,9 +134,9 @@ def linear_step(
     copied(values, rates[:n])
     for k in range(active.size):
         new[n + k] = rates[n + k] * (step if active[k] != 0.0 else decay)
-    add_transposed(qp, -1.0, new, values)
+    add_transposed(qp, matrix.spans, -1.0, new, values)
     factor_solve(matrix.K, values, new)
-    rows_times(qp, new, values)
+    rows_times(qp, matrix.spans, new, values)
     for k in range(active.size):
         new[n + k] += step * active[k] * values[k]
     add_multiple(new, 1.0, s)
@@ -167,9 +173,9 @@ def backward_euler(
     copied(new, s)
     times(qp.P, new, cost)
     add_multiple(cost, 1.0, qp.q)
-    write_slacks(qp, new, slacks)
+    write_slacks(qp, matrix.spans, new, slacks)
     _multipliers(qp, s, step, slacks, new, matrix.active)
-    size = _descent(qp, cost, new, descent)
+    size = _descent(qp, matrix.spans, cost, new, descent)
     is_known = dot(0.0, direction, descent) > 0.0
     taken = 0
     while taken < max_newton:
@@ -180,7 +186,7 @@ def backward_euler(
                 return -taken
             factor_solve(matrix.K, descent, direction)
         is_known = False
-        rows_times(qp, direction, matrix.values)
+        rows_times(qp, matrix.spans, direction, matrix.values)
         times(qp.P, direction, curved)
         add_multiple(curved, 1.0 / step, direction)
         length = _line_search(
@@ -198,7 +204,7 @@ def backward_euler(
         add_multiple(slacks, length, matrix.values)
         changed = _multipliers(qp, s, step, slacks, new, matrix.active)
         last = size
-        size = _descent(qp, cost, new, descent)
+        size = _descent(qp, matrix.spans, cost, new, descent)
         if taken > 0 and (not size > tol or (changed == 0 and size > 0.5 * last)):
             break
     return taken
@@ -229,7 +235,7 @@ def _multipliers(
 
 
 @compiled
-def _descent(qp: QPViews, cost: Vector, new: Vector, descent: Vector) -> float:
+def _descent(qp: QPViews, spans: Vector, cost: Vector, new: Vector, descent: Vector) -> float:
     """Write minus the gradient (n,) of the function that a step minimizes at `new`.
 
     `cost` (n,) is the gradient without the rows' part.
@@ -239,7 +245,7 @@ def _descent(qp: QPViews, cost: Vector, new: Vector, descent: Vector) -> float:
     """
     for i in range(qp.q.size):
         descent[i] = -cost[i]
-    add_transposed(qp, -1.0, new, descent)
+    add_transposed(qp, spans, -1.0, new, descent)
     return largest_entry(descent)
 
 
