@@ -15,12 +15,15 @@ An answer x is judged beside the point :math:`[x_r | y | z | z_{box}]` of a refe
 
 all rows scaled to length 1, where + selects rows and bounds with a multiplier at the reference.
 
-w is 1, or the largest coefficient of the row or the cost where all of them are slight. In the null
+w is 1, or the largest coefficient of the row or the cost where that is not near 1. In the null
 space of S the cost is linear and no row with a multiplier leaves its limit, so a step along it
 leaves the objective as it is: where it is feasible, it leads to another solution. Where there is
 only one, and each active row has a multiplier, S is definite and (c) the largest entry of x - x_r.
-Where an answer differs from the reference, the reference is polished first, as OSQP does it: x_r is
-then that of its active rows.
+
+A reference with the residual r is up to about :math:`r / \lambda` from the solution along an
+eigenvector of S with the eigenvalue :math:`\lambda`: it says nothing of x where ten times that
+exceeds the tolerance. To make r small, a reference is polished as OSQP does it: x_r is then that of
+its active rows.
 """
 
 from __future__ import annotations
@@ -30,8 +33,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from iiwa_dnn.qp.dense import ROUNDING
 from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector
-from iiwa_dnn.qp.program import QP, field_slices
+from iiwa_dnn.qp.program import field_slices
 
 USUAL = 1e3
 """Largest coefficient of a cost or a row, or its inverse, up to which it is not scaled."""
@@ -40,8 +44,9 @@ _ACTIVE = 1e-6
 """Multiplier above which a row or bound is active, relative to the largest one if that is above
 1."""
 
-_FLAT = 1e-8
-"""Eigenvalue of S, relative to the largest, up to which x is free along its eigenvector."""
+_FLAT = ROUNDING
+"""Eigenvalue of S, relative to n times the largest, up to which it is rounding: x is free along its
+eigenvector."""
 
 
 class Agreement(NamedTuple):
@@ -53,12 +58,13 @@ class Agreement(NamedTuple):
         objective_gap: Difference in the objective, relative to its terms, (N, k).
         feasibility_gap: Largest violation of a row or bound, relative to its terms, (N, k).
         reference_residual: Largest KKT residual of each reference, the one that judged or was asked
-            last, (N, k); inf without an answer.
-        judge: 0 where the reference that was asked judged, 1 where the second one did, -1 where
-            neither has an answer that is believed, (N, k).
+            last, (N, k); inf without an answer, or where its answer decides nothing; 0 where a
+            proof judged.
+        judge: 0 where the reference that was asked judged, 1 where the second one did, 2 where a
+            proof did in their place, -1 where nobody could, (N, k).
 
-    Of a proof, the solution gap is the bound of `Proof`, the objective gap the largest that this
-    bound allows, to first order, and the residual 0; without a bound, gap and residual are inf.
+    Of the reference "proof", the solution gap is the bound of `Proof` and the objective gap the
+    largest that this bound allows, to first order; without a bound, gap and residual are inf.
     """
 
     solution_gap: Matrix
@@ -98,16 +104,44 @@ def units(coefficients: Matrix) -> Matrix:
     return np.where(usual, 1.0, np.exp2(np.floor(np.log2(largest))))
 
 
-def normalised(programs: Matrix, sizes: Sizes) -> Matrix:
-    """Divide the cost and the rows of N programs, one `QP.data` a row, by their `units`."""
+def normalised(programs: Matrix, sizes: Sizes) -> tuple[Matrix, Matrix]:
+    """Divide the cost and the rows of N programs by their `units`, and multiply their variables.
+
+    A variable is multiplied by the unit of its own curvature's root, relative to the largest one.
+
+    Args:
+        programs: One `QP.data` a row.
+        sizes: Their `QP.sizes`.
+
+    Returns:
+        The programs, one `QP.data` a row, and the factors from their variables to those that were
+        given, (N, n).
+    """
     n = sizes[0]
     block = stacked(programs, sizes)
+    curvature = np.abs(np.diagonal(block.P, axis1=1, axis2=2))
+    largest = curvature.max(axis=1, keepdims=True, initial=1e-300)
+    factors = 1.0 / units(np.sqrt(curvature / largest)[:, :, np.newaxis])
+    if (factors != 1.0).any():
+        columns = factors[:, np.newaxis]
+        parts = [
+            block.P * columns * columns.swapaxes(1, 2),
+            block.q * factors,
+            block.G * columns,
+            block.h,
+            block.A * columns,
+            block.b,
+            block.lb / factors,
+            block.ub / factors,
+        ]
+        programs = np.concatenate([part.reshape(len(factors), -1) for part in parts], axis=1)
+        block = stacked(programs, sizes)
     cost = units(programs[:, np.newaxis, : n * n + n])
     G = units(block.G)
     A = units(block.A)
     bounds = np.ones((len(programs), 2 * n))
     divisors = [cost.repeat(n * n + n, 1), G.repeat(n, 1), G, A.repeat(n, 1), A, bounds]
-    return programs / np.concatenate(divisors, axis=1)
+    return programs / np.concatenate(divisors, axis=1), factors
 
 
 @np.errstate(invalid="ignore")
@@ -121,7 +155,7 @@ def feasibility_gaps(block: QPViews, x: Matrix) -> Vector:
     limits = np.concatenate([block.b, -block.b, block.h, block.ub, -block.lb], axis=1)
     terms = np.einsum("kji,ki->kj", np.abs(rows), np.abs(x)) + np.abs(limits)
     excess = np.einsum("kji,ki->kj", rows, x) - limits
-    relative = excess / np.maximum(np.minimum(units(rows), 1.0), terms)
+    relative = excess / np.maximum(units(rows), terms)
     return np.asarray(np.where(limits < np.inf, relative, 0.0).max(axis=1, initial=0.0))
 
 
@@ -132,65 +166,91 @@ def objective_gaps(block: QPViews, x: Matrix, steps: Matrix) -> Matrix:
     Returns:
         The differences, (N, k), each divided by the largest of three numbers at x: the sum of the
         absolute quadratic terms, that of the linear ones, and the unit (`units`) of the largest
-        coefficient, at most 1. The third keeps the quotient finite at x = 0.
+        coefficient. The third keeps the quotient finite at x = 0.
     """
     size = np.abs(x)
     curved = 0.5 * np.einsum("ki,kij,kj->k", size, np.abs(block.P), size)
     linear = (np.abs(block.q) * size).sum(axis=1)
     coefficients = np.maximum(np.abs(block.P).max(axis=2, initial=0.0), np.abs(block.q))
-    terms = np.max([curved, linear, np.minimum(units(coefficients), 1.0)], axis=0)
+    terms = np.max([curved, linear, units(coefficients)], axis=0)
     # By the gradient halfway: subtracting two objectives would cancel.
     halfway = x[:, np.newaxis] - 0.5 * steps
     gradient = 0.5 * halfway @ (block.P + block.P.swapaxes(1, 2)) + block.q[:, np.newaxis]
     return np.asarray(np.abs((gradient * steps).sum(axis=2)) / terms[:, np.newaxis])
 
 
-def solution_gap(qp: QP, reference: Vector, x: Vector, tolerance: float) -> float:
-    """Compute the largest absolute entry of x - x_r in the directions in which x is unique.
-
-    If no entry of x - x_r exceeds the tolerance, all directions count.
+@np.errstate(divide="ignore", invalid="ignore")
+def unique_steps(
+    block: QPViews, references: Matrix, steps: Matrix, accuracy: Vector
+) -> tuple[Matrix, NDArray[np.bool_]]:
+    """Project the differences x - x_r on the directions in which x is unique.
 
     Args:
-        qp: The program, normalised.
-        reference: Its point by the reference, (2 n + m + p,).
-        x: The answer, (n,).
-        tolerance: Largest gap that counts as agreement.
-    """
-    n = x.size
-    if not np.abs(x - reference[:n]).max() > tolerance:
-        return float(np.abs(x - reference[:n]).max())
-    point, directions = _polished(qp, reference)
-    step = x - point[:n]
-    eigenvalues, vectors = np.linalg.eigh(qp.P + directions.T @ directions)
-    free = vectors[:, eigenvalues <= _FLAT * eigenvalues[-1]]
-    return float(np.abs(step - free @ (free.T @ step)).max())
-
-
-def _polished(qp: QP, reference: Vector) -> tuple[Vector, Matrix]:
-    """Solve the KKT system of the rows that are active at a reference's point.
-
-    A point with a KKT residual of 1e-10 may be 1e-6 from the solution.
+        block: N programs, normalised.
+        references: Their points by a reference, (N, 2 n + m + p).
+        steps: The differences x - x_r, (N, n); x is normalised too.
+        accuracy: Least eigenvalue of S along whose eigenvector each reference is accurate, (N,).
 
     Returns:
-        The point, the reference's own if no better, (2 n + m + p,); and the active rows, scaled to
-        length 1, (k, n).
+        The differences in those directions, (N, n), and whether the reference is accurate in all
+        of them, (N,).
     """
-    n, m, p = qp.sizes
-    rows = np.vstack([qp.A, qp.G, np.eye(n)])
-    limits = np.concatenate([qp.b, qp.h, np.where(reference[-n:] > 0.0, qp.ub, qp.lb)])
-    length = np.linalg.norm(rows, axis=1)
-    force = length * np.abs(reference[n:])
-    active = force > _ACTIVE * max(1.0, force[p:].max())
-    active[:p] = length[:p] > 0.0
-    directions = rows[active] / length[active, np.newaxis]
-    gradient = qp.P @ reference[:n] + qp.q + reference[n:] @ rows
-    excess = (rows[active] @ reference[:n] - limits[active]) / length[active]
-    k = len(directions)
-    kkt = np.block([[qp.P, directions.T], [directions, np.zeros((k, k))]])
-    step = np.linalg.lstsq(kkt, np.concatenate([gradient, excess]))[0]
-    point = reference.copy()
-    point[:n] -= step[:n]
-    point[n:][active] -= step[n:] / length[active]
-    point[n + p : n + p + m].clip(0.0, out=point[n + p : n + p + m])
-    better = qp.residuals(point).largest < qp.residuals(reference).largest
-    return point if better else reference, directions
+    n = steps.shape[1]
+    _, directions = _active_rows(block, references)
+    eigenvalues, vectors = np.linalg.eigh(block.P + directions.swapaxes(1, 2) @ directions)
+    fixed = eigenvalues > _FLAT * n * eigenvalues[:, -1:]
+    along = (vectors.swapaxes(1, 2) @ steps[:, :, np.newaxis])[:, :, 0]
+    unique: Matrix = (vectors @ np.where(fixed, along, 0.0)[:, :, np.newaxis])[:, :, 0]
+    is_off = fixed & (eigenvalues < accuracy[:, np.newaxis])
+    return unique, np.asarray(~is_off.any(axis=1))
+
+
+@np.errstate(divide="ignore", invalid="ignore")
+def _active_rows(block: QPViews, references: Matrix) -> tuple[Matrix, Matrix]:
+    """Find the rows that are active at points of a reference, (N, 2 n + m + p).
+
+    Returns:
+        The lengths of all rows [A; G; I], (N, k), and the rows, those that are active of length 1
+        and the others 0, (N, k, n).
+    """
+    p = block.b.shape[1]
+    eye = np.broadcast_to(np.eye(block.P.shape[1]), block.P.shape)
+    rows = np.concatenate([block.A, block.G, eye], axis=1)
+    length = np.linalg.norm(rows, axis=2)
+    force = length * np.abs(references[:, eye.shape[1] :])
+    active = force > _ACTIVE * np.maximum(force[:, p:].max(axis=1, keepdims=True, initial=0.0), 1.0)
+    active[:, :p] = length[:, :p] > 0.0
+    return length, np.where(active[:, :, np.newaxis], rows / length[:, :, np.newaxis], 0.0)
+
+
+def polished(block: QPViews, references: Matrix) -> Matrix:
+    """Solve the KKT systems of the rows that are active at points of a reference.
+
+    Args:
+        block: N programs.
+        references: Points with small residuals, (N, 2 n + m + p).
+
+    Returns:
+        The points, (N, 2 n + m + p), with the multipliers of inequality rows at least 0.
+    """
+    n = block.P.shape[1]
+    p = block.b.shape[1]
+    x = references[:, :n]
+    length, directions = _active_rows(block, references)
+    bounds = np.where(references[:, -n:] > 0.0, block.ub, block.lb)
+    limits = np.concatenate([block.b, block.h, bounds], axis=1)
+    points = references.copy()
+    for i, rows in enumerate(directions):
+        active = rows.any(axis=1)
+        scale = length[i, active]
+        C = rows[active]
+        forces = points[i, n:][active] * scale
+        gradient = block.P[i] @ x[i] + block.q[i] + forces @ C
+        excess = C @ x[i] - limits[i, active] / scale
+        K = np.block([[block.P[i], C.T], [C, np.zeros((len(C), len(C)))]])
+        step = np.linalg.lstsq(K, np.concatenate([gradient, excess]))[0]
+        points[i, n:] = 0.0
+        points[i, n:][active] = (forces - step[n:]) / scale
+        points[i, :n] -= step[:n]
+    np.maximum(points[:, n + p : -n], 0.0, out=points[:, n + p : -n])
+    return points

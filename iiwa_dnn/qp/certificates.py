@@ -142,7 +142,7 @@ def infeasibility_radius(qp: QPViews, multipliers: Vector) -> float:
     finite = np.isfinite(multipliers).all() and np.isfinite(limits[used]).all()
     if not finite or (multipliers[p:] < 0.0).any():
         return 0.0
-    w, rounding = _products(np.vstack([qp.A, qp.G]).T, multipliers)
+    w, rounding = products(np.vstack([qp.A, qp.G]).T, multipliers)
     carried = _is_carried(qp, w)
     taking_part = carried & (w != 0.0)
     bounds = np.where(w > 0.0, qp.lb, qp.ub)[taking_part]
@@ -165,8 +165,8 @@ def unboundedness_radius(qp: QPViews, direction: Vector) -> float:
     if not np.isfinite(direction).all():
         return 0.0
     # Twice the symmetric part: of the smallest numbers halves would be rounded.
-    curved, of_cost = _products(np.hstack([qp.P, qp.P.T]), np.tile(direction, 2))
-    along, of_rows = _products(np.vstack([qp.A, qp.G[np.isfinite(qp.h)]]), direction)
+    curved, of_cost = products(np.hstack([qp.P, qp.P.T]), np.tile(direction, 2))
+    along, of_rows = products(np.vstack([qp.A, qp.G[np.isfinite(qp.h)]]), direction)
     # Below zero, an inequality's row is no residual.
     along[: qp.b.size] = np.abs(along[: qp.b.size])
     wrong = 0.5 * (np.abs(curved) + of_cost).sum() + np.maximum(along + of_rows, 0.0).sum()
@@ -180,14 +180,14 @@ def _radius(factors: Vector, weights: Vector, residual: float) -> float:
     Returns:
         The radius: inf if the residual is 0; 0 if the product is not below 0 for certain.
     """
-    total, rounding = _products(factors[np.newaxis], weights)
+    total, rounding = products(factors[np.newaxis], weights)
     value = -float(total[0] + rounding[0])
     if not value > 0.0:
         return 0.0
     return value / residual if residual != 0.0 else np.inf
 
 
-def _products(rows: Matrix, vector: Vector) -> tuple[Vector, Vector]:
+def products(rows: Matrix, vector: Vector) -> tuple[Vector, Vector]:
     """Compute the product of rows (k, n) and a vector (n,), and bound its rounding, (k,) each."""
     products = np.empty(len(rows))
     rounding = np.empty(len(rows))

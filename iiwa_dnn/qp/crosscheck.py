@@ -2,31 +2,37 @@
 
 A reference gets the program, in units near 1, and nothing of the network's state, and is believed
 only where its own KKT residual is small. If the one that was asked has no such answer, a second one
-is asked, and the agreement says which of both judged. "proof" stands among the references for
-`iiwa_dnn.qp.proof`, which asks no other solver.
+is asked. A proof judges instead (`iiwa_dnn.qp.proof`) where neither is believed, where an answer
+disagrees, and where the program is so flat that a point with the reference's residual may be far
+from the solution. Where nothing is proven, as of programs with several solutions, a reference
+blames only if its residual says that it is near one. The agreement names the judge, or nobody.
+
+"proof" stands among the references for a proof of the answer itself, which asks no solver.
 """
 
 from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
+from iiwa_dnn.errors import IiwaDnnError, InvalidInputError
 from iiwa_dnn.qp.agreement import (
     Agreement,
     feasibility_gaps,
     normalised,
     objective_gaps,
-    solution_gap,
+    polished,
     stacked,
+    unique_steps,
 )
-from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size
+from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.proof import prove_point
+from iiwa_dnn.qp.proof import enclose_solution, prove_point
 from iiwa_dnn.qp.reference_solvers import reference_solver
 
 PROOF = "proof"
@@ -35,10 +41,70 @@ PROOF = "proof"
 SECOND = {"proxqp": "osqp", PROOF: None}
 """Solvers that are asked where another one has no answer; "proxqp" for all others."""
 
+NOBODY = -1
+"""Code of the judge where an answer is neither agreed with nor blamed."""
+
+MARGIN = 10.0
+"""Error of a reference that its residual lets expect, in units of that residual over an eigenvalue
+of `iiwa_dnn.qp.agreement`."""
+
+BY_PROOF = 2
+"""Code of the judge where a proof judged in the place of a solver."""
 
 _Verdicts = tuple[Matrix, Vector, Vector, NDArray[np.int64]]
-"""Of N points and one reference: steps in x away from its answers (N, n), and solution gaps,
+"""Of N points and one reference: steps in x away from the solutions (N, n), and solution gaps,
 residuals and judges of `Agreement`, (N,)."""
+
+
+class _Block(NamedTuple):
+    """N programs of one shape, and the answers to be judged.
+
+    Attributes:
+        sizes: `QP.sizes` of the programs.
+        programs: One `QP.data` a row.
+        normalised: The programs in units near 1.
+        factors: Factors from their variables to those of the programs, (N, n).
+        points: Answers [x | y | z | z_box], (N, 2 n + m + p); multipliers may be 0.
+    """
+
+    sizes: Sizes
+    programs: Matrix
+    normalised: Matrix
+    factors: Matrix
+    points: Matrix
+
+    @property
+    def x(self) -> Matrix:
+        """The answers without multipliers, (N, n)."""
+        return self.points[:, : self.sizes[0]]
+
+    def steps(self, references: Matrix) -> Matrix:
+        """Compute the differences of x and points of the normalised programs, (N, n)."""
+        return self.x - self.factors * references[:, : self.sizes[0]]
+
+    def part(self, rows: NDArray[np.intp]) -> _Block:
+        """Return the block of some of the programs, by their indices (k,)."""
+        return _Block(self.sizes, *(array[rows] for array in self[1:]))
+
+
+class _Opinion(NamedTuple):
+    """Opinion of a reference on N answers.
+
+    Attributes:
+        points: Its points, believed or not, (N, 2 n + m + p); NaN without one.
+        residuals: Their residuals, (N,).
+        judge: 0 where the first solver that was asked is believed, 1 where the next one is, else
+            `NOBODY`, (N,).
+        gaps: Solution gaps; NaN where no solver is believed, (N,).
+        verdicts: 1 where the answer agrees, -1 where it does not, 0 where that is not decided,
+            (N,).
+    """
+
+    points: Matrix
+    residuals: Vector
+    judge: NDArray[np.int64]
+    gaps: Vector
+    verdicts: NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -97,6 +163,10 @@ class CrossCheck:
 
         Returns:
             Gaps, residuals and judges, one row a program and one column a reference.
+
+        Raises:
+            MissingDependencyError: A reference that is asked cannot be imported.
+            InvalidInputError: A reference returns an array of a wrong size.
         """
         n, m, p = sizes
         points = np.zeros((len(answers), 2 * n + m + p))
@@ -105,56 +175,131 @@ class CrossCheck:
         solution = np.empty(judge.shape)
         residual = np.empty(judge.shape)
         steps = np.empty((*judge.shape, n))
-        scaled = normalised(programs, sizes)
+        block = _Block(sizes, programs, *normalised(programs, sizes), points)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # OSQP's, of dense matrices
             for k, name in enumerate(self.solvers):
                 steps[:, k], solution[:, k], residual[:, k], judge[:, k] = (
-                    _prove(programs, sizes, points)
-                    if name == PROOF
-                    else self._compare(name, scaled, sizes, points)
+                    _prove(block) if name == PROOF else self._compare(name, block)
                 )
-        block = stacked(programs, sizes)
-        objective = objective_gaps(block, points[:, :n], steps)
-        feasibility = np.where(judge.T < 0, np.nan, feasibility_gaps(block, points[:, :n])).T
+        views = stacked(programs, sizes)
+        objective = objective_gaps(views, block.x, steps)
+        feasibility = np.where(judge.T < 0, np.nan, feasibility_gaps(views, block.x)).T
         return Agreement(solution, objective, feasibility, residual, judge)
 
-    def _compare(self, name: str, programs: Matrix, sizes: Sizes, points: Matrix) -> _Verdicts:
-        """Compare x of points (N, 2 n + m + p) with the answers of a solver.
-
-        Where the solver has no answer that is believed, the second one of `SECOND` is asked.
-        """
-        n = sizes[0]
-        qps = [QP.from_data(program, sizes) for program in programs]
-        references = np.full_like(points, np.nan)
-        residuals = np.full(len(points), np.inf)
-        judge = np.full(len(points), -1)
-        block = stacked(programs, sizes)
-        # A solver may take minutes over one NaN, and OSQP has words of its own for crossed bounds.
-        wrong = np.isnan(programs).any(axis=1) | (block.lb > block.ub).any(axis=1)
-        for code, solver in enumerate((name, SECOND.get(name) or "proxqp")):
-            left = np.flatnonzero(~wrong & (judge < 0))
-            solve = reference_solver(solver, sizes) if left.size else None
-            for i in left:
-                reference, residuals[i] = self._ask(solve, qps[i])
-                if residuals[i] <= self.reference_tolerance:
-                    references[i] = reference
-                    judge[i] = code
-        steps = points[:, :n] - references[:, :n]
-        gaps = np.abs(steps).max(axis=1, initial=0.0)
-        for i in np.flatnonzero(gaps > self.tolerance):
-            gaps[i] = solution_gap(qps[i], references[i], points[i, :n], self.tolerance)
+    def _compare(self, name: str, block: _Block) -> _Verdicts:
+        """Compare answers with those of a solver and, where it does not agree, ask for a proof."""
+        second = SECOND.get(name) or "proxqp"
+        points, residuals, judge, gaps, verdicts = self._ask((name, second), block)
+        steps = np.where(judge[:, np.newaxis] < 0, np.nan, block.steps(points))
+        unsettled = _are_sound(block.normalised, block.sizes) & np.isfinite(block.x).all(axis=1)
+        for i in np.flatnonzero(unsettled & (verdicts < 1)):
+            step = self._proven_step(block, points, i)
+            if step is not None:
+                steps[i] = step
+                gaps[i] = np.abs(step).max()
+                residuals[i] = 0.0
+                judge[i] = BY_PROOF
+        left = np.flatnonzero(unsettled & (verdicts == 0) & (judge < BY_PROOF))
+        steps[left] = np.nan
+        gaps[left] = np.nan
+        residuals[left] = np.where(judge[left] < 0, residuals[left], np.inf)
+        judge[left] = NOBODY
         return steps, gaps, residuals, judge
 
-    def _ask(self, solve: Any, qp: QP) -> tuple[Vector, float]:
+    def _ask(self, solvers: tuple[str, ...], block: _Block) -> _Opinion:
+        """Compare answers with those of a solver and, where it is not believed, of the next one."""
+        points = np.full_like(block.points, np.nan)
+        residuals = np.full(len(points), np.inf)
+        judge = np.full(len(points), NOBODY)
+        # A solver may take minutes over one NaN, and OSQP has words of its own for crossed bounds.
+        is_sound = _are_sound(block.normalised, block.sizes)
+        for code, name in enumerate(solvers):
+            left = np.flatnonzero(is_sound & (judge < 0))
+            solve = reference_solver(name, block.sizes) if left.size else None
+            for i in left:
+                qp = QP.from_data(block.normalised[i], block.sizes)
+                points[i], residuals[i] = self._answer(name, solve, qp)
+                if residuals[i] <= self.reference_tolerance:
+                    judge[i] = code
+        gaps = np.full(len(points), np.nan)
+        verdicts = np.zeros_like(judge)
+        believed = np.flatnonzero(judge >= 0)
+        gaps[believed], verdicts[believed] = self._weigh(
+            block.part(believed), points[believed], residuals[believed]
+        )
+        doubted = believed[verdicts[believed] < 1]
+        part = block.part(doubted)
+        for i, point in zip(
+            doubted, polished(stacked(part.normalised, part.sizes), points[doubted]), strict=True
+        ):
+            residual = QP.from_data(block.normalised[i], block.sizes).residuals(point).largest
+            if residual < residuals[i]:
+                points[i] = point
+                residuals[i] = residual
+        gaps[doubted], verdicts[doubted] = self._weigh(part, points[doubted], residuals[doubted])
+        return _Opinion(points, residuals, judge, gaps, verdicts)
+
+    def _weigh(
+        self, block: _Block, references: Matrix, residuals: Vector
+    ) -> tuple[Vector, NDArray[np.int64]]:
+        """Compare answers with points of a reference (N, 2 n + m + p) that are believed.
+
+        Returns:
+            Gaps and verdicts of `_Opinion`, (N,).
+        """
+        steps = block.steps(references)
+        gaps = np.abs(steps).max(axis=1, initial=0.0)
+        programs = stacked(block.programs, block.sizes)
+        fits = objective_gaps(programs, block.x, steps[:, np.newaxis])[:, 0] <= self.tolerance
+        scaled = stacked(block.normalised, block.sizes)
+        accuracy = MARGIN * residuals * block.factors.max(axis=1, initial=0.0) / self.tolerance
+        is_decided = np.linalg.eigvalsh(scaled.P).min(axis=1, initial=np.inf) >= accuracy
+        left = np.flatnonzero(~(is_decided & fits & (gaps <= self.tolerance)))
+        factors = block.factors[left]
+        unique, is_decided[left] = unique_steps(
+            QPViews(*(field[left] for field in scaled)),
+            references[left],
+            steps[left] / factors,
+            accuracy[left],
+        )
+        gaps[left] = np.abs(factors * unique).max(axis=1, initial=0.0)
+        agrees = fits & (gaps <= self.tolerance)
+        # Of variables in other units the objective says nothing that the reference is sure of.
+        is_decided &= agrees | (gaps > self.tolerance) | (block.factors == 1.0).all(axis=1)
+        return gaps, np.where(is_decided, np.where(agrees, 1, -1), 0)
+
+    def _proven_step(self, block: _Block, references: Matrix, i: int) -> Vector | None:
+        """Return the step of answer i away from the solution, (n,), if a proof decides about it.
+
+        The active sets to begin with are those of the reference (N, 2 n + m + p) and of the answer.
+        """
+        qp = QP.from_data(block.normalised[i], block.sizes)
+        factors = block.factors[i]
+        own = np.concatenate([block.x[i] / factors, block.points[i, factors.size :]])
+        for start in (references[i], own):
+            center, radius, _, _ = enclose_solution(qp, start)
+            step: Vector = block.x[i] - factors * center
+            if (factors * radius).max() < abs(np.abs(step).max() - self.tolerance):
+                return step
+        return None
+
+    def _answer(self, name: str, solve: Any, qp: QP) -> tuple[Vector, float]:
         """Solve a program by a reference; return its point and its largest residual.
 
         Without an answer the residual is inf; if it is rounding, it counts as the tolerance.
+
+        Raises:
+            InvalidInputError: The solver returns an array of another size than the program's.
         """
+        n, m, p = qp.sizes
         try:
             point = solve(qp)
+        except IiwaDnnError as error:
+            raise InvalidInputError(f"answer of {name}", str(error), error) from error
         except Exception:  # whatever a reference raises, it has no answer
-            return qp.data[:0], np.inf
+            return np.full(2 * n + m + p, np.nan), np.inf
+        check_size(f"answer of {name}", point, 2 * n + m + p)
         if np.isnan(point[0]):
             return point, np.inf
         residual = qp.residuals(point).largest
@@ -171,15 +316,21 @@ def references() -> list[str]:
     return [name for name in qpsolvers.available_solvers if name != "iiwa_dnn"] + [PROOF]
 
 
-def _prove(programs: Matrix, sizes: Sizes, points: Matrix) -> _Verdicts:
-    """Bound the distances of points (N, 2 n + m + p) from their solutions, by `prove_point`.
+def _are_sound(programs: Matrix, sizes: Sizes) -> NDArray[np.bool_]:
+    """Test which of N programs, one `QP.data` a row, have neither NaN nor crossed bounds, (N,)."""
+    block = stacked(programs, sizes)
+    return np.asarray(~(np.isnan(programs).any(axis=1) | (block.lb > block.ub).any(axis=1)))
+
+
+def _prove(block: _Block) -> _Verdicts:
+    """Bound the distances of answers from their solutions, by `prove_point`.
 
     The steps returned are those within each bound that change the objective most, to first order.
     """
-    qps = [QP.from_data(program, sizes) for program in programs]
-    bounds = np.array([prove_point(*pair).bound for pair in zip(qps, points, strict=True)])
+    qps = [QP.from_data(program, block.sizes) for program in block.programs]
+    bounds = np.array([prove_point(*pair).bound for pair in zip(qps, block.points, strict=True)])
     is_proven = bounds < np.inf
-    block = stacked(programs, sizes)
-    gradients = (block.P @ points[:, : sizes[0], np.newaxis])[..., 0] + block.q
+    views = stacked(block.programs, block.sizes)
+    gradients = (views.P @ block.x[:, :, np.newaxis])[..., 0] + views.q
     steps = np.copysign(bounds[:, np.newaxis], gradients)
     return steps, bounds, np.where(is_proven, 0.0, np.inf), is_proven - 1

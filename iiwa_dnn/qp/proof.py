@@ -39,7 +39,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp.certificates import certified
+from iiwa_dnn.qp.certificates import certified, products
 from iiwa_dnn.qp.layout import IntVector, Matrix, Vector, check_size
 from iiwa_dnn.qp.program import QP, real_array
 from iiwa_dnn.qp.solution import Solution, Status
@@ -52,9 +52,16 @@ Mask = NDArray[np.bool_]
 ROUNDS = 5
 """Number of active sets that are tried, each from the signs of the one before."""
 
+REFINEMENTS = 6
+"""Steps by which the solution of a linear system is refined: of a matrix with the condition 1e13
+each gains three digits."""
+
 _ROUNDING = 2.0**-53
 _TINY = 1e-290
 """Bound on the underflow of a sum."""
+_SLIGHT = 1e-9
+"""Multiplier of a row of length 1, relative to the largest, up to which it is not active at the
+beginning."""
 _FRACTION = 0.9
 """Fraction of the smallest eigenvalue that is shown as the curvature."""
 
@@ -145,6 +152,7 @@ class _Rows:
         usable: Rows that limit anything: a lower bound that is an upper one is counted there.
         unit: Bound on the relative rounding of all sums, (k + n + 16) 2^-53.
         S: Symmetric part of P, (n, n).
+        S_error: Bound on the rounding of S; 0 where P is symmetric, (n, n).
     """
 
     def __init__(self, qp: QP) -> None:
@@ -158,39 +166,78 @@ class _Rows:
         self.usable[p + m + n :] &= ~fixed
         self.unit = (self.limits.size + n + 16) * _ROUNDING
         self.S = 0.5 * (qp.P + qp.P.T)
+        self.S_error = np.where(qp.P == qp.P.T, 0.0, self.unit * np.abs(self.S))
+
+
+class Enclosure(NamedTuple):
+    """A box around the exact solution of a program.
+
+    Attributes:
+        center: Center of the box, (n,).
+        radius: Largest distance of each entry of the solution from the center, (n,); inf where
+            nothing was proven.
+        active: Active set, as in `Proof`.
+        reason: Reason why the active set or the box is not proven; empty if both are.
+    """
+
+    center: Vector
+    radius: Vector
+    active: IntVector
+    reason: str
 
 
 @np.errstate(all="ignore")
 def prove_point(qp: QP, point: Vector) -> Proof:
     """Bound the distance of a point ``[x | y | z | z_box]``, (2 n + m + p,), from the solution."""
+    center, radius, active, reason = enclose_solution(qp, point)
+    distance = np.abs(point[: center.size] - center) + radius
+    bound = (1.0 + 4.0 * _ROUNDING) * float(distance.max())
+    if not bound < np.inf:
+        return Proof(np.inf, active, reason if np.isinf(radius).any() else FAR)
+    return Proof(bound, active, reason)
+
+
+@np.errstate(all="ignore")
+def enclose_solution(qp: QP, point: Vector) -> Enclosure:
+    """Enclose the solution, starting with the active set of a point ``[x | y | z | z_box]``.
+
+    Args:
+        qp: The program, of n variables, m inequality and p equality rows.
+        point: The point, (2 n + m + p,); nothing about it is trusted.
+    """
     n, m, p = qp.sizes
     rows = _Rows(qp)
-    x = point[:n]
+    center = point[:n]
     multipliers = np.concatenate([point[n:], -point[n + p + m :]])
-    active = rows.equal | (rows.usable & (multipliers > rows.limits - rows.rows @ x))
+    force = multipliers * np.linalg.norm(rows.rows, axis=1)
+    is_held = (multipliers > rows.limits - rows.rows @ center) & (force > _SLIGHT * force.max())
+    active = rows.equal | (rows.usable & is_held)
     active[p + m + n :] &= ~active[p + m : p + m + n]
-    bound = np.inf
+    radius: Vector = np.full(n, np.inf)
     reason = UNDECIDED
     for attempt in range(ROUNDS):
         kept = _independent(rows, active)
-        enclosure = _enclose(rows.S, qp.q, rows.rows[kept], rows.limits[kept], rows.unit)
+        enclosure = _enclose(rows, qp.q, kept)
         if enclosure is None:
             reason = DEPENDENT
             break
         u, error = enclosure
-        joins = rows.usable & ~active & ~_is_clear(rows, u[:n], error[:n])
+        slack = _least_slack(rows, u[:n], error[:n])
+        joins = rows.usable & ~active & ~(slack >= 0.0)
         uncertain = np.where(rows.equal[kept], -np.inf, error[n:] - u[n:])
         leaving = kept[uncertain > 2.0 * error[n:]]
         if not joins.any() and (not leaving.size or attempt == ROUNDS - 1):
-            distance = (1.0 + rows.unit) * (np.abs(x - u[:n]) + error[:n])
             missing = np.maximum(uncertain, 0.0) @ np.abs(rows.rows[kept]).sum(axis=1)
-            weak = bool((uncertain >= 0.0).any())
-            bound, reason = _bound(qp, rows, float(distance.max()), float(missing), weak)
+            moved, reason = _moved(qp, rows, float(missing), bool((uncertain >= 0.0).any()))
+            if not reason and (slack[rows.usable & ~active] == 0.0).any():
+                reason = WEAK
+            center = u[:n]
+            radius = (1.0 + rows.unit) * (error[:n] + moved)
             break
         active = active | joins
         active[leaving] = False
     upper, lower = np.split(active[p + m :].astype(np.int64), 2)
-    return Proof(bound, np.concatenate([upper - lower, active[p : p + m]]), reason)
+    return Enclosure(center, radius, np.concatenate([upper - lower, active[p : p + m]]), reason)
 
 
 def _independent(rows: _Rows, active: Mask) -> NDArray[np.intp]:
@@ -201,68 +248,74 @@ def _independent(rows: _Rows, active: Mask) -> NDArray[np.intp]:
     return np.asarray(used[np.sort(first)])
 
 
-def _is_clear(rows: _Rows, x: Vector, error: Vector) -> Mask:
-    """Test which rows (k,) hold with a margin at all points within an error of x, (n,) both."""
-    spread = rows.unit * np.abs(x) + error
-    reach = np.abs(rows.rows) @ spread + rows.unit * np.abs(rows.limits) + _TINY
-    return np.asarray(rows.limits - rows.rows @ x > (1.0 + rows.unit) * reach)
+def _least_slack(rows: _Rows, x: Vector, error: Vector) -> Vector:
+    """Bound the slack of each row (k,) at all points within an error of x, (n,) both, from below.
+
+    It is 0 if the slack of x is exactly 0, and the error too.
+    """
+    slack, rounding = products(np.column_stack([rows.limits, -rows.rows]), np.append(1.0, x))
+    reach = np.abs(rows.rows) @ error + rounding
+    slack -= (1.0 + rows.unit) * reach
+    return np.where(reach > 0.0, slack - rows.unit * np.abs(slack), slack)
 
 
-def _enclose(
-    S: Matrix, q: Vector, C: Matrix, d: Vector, unit: float
-) -> tuple[Vector, Vector] | None:
+def _enclose(rows: _Rows, q: Vector, kept: NDArray[np.intp]) -> tuple[Vector, Vector] | None:
     """Solve [[S, C^T], [C, 0]] u = [-q; d] and bound the error of each unknown.
 
     Args:
-        S: Symmetric part of P, (n, n).
+        rows: The rows of the program.
         q: Cost vector, (n,).
-        C: Active rows, (k, n).
-        d: Their limits, (k,).
-        unit: Bound on the relative rounding of a sum.
+        kept: Indices of the active rows C, (k,).
 
     Returns:
         Center and radii, (n + k,) both; None if it is not shown that there is exactly one solution.
     """
-    k = d.size
-    K = np.block([[S, C.T], [C, np.zeros((k, k))]])
-    r = np.concatenate([-q, d])
+    C = rows.rows[kept]
+    k, n = C.shape
+    K = np.block([[rows.S, C.T], [C, np.zeros((k, k))]])
+    r = np.concatenate([-q, rows.limits[kept]])
     try:
         R = np.linalg.inv(K)
     except np.linalg.LinAlgError:
         return None
     u = R @ r
-    u += R @ (r - K @ u)
+    system = np.column_stack([r, -K])
+    residual, rounding = products(system, np.append(1.0, u))
+    for _ in range(REFINEMENTS):
+        u = u + R @ residual
+        residual, rounding = products(system, np.append(1.0, u))
     size = np.abs(R)
     defect = np.abs(np.eye(r.size) - R @ K).sum(axis=1)
-    alpha = (1.0 + unit) * (defect + unit * (1.0 + size @ np.abs(K).sum(axis=1)) + _TINY)
+    alpha = (1.0 + rows.unit) * (defect + rows.unit * (1.0 + size @ np.abs(K).sum(axis=1)) + _TINY)
     largest = float(alpha.max())
     if not largest < 0.5:
         return None
-    rho = np.abs(r - K @ u) + unit * (np.abs(K) @ np.abs(u) + np.abs(r)) + _TINY
-    beta = (1.0 + unit) * (size @ ((1.0 + unit) * rho) + _TINY)
-    error = (1.0 + unit) * (beta + alpha * beta.max() / (1.0 - largest))
+    rho = np.abs(residual) + rounding
+    rho[:n] += rows.S_error @ np.abs(u[:n])
+    rho += _TINY * rho.any()
+    beta = (1.0 + rows.unit) * (size @ ((1.0 + rows.unit) * rho) + _TINY * rho.any())
+    error = (1.0 + rows.unit) * (beta + alpha * beta.max() / (1.0 - largest))
     return (u, error) if np.isfinite(error).all() else None
 
 
-def _bound(qp: QP, rows: _Rows, distance: float, missing: float, weak: bool) -> tuple[float, str]:
-    """Bound the distance of an answer from the program's solution; return also the reason.
+def _moved(qp: QP, rows: _Rows, missing: float, weak: bool) -> tuple[float, str]:
+    """Bound the distance between the solutions with the active set and of the program.
 
     Args:
         qp: The program.
         rows: Its rows.
-        distance: Bound on the distance from the solution with the active set.
         missing: Bound on the change of the cost vector that gives all multipliers the right sign.
         weak: Whether a multiplier may be zero, so that `missing` counts.
+
+    Returns:
+        The bound, inf if nothing is shown, and the reason; 0 and no reason if they are the same.
     """
-    unit = rows.unit
-    curvature = _curvature(rows.S, qp.A, unit, _FRACTION if weak else 0.0)
+    curvature = _curvature(rows.S, qp.A, rows.unit, _FRACTION if weak else 0.0)
     if not curvature > 0.0:
         return np.inf, FLAT if weak else NOT_CONVEX
-    if weak:
-        distance = (1.0 + 2.0 * unit) * (distance + (1.0 + unit) * (missing + _TINY) / curvature)
-    if not distance < np.inf:
-        return np.inf, FAR
-    return distance, WEAK if weak else ""
+    if not weak:
+        return 0.0, ""
+    return (1.0 + 2.0 * rows.unit) * (missing + _TINY) / curvature, WEAK
 
 
 def _curvature(S: Matrix, A: Matrix, unit: float, fraction: float) -> float:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from iiwa_dnn.errors import MissingDependencyError, import_extra
 from iiwa_dnn.qp.layout import Sizes, Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import point_of
@@ -40,6 +41,11 @@ OPTIONS: dict[str, dict[str, Any]] = {
 """Settings of ProxQP and keyword arguments of qpsolvers; a solver without any has its defaults."""
 
 
+NEAR = 1e-4
+"""Largest KKT residual at which the last point of a solver that gave up is still an answer: its
+residual says how much it is worth, and a proof may begin with its active set."""
+
+
 def reference_solver(name: str, sizes: Sizes) -> Callable[[QP], Vector]:
     """Make a function that solves programs of these `QP.sizes` with a solver.
 
@@ -50,17 +56,34 @@ def reference_solver(name: str, sizes: Sizes) -> Callable[[QP], Vector]:
     Returns:
         The point [x | y | z | z_box] of a program, (2 n + m + p,), NaN without an answer. What the
         solver raises is passed on.
+
+    Raises:
+        MissingDependencyError: The solver cannot be imported.
     """
-    return ProxQP(sizes) if name == "proxqp" else partial(_solve, name)
+    if name == "proxqp":
+        return ProxQP(sizes)
+    import qpsolvers  # with scipy.sparse, 0.2 s that not every run needs
+
+    if name not in qpsolvers.available_solvers:
+        raise MissingDependencyError(f"the solver {name}", f"pip install 'qpsolvers[{name}]'")
+    return partial(_solve, name)
 
 
 def _solve(name: str, qp: QP) -> Vector:
     """Solve a program with a solver of qpsolvers; return its point (2 n + m + p,), or NaN."""
-    import qpsolvers  # with scipy.sparse, 0.2 s that not every run needs
+    import qpsolvers
 
     solution = qpsolvers.solve_problem(qp.to_qpsolvers(), name, **OPTIONS.get(name, {}))
     point = point_of(solution, qp)
-    return point if solution.found else np.full_like(point, np.nan)
+    if solution.x is None:
+        point[:] = np.nan
+    return _answer(qp, point, solution.found)
+
+
+def _answer(qp: QP, point: Vector, is_found: bool | None) -> Vector:
+    """Return a solver's last point, or NaN if the solver has not found it and it is not near."""
+    is_near = is_found or qp.residuals(point).largest <= NEAR
+    return point if is_near else np.full_like(point, np.nan)
 
 
 class ProxQP:
@@ -74,8 +97,7 @@ class ProxQP:
 
     def __init__(self, sizes: Sizes) -> None:
         """Allocate the workspace for programs of these sizes (n, m, p)."""
-        from proxsuite import proxqp
-
+        proxqp = import_extra("proxsuite", "pip install proxsuite").proxqp
         n, m, p = sizes
         self.solver = proxqp.dense.QP(n, p, m, True)
         self._solved = proxqp.PROXQP_SOLVED
@@ -89,4 +111,4 @@ class ProxQP:
         solver.solve()
         results = solver.results
         point = np.concatenate([results.x, results.y, results.z])
-        return point if results.info.status == self._solved else np.full_like(point, np.nan)
+        return _answer(qp, point, results.info.status == self._solved)

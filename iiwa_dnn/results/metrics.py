@@ -288,7 +288,8 @@ def _crosscheck(record: Record) -> dict[str, Any]:
     if first is not None:
         step = first["step"]
         worst = int(np.where(disagrees[step], gaps[step], -np.inf).argmax())
-        pairs = [(name, solver) for name in GAPS for solver in check["solvers"]]
+        judges = _judges(check)[record.filled("judge")[step], range(len(check["solvers"]))]
+        pairs = [(name, solver) for name in GAPS for solver in judges]
         quantity, solver = [*pairs, ("solution_gap", BOUNDS)][worst]
         first |= {
             "quantity": quantity,
@@ -315,16 +316,18 @@ def _crosscheck(record: Record) -> dict[str, Any]:
 
 
 def _judged_by(record: Record, asked: NDArray[np.bool_]) -> dict[str, int]:
-    """Count the solutions that each reference solver judged, by its name.
-
-    Where a reference gave no answer, the second solver of `CrossCheck` judged in its place.
-    """
-    check = record.settings["check"]
+    """Count the solutions that each judge judged, by its name; see `Record.judge`."""
     judge = np.where(asked, record.filled("judge"), -1)
     counts: Counter[str] = Counter()
-    for code, solvers in enumerate((check["solvers"], check["second"])):
-        counts += Counter(dict(zip(solvers, (judge == code).sum(axis=0).tolist(), strict=True)))
+    for code, names in enumerate(_judges(record.settings["check"])):
+        counts += Counter(dict(zip(names, (judge == code).sum(axis=0).tolist(), strict=True)))
     return dict(counts)  # a sum has no counts of zero
+
+
+def _judges(check: Mapping[str, Any]) -> NDArray[np.object_]:
+    """Return the names of the judges by their codes in `Record.judge`, (3, k)."""
+    proofs = ["proof"] * len(check["solvers"])
+    return np.array([check["solvers"], check["second"], proofs], dtype=object)
 
 
 def _physics(record: Record) -> dict[str, Any]:

@@ -222,7 +222,7 @@ class Record:
     judge: Annotated[
         CodeArray,
         Column(
-            "Solver that judged in the place of each reference: 0 itself, 1 the second one, -1 "
+            "Judge in the place of each reference: 0 itself, 1 the second solver, 2 a proof, -1 "
             "none",
             ("N", "k"),
             np.int8,

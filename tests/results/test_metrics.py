@@ -221,15 +221,17 @@ def test_crosscheck_counts_only_what_is_believed():
         "tolerance": 1e-6,
         "first_disagreement": {
             "steps": 1, "step": 1, "time_s": pytest.approx(0.1), "quantity": "solution_gap",
-            "solver": "osqp", "gap": 9e-6, "tolerance": 1e-6,
+            "solver": "proxqp", "gap": 9e-6, "tolerance": 1e-6,  # in the place of osqp
         },
     }  # fmt: skip
     assert failures(record) == [
-        "step 1 (t = 0.1 s): the gap to osqp is 9e-06 rad/s, tolerance 1e-06; 1 step in all",
+        "step 1 (t = 0.1 s): the gap to proxqp is 9e-06 rad/s, tolerance 1e-06; 1 step in all",
         "reference answers missing or not accurate enough to judge by: 2 (proxqp+osqp); "
         "the check 'proof' needs no other solver",
         "1 step of 6 not checked",
     ]
+    proven = compute_metrics(record._replace(judge=np.full((6, 2), 2, dtype=np.int8)))["crosscheck"]
+    assert proven["first_disagreement"]["solver"] == "proof"
     nobody = check_of(solvers=(), kind=KINDS)
     assert nobody["kinds"] == dict(zip(PROGRAMS, (0, 0, 0, 3, 1), strict=True))
     assert (nobody["solver"], nobody["steps_checked"], nobody["judged"]) == ("none", 0, False)
