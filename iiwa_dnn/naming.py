@@ -21,6 +21,9 @@ class LimitKind(IntEnum):
 KINDS = ("position", "velocity", "acceleration", "jerk", "position-dependent velocity")
 """Words for the kinds of limits, in the order of their codes."""
 
+RATE_LIMITS = KINDS[LimitKind.ACCELERATION - 1 : LimitKind.JERK]
+"""Words for the limits of rates of a velocity."""
+
 ACTIONS = {2: "slow", 3: "relax", 4: "stop", 5: "euler"}
 """Actions at a step in place of the network's answer by their codes in commands and records."""
 
@@ -41,31 +44,42 @@ def limit_kinds(settings: Mapping[str, Any]) -> list[str]:
 def active_limits(
     settings: Mapping[str, Any], codes: Iterable[int], rows: Iterable[float]
 ) -> list[dict[str, Any]]:
-    """Return a description of each acting bound and row, for `describe`.
+    """Return a description of each acting bound and row, for `describe`; rates come last.
+
+    Limits of acceleration and jerk most often follow from another one, which is named before them.
 
     Args:
         settings: Settings of the run, with its inequality rows and the limits with bounds.
         codes: Code of the limit that each joint's active bound comes from, negative for a lower
             bound, 0 for none, (n,).
-        rows: Other than 0 for each inequality row that acts, (m,).
+        rows: Other than 0 for each inequality row that acts, (m,); above 1, the pair that the row
+            belongs to is that of this number among the settings' pairs, from 2.
     """
     words = limit_kinds(settings)
     names = settings.get("joints", ())
-    bounds = []
+    found: list[dict[str, Any]] = []
     for j, code in enumerate(codes):
         if code:
             side = "upper" if code > 0 else "lower"
             bound = {"joint": j + 1, "side": side, "limit": words[abs(int(code)) - 1]}
-            bounds.append(bound | {"name": names[j]} if names else bound)
-    named = settings.get("rows") or ()
-    return bounds + [row for row, acts in zip(named, rows, strict=True) if acts]
+            found.append(bound | {"name": names[j]} if names else bound)
+    for row, acts in zip(settings.get("rows") or (), rows, strict=True):
+        if acts > 1:
+            row = {"part": row["part"], "about": settings["pairs"][int(acts) - 2]}
+        if acts and row not in found:
+            found.append(row)
+    return sorted(found, key=lambda limit: limit.get("limit") in RATE_LIMITS)
 
 
 def describe(limit: Mapping[str, Any]) -> str:
-    """Name a bound, ``panda_joint4 lower velocity limit``, or a row, ``row 3 of TipSpeedLimit``."""
-    if "row" in limit:
+    """Name a bound, ``panda_joint4 lower velocity limit``, or a row, ``row 3 of TipSpeedLimit``.
+
+    A row that belongs to another pair from step to step goes by the pair.
+    """
+    if "part" in limit:
         about = f" ({limit['about']})" if "about" in limit else ""
-        return f"row {limit['row']} of {limit['part']}{about}"
+        row = f"row {limit['row']} of " if "row" in limit else ""
+        return f"{row}{limit['part']}{about}"
     end = " limit" if limit["limit"] in KINDS else ""
     joint = limit.get("name", f"joint {limit['joint']}")
     return f"{joint} {limit['side']} {limit['limit']}{end}"

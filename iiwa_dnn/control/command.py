@@ -53,10 +53,12 @@ class StepLog(Record):
         upper: Upper bounds of the nominal program [rad/s], (dof,).
         lower_kind: `LimitKind` of each lower bound of `program`, (dof,).
         upper_kind: `LimitKind` of each upper bound of `program`, (dof,).
+        row_pair: `StepViews.row_pair` of each inequality row, (m,).
         program: The program that was answered, `QP.data`, (size,).
         point: The primal-dual answer, `Solution.point`, (2 n + m + p,).
         limiting: For each variable the `LimitKind` of the bound that limits it, negative for a
-            lower bound, or 0; then for each inequality row 1 if it limits, else 0, (n + m,).
+            lower bound, or 0; then for each inequality row 0, or 1 and its `row_pair` if it limits,
+            (n + m,).
         least: Distance that each watched pair has to keep [m], (pairs,), as in `MotionState`.
         targets: Targets of the tracked frames, (k, 18).
     """
@@ -75,6 +77,7 @@ class StepLog(Record):
     upper: Vector = part("joints")
     lower_kind: Vector = part("joints")
     upper_kind: Vector = part("joints")
+    row_pair: Vector = part("rows")
     program: Vector = part("program")
     point: Vector = part("point")
     limiting: Vector = part("sides")
@@ -83,19 +86,19 @@ class StepLog(Record):
 
 
 @compiled
-def log_sizes(sizes: ProgramSizes) -> tuple[int, int, int, int, int, int]:
-    """Return ``(joints, program, point, sides, pairs, frames)``, the sizes of a `StepLog`."""
+def log_sizes(sizes: ProgramSizes) -> tuple[int, int, int, int, int, int, int]:
+    """Return ``(joints, rows, program, point, sides, pairs, frames)``, the sizes of a `StepLog`."""
     program = data_size(sizes.n, sizes.m, sizes.p)
     sides = sizes.n + sizes.m
     point = sides + sizes.n + sizes.p
-    return sizes.joints, program, point, sides, sizes.pairs, sizes.frames
+    return sizes.joints, sizes.m, program, point, sides, sizes.pairs, sizes.frames
 
 
 @compiled
 def log_of(data: Vector, sizes: ProgramSizes) -> StepLog:
     """View the numbers of a step log, (width,), as a `StepLog`."""
-    joints, program, point, sides, pairs, frames = log_sizes(sizes)
-    return StepLog.of(data, joints, program, point, sides, pairs, frames)
+    joints, rows, program, point, sides, pairs, frames = log_sizes(sizes)
+    return StepLog.of(data, joints, rows, program, point, sides, pairs, frames)
 
 
 @compiled
@@ -128,7 +131,8 @@ def note_active(log: StepLog, qp: QPViews, tolerance: float) -> None:
     log.limiting[:] = 0.0
     for j in range(qp.h.size):
         slack = np.inf if of_rows[j] == 0.0 else qp.h[j] - row_dot(qp.G, j, log.point)
-        log.limiting[n + j] = 1.0 if is_active(of_rows[j], slack, tolerance) else 0.0
+        acts = is_active(of_rows[j], slack, tolerance)
+        log.limiting[n + j] = 1.0 + log.row_pair[j] if acts else 0.0
     for i in range(log.dq.size):
         multiplier = of_rows[qp.h.size + i]
         nearest = qp.ub[i] if multiplier > 0.0 else qp.lb[i]

@@ -272,6 +272,7 @@ def take_step(
         next_motion_state.least,
         log.lower_kind,
         log.upper_kind,
+        log.row_pair,
     )
     instant = Instant(step, motion_state, next_motion_state)
     assemble(log.program, arrays, step)

@@ -263,4 +263,5 @@ def _active_limits(
     lower, upper = program.kinds
     codes = np.where(step.z_box > 0.0, upper, -lower) * (np.abs(step.z_box) > least)
     codes[np.abs(codes) == LimitKind.VELOCITY] = 0
-    return tuple(map(describe, active_limits(LimitNames(program).settings, codes, step.z > least)))
+    rows = (step.z > least) * (1.0 + program.row_pair)
+    return tuple(map(describe, active_limits(LimitNames(program).settings, codes, rows)))

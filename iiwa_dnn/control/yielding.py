@@ -177,10 +177,14 @@ def yield_step(
 def _note_kinds(log: StepLog, lower_kind: Vector, upper_kind: Vector) -> None:
     """Multiply the signs of the joints in log.limiting by the `LimitKind` of their bounds.
 
-    A positive sign takes `upper_kind` (dof,), another `lower_kind` (dof,).
+    A positive sign takes `upper_kind` (dof,), another `lower_kind` (dof,). The entries of rows are
+    multiplied by 1 and their `StepLog.row_pair`.
     """
     for i in range(lower_kind.size):
         log.limiting[i] *= upper_kind[i] if log.limiting[i] > 0.0 else lower_kind[i]
+    of_rows = log.limiting[log.limiting.size - log.row_pair.size :]
+    for j in range(of_rows.size):
+        of_rows[j] *= 1.0 + log.row_pair[j]
 
 
 @compiled

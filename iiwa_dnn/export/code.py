@@ -54,7 +54,7 @@ from iiwa_dnn.export.tables import (
     robot_labels,
     rows_of,
 )
-from iiwa_dnn.naming import ACTIONS, active_limits, describe, limit_kinds
+from iiwa_dnn.naming import ACTIONS, LimitKind, active_limits, describe, limit_kinds
 from iiwa_dnn.references import Reference
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.collisions import avoidance_of
@@ -223,6 +223,8 @@ def _about(
         "map": "\n".join(f" * - {title}" for title in _SECTIONS.values()),
         "reason_count": len(reasons),
         "sides": 2 * len(limit_kinds(LimitNames(program).settings)),
+        "acceleration": int(LimitKind.ACCELERATION),
+        "jerk": int(LimitKind.JERK),
         "limit_count": len(names),
         "names": ",\n".join(f"        {name}" for name in names),
     }
@@ -234,7 +236,8 @@ def _about(
 def limit_words(program: ProgramLayout) -> list[str]:
     """List the names of all limits of a program in the order of their codes.
 
-    For each joint: the lower and the upper bound of each of `limit_kinds`; then the rows.
+    For each joint: the lower and the upper bound of each of `limit_kinds`; then the rows; then the
+    pairs of rows that belong to others from step to step.
     """
     settings: dict[str, Any] = LimitNames(program).settings
     rows = settings["rows"]
@@ -249,7 +252,14 @@ def limit_words(program: ProgramLayout) -> list[str]:
             settings, code * np.eye(n, dtype=int)[joint], np.zeros(len(rows))
         )
     ]
-    return [*map(describe, [*bounds, *rows])]
+    ones = np.eye(len(rows), dtype=int)[:1]
+    pairs = [
+        limit
+        for number in range(2, 2 + len(settings["pairs"]))
+        for one in ones
+        for limit in active_limits(settings, (), number * one)
+    ]
+    return [*map(describe, [*bounds, *rows, *pairs])]
 
 
 def shield_code(shield: Shield, frame: str) -> dict[str, Any]:

@@ -49,6 +49,10 @@ _FLAT = ROUNDING
 eigenvector."""
 
 
+_NOISE = 2.0**-45
+"""Root of a variable's curvature, relative to the largest, up to which it is rounding."""
+
+
 class Agreement(NamedTuple):
     """Gaps between answers to N programs and k references; NaN where no reference has an answer.
 
@@ -121,7 +125,8 @@ def normalised(programs: Matrix, sizes: Sizes) -> tuple[Matrix, Matrix]:
     block = stacked(programs, sizes)
     curvature = np.abs(np.diagonal(block.P, axis1=1, axis2=2))
     largest = curvature.max(axis=1, keepdims=True, initial=1e-300)
-    factors = 1.0 / units(np.sqrt(curvature / largest)[:, :, np.newaxis])
+    root = np.sqrt(curvature / largest)
+    factors = 1.0 / units(np.where(root > _NOISE, root, 0.0)[:, :, np.newaxis])
     if (factors != 1.0).any():
         columns = factors[:, np.newaxis]
         parts = [

@@ -201,6 +201,12 @@ class CrossCheck:
                 residuals[i] = 0.0
                 judge[i] = BY_PROOF
         left = np.flatnonzero(unsettled & (verdicts == 0) & (judge < BY_PROOF))
+        # Of two that found the same point, neither is doubted.
+        part = block.part(left)
+        views = stacked(part.programs, part.sizes)
+        objective = objective_gaps(views, part.x, steps[left, np.newaxis])[:, 0]
+        farthest = np.maximum(np.abs(steps[left]).max(axis=1, initial=0.0), objective)
+        left = left[~(farthest <= self.tolerance)]
         steps[left] = np.nan
         gaps[left] = np.nan
         residuals[left] = np.where(judge[left] < 0, residuals[left], np.inf)

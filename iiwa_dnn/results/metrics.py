@@ -20,6 +20,9 @@ PROGRAMS = ("nominal", "scaled", "relaxed", "rate_limited", "stopped")
 EXCESS_TOLERANCE = 1e-9
 """Excess of a command over the bounds and rows of its own step that is rounding."""
 
+STOP = {name: code for code, name in ACTIONS.items()}["stop"]
+"""Code of the action of a policy that stops the arm."""
+
 BOUNDS = "bounds"
 """Name of the check of a command by its step's own bounds and rows."""
 
@@ -289,7 +292,11 @@ def _crosscheck(record: Record) -> dict[str, Any]:
         step = first["step"]
         worst = int(np.where(disagrees[step], gaps[step], -np.inf).argmax())
         judges = _judges(check)[record.filled("judge")[step], range(len(check["solvers"]))]
-        pairs = [(name, solver) for name in GAPS for solver in judges]
+        named = [
+            judge if judge == solver else f"{judge} (for {solver})"
+            for judge, solver in zip(judges, check["solvers"], strict=True)
+        ]
+        pairs = [(name, solver) for name in GAPS for solver in named]
         quantity, solver = [*pairs, ("solution_gap", BOUNDS)][worst]
         first |= {
             "quantity": quantity,
@@ -357,10 +364,15 @@ def _frames(record: Record) -> dict[str, Any]:
 
 
 def _collisions(record: Record) -> dict[str, Any]:
-    """Describe the nearest pair of bodies in a run; ``missing_m`` is how much too near it was."""
+    """Describe the nearest pair of bodies in a run; ``missing_m`` is how much too near it was.
+
+    ``at_stop`` names the pair that was nearest when a policy first stopped the arm.
+    """
     least = int(record.distance.argmin())
     stated = record.settings["collisions"]
     first, second = stated["pairs"][record.nearest[least]]
+    stops = np.flatnonzero(record.filled("action") == STOP)
+    pair = stated["pairs"][record.nearest[stops[0]]] if stops.size else ()
     return {
         "least_distance_m": record.distance[least],
         "first": first,
@@ -368,6 +380,7 @@ def _collisions(record: Record) -> dict[str, Any]:
         "time_s": record.t[least],
         "allowed_m": stated["distance"],
         "missing_m": max(0.0, stated["distance"] - float(record.distance[least])),
+        "at_stop": " and ".join(reversed(pair)) or None,
     }
 
 
@@ -385,6 +398,7 @@ def _incidents(record: Record) -> dict[str, Any]:
         kinds = 1 + (np.abs(record.dq_solver) >= _AT_LIMIT * limits(record, "dq_max"))
     acting = np.sign(multipliers).astype(int)
     acting[:, : record.dof] *= kinds
+    acting[:, record.dof :] *= 1 + record.filled("row_pair")
     limiting = np.hstack([record.filled(name) for name in ("limiting", "limiting_rows")])
     return {
         "clipped_steps": clipped.sum(),
@@ -400,15 +414,21 @@ def _incidents(record: Record) -> dict[str, Any]:
 def _limits(record: Record, codes: NDArray[Any]) -> list[Mapping[str, Any]]:
     """Count the steps at which each limit acts, most steps first.
 
-    `codes` (N, n + m) are those of `Record.limiting` for bounds, and 1 or 0 for rows.
+    `codes` (N, n + m) are those of `Record.limiting` for bounds, and of `Record.limiting_rows`.
     """
     found = []
     for column, one in zip(codes.T, np.eye(codes.shape[1], dtype=int), strict=True):
         for code in np.unique(column[column != 0]):
-            limit = active_limits(
+            limits = active_limits(
                 record.settings, code * one[: record.dof], code * one[record.dof :]
             )
-            found += [name | (_first(record, column == code) or {}) for name in limit]
+            # A pair may have any row, and more than one.
+            acts = column == code
+            if "part" in limits[0] and code > 1:
+                acts = (codes[:, record.dof :] == code).any(axis=1)
+            limit = limits[0] | (_first(record, acts) or {})
+            if limit not in found:
+                found.append(limit)
     return sorted(found, key=lambda limit: (-limit["steps"], "joint" in limit))
 
 

@@ -200,7 +200,20 @@ class Record:
     ] = ABSENT
     limiting_rows: Annotated[
         CodeArray,
-        Column("1 where an inequality row limited the solution, else 0", ("N", "m"), np.int8),
+        Column(
+            "1 and its `row_pair` where an inequality row limited the solution, else 0",
+            ("N", "m"),
+            np.int16,
+        ),
+    ] = ABSENT
+    row_pair: Annotated[
+        CodeArray,
+        Column(
+            'Number from 1 among ``settings["pairs"]`` of the pair that an active inequality row '
+            "belongs to, 0 for a row that always belongs to the same",
+            ("N", "m"),
+            np.int16,
+        ),
     ] = ABSENT
     kind: Annotated[
         CodeArray,

@@ -70,8 +70,8 @@ def collision_rows(
 ) -> None:
     """Write G (rows, n) and h (rows,) of the ends of pairs whose rows have the least slack.
 
-    `constants` are `Scene.constants`. Writes G, h and, by `kept_distance`, step.least; lb and ub
-    stay.
+    `constants` are `Scene.constants`. Writes G, h and, by `kept_distance`, step.least; if there are
+    more ends than rows, step.row_pair too. lb and ub stay.
     """
     dof = step.q.size
     scene = scene_views(constants, dof)
@@ -91,6 +91,8 @@ def collision_rows(
         if slacks[k] < 0.0 and _rank(slacks, k) < h.size:
             if candidates <= h.size:
                 row = k
+            else:
+                step.row_pair[scene.head.row + row] = 1 + scene.head.first + k // ENDS
             for j in range(dof):
                 G[row, j] = gradients[k, j]
             h[row] = limits[k]
@@ -358,7 +360,7 @@ class CollisionAvoidance(Limit):
         return min(self.nearest, ENDS * len(self.scene(robot).pairs))
 
     def row_names(self, robot: Robot) -> list[str]:
-        """Return the pair of each row; none if there are more pairs than rows."""
+        """Return the pair of each row; none if that changes from step to step."""
         names = [name for name, _ in self.pairs(robot) for _ in range(ENDS)]
         return names if len(names) <= self.nearest else []
 

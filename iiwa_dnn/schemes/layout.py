@@ -71,10 +71,13 @@ class ProgramLayout:
         m = self._add(BlockKind.LIMIT, merged(limits, tasks), n)
         self.sizes = (n, m, p)
         self.kinds = np.zeros((2, robot.dof))
+        self.row_pair = np.zeros(m)
         self.pairs: list[tuple[str, float]] = []
         for k, part in enumerate(self.parts):
             if isinstance(part, CollisionAvoidance):
-                SceneHead.of(self.constants_of(k)[: SceneHead.width()]).first = len(self.pairs)
+                head = SceneHead.of(self.constants_of(k)[: SceneHead.width()])
+                head.first = len(self.pairs)
+                head.row = int(self.table[k, Column.FIRST])
                 self.pairs += part.pairs(robot)
         self.refreshed = [k for k, part in enumerate(self.parts) if part.refreshes]
         self.kinematics = Kinematics(robot, self._frames(), self.needs_inertia)
@@ -242,6 +245,7 @@ class ProgramLayout:
             least=least,
             lower_kind=self.kinds[0],
             upper_kind=self.kinds[1],
+            row_pair=self.row_pair,
         )
 
 

@@ -15,8 +15,9 @@ class LimitNames:
 
     Attributes:
         settings: Settings that `naming.active_limits` reads: ``rows`` has for each inequality row
-            its part, its number in the part from 1, and its name if any; ``bounding`` has the class
-            names of the limits, whose kinds are `LimitKind.OTHER`, `LimitKind.OTHER` + 1, ....
+            its part, its number in the part from 1, and its name if any; ``pairs`` has the names of
+            the watched pairs; ``bounding`` has the class names of the limits, whose kinds are
+            `LimitKind.OTHER`, `LimitKind.OTHER` + 1, ....
     """
 
     def __init__(self, program: ProgramLayout) -> None:
@@ -29,7 +30,11 @@ class LimitNames:
             part: dict[str, object] = {"part": type(limit).__name__}
             rows += [part | {"row": number} | name for number, name in enumerate(about, 1)]
         others = [limit for limit in program.limits if not isinstance(limit, RateLimits)]
-        self.settings = {"rows": rows, "bounding": [type(limit).__name__ for limit in others]}
+        self.settings = {
+            "rows": rows,
+            "pairs": [name for name, _ in program.pairs],
+            "bounding": [type(limit).__name__ for limit in others],
+        }
 
     def conditions(self, q: Vector, least: Vector) -> tuple[str, ...]:
         """Describe pairs that began too near, and relations between joints that are not fulfilled.

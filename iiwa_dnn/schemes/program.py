@@ -114,13 +114,13 @@ def block_constants(arrays: ProgramArrays, k: int) -> Vector:
 def assemble(data: Vector, arrays: ProgramArrays, step: StepViews) -> None:
     """Assemble the program of one instant.
 
-    Writes data, step.least, step.lower_kind and step.upper_kind.
+    Writes data, step.least, step.lower_kind, step.upper_kind and step.row_pair.
 
     Args:
         data: The program, `QP.data`, (size,), overwritten.
         arrays: `ProgramLayout.arrays`.
         step: The instant. `least` is updated to the distances that pairs have to keep from now on,
-            and the kinds of the bounds are overwritten.
+            and the kinds of the bounds and the pairs of the rows are overwritten.
     """
     code = int(LimitKind.OTHER)
     qp = program_views(data, arrays.sizes)
@@ -129,6 +129,7 @@ def assemble(data: Vector, arrays: ProgramArrays, step: StepViews) -> None:
     qp.ub[:] = np.inf
     step.lower_kind[:] = 0.0
     step.upper_kind[:] = 0.0
+    step.row_pair[:] = 0.0
     for k in range(len(arrays.table)):
         entry = arrays.table[k]
         kind = entry[Column.KIND]

@@ -63,6 +63,7 @@ class SceneHead(Record):
         pairs: Number of pairs.
         pair_size: Length of a `Pair`.
         first: Index of the first pair of this scene among those of all scenes of a scheme.
+        row: Index of the first row of this scene among the inequality rows of a scheme.
     """
 
     least: float
@@ -71,6 +72,7 @@ class SceneHead(Record):
     pairs: int
     pair_size: int
     first: int
+    row: int
 
 
 class Body(Record):
@@ -353,7 +355,7 @@ def _constants(
     least, gain = distances
     count, size = pairs.shape
     head = SceneHead.make(
-        least=least, gain=gain, bodies=len(bodies), pairs=count, pair_size=size, first=0
+        least=least, gain=gain, bodies=len(bodies), pairs=count, pair_size=size, first=0, row=0
     )
     return np.concatenate([head, robot.dq_max, *bodies, pairs.ravel()])
 

@@ -25,7 +25,8 @@ TARGET_SIZE = 18
 class StepViews(NamedTuple):
     """One instant of a control loop of n joints, as the kernels of parts read it.
 
-    The kernels of limits write `least`, `lower_kind` and `upper_kind`; all else is read only.
+    The kernels of limits write `least`, `lower_kind`, `upper_kind` and `row_pair`; all else is read
+    only.
 
     Attributes:
         t: Time [s].
@@ -43,6 +44,8 @@ class StepViews(NamedTuple):
         lower_kind: `LimitKind` of each joint's lower bound, (n,). Where a kernel tightens a bound
             and writes no kind, the bound goes by the name of its limit.
         upper_kind: The same for the upper bounds, (n,).
+        row_pair: Number from 1 of the watched pair that each inequality row belongs to, where that
+            changes from step to step, else 0, (m,).
     """
 
     t: float
@@ -58,6 +61,7 @@ class StepViews(NamedTuple):
     least: Vector
     lower_kind: Vector
     upper_kind: Vector
+    row_pair: Vector
 
 
 class Step:

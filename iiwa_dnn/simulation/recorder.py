@@ -94,6 +94,7 @@ class Recorder:
             ("bound_multiplier", of_bounds),
             ("bound_kind", kinds * (of_bounds != 0.0)),
             ("row_multiplier", of_rows),
+            ("row_pair", np.asarray(logs.row_pair) * (of_rows != 0.0)),
             ("kind", np.asarray(logs.kind)),
             ("excess", self.layout.excess(first)),
         ):

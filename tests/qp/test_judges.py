@@ -47,7 +47,7 @@ def draw(rng: np.random.Generator, kind: str) -> tuple[QP, np.ndarray, np.ndarra
     q = -(P @ x + C.T @ force)
     scales = 2.0 ** np.array([-26, 0, 26])
     of_rows = rng.choice(scales if kind in ("rows", "both") else [1.0], p + m)
-    of_x = rng.choice(scales if kind == "columns" else [1.0], n)
+    of_x = rng.choice([1.0, rng.choice(scales) if kind == "columns" else 1.0], n)
     cost = rng.choice(scales if kind == "cost" else [1.0])
     rows = of_rows[:, np.newaxis] * C[: p + m] * of_x
     sides = of_rows * limits[: p + m]

@@ -221,17 +221,20 @@ def test_crosscheck_counts_only_what_is_believed():
         "tolerance": 1e-6,
         "first_disagreement": {
             "steps": 1, "step": 1, "time_s": pytest.approx(0.1), "quantity": "solution_gap",
-            "solver": "proxqp", "gap": 9e-6, "tolerance": 1e-6,  # in the place of osqp
+            "solver": "proxqp (for osqp)", "gap": 9e-6, "tolerance": 1e-6,
         },
     }  # fmt: skip
     assert failures(record) == [
-        "step 1 (t = 0.1 s): the gap to proxqp is 9e-06 rad/s, tolerance 1e-06; 1 step in all",
+        "step 1 (t = 0.1 s): the gap to proxqp (for osqp) is 9e-06 rad/s, tolerance 1e-06; "
+        "1 step in all",
         "reference answers missing or not accurate enough to judge by: 2 (proxqp+osqp); "
         "the check 'proof' needs no other solver",
         "1 step of 6 not checked",
     ]
-    proven = compute_metrics(record._replace(judge=np.full((6, 2), 2, dtype=np.int8)))["crosscheck"]
-    assert proven["first_disagreement"]["solver"] == "proof"
+    proven = compute_metrics(dataclasses.replace(record, judge=np.full((6, 2), 2, dtype=np.int8)))[
+        "crosscheck"
+    ]
+    assert proven["first_disagreement"]["solver"] == "proof (for osqp)"
     nobody = check_of(solvers=(), kind=KINDS)
     assert nobody["kinds"] == dict(zip(PROGRAMS, (0, 0, 0, 3, 1), strict=True))
     assert (nobody["solver"], nobody["steps_checked"], nobody["judged"]) == ("none", 0, False)
@@ -451,6 +454,10 @@ def test_the_nearest_pair_is_named():
     assert found["missing_m"] == pytest.approx(0.005)
     words = "link_4 and Box came as near as 0.015 m at t = 0.4 s, allowed 0.02 m"
     assert failures(record) == [words]
+    assert found["at_stop"] is None
+    action = np.where(np.arange(10) < 4, 0, 4).astype(np.int8)
+    stopped = compute_metrics(dataclasses.replace(record, action=action))
+    assert stopped["collisions"]["at_stop"] == "link_4 and Box"
 
 
 LIMITS = [100.0, 100.0, 50.0, 50.0, 50.0, 20.0, np.inf]

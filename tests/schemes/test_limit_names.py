@@ -134,3 +134,21 @@ def test_a_record_tells_the_kinds_of_active_bounds_too() -> None:
     incidents = d.compute_metrics(record)["incidents"]
     said = {limit["limit"] for limit in incidents["limiting"] + incidents["active"]}
     assert said == {"acceleration"}
+
+
+def test_of_more_pairs_than_rows_each_limit_has_the_names_of_two_bodies() -> None:
+    robot = paper_robot()
+    sphere = d.Sphere(center=paper_start().position + 0.4 * SIDEWAYS, radius=0.05)
+    parts = [d.CollisionAvoidance([sphere], nearest=nearest) for nearest in (4, 200)]
+    heard = []
+    for part in parts:
+        controlled = d.Controller(robot, scheme(d.AccelerationLimits(A), part), dt=DT)
+        _, commands = driven(controlled, PAPER_Q0, 600, FAR)
+        heard.append([command.active_limits for command in commands])
+    few, all_ = ({name for names in each for name in names if "Avoid" in name} for each in heard)
+    assert few == {f"CollisionAvoidance ({name.split('(')[1]}" for name in all_} != set()
+    assert all(" and " in name for name in few)
+    for names in (names for each in heard for names in each):
+        is_rate = ["acceleration" in name for name in names]
+        assert is_rate == sorted(is_rate)
+    assert any("Avoid" in names[0] and "acceleration" in names[-1] for names in heard[0] if names)
