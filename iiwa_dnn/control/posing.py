@@ -260,8 +260,8 @@ def _active_limits(
     """
     step = _solve(program, solver, point, _DAMPING)
     least = _ACTS * math.hypot(*point.qp.b[:3], *weight * point.qp.b[3:6])
-    lower, upper = program.kinds
+    lower, upper, pairs = program.kinds
     codes = np.where(step.z_box > 0.0, upper, -lower) * (np.abs(step.z_box) > least)
     codes[np.abs(codes) == LimitKind.VELOCITY] = 0
-    rows = (step.z > least) * (1.0 + program.row_pair)
+    rows = (step.z > least) * (1.0 + pairs)
     return tuple(map(describe, active_limits(LimitNames(program).settings, codes, rows)))

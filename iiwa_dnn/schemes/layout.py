@@ -39,7 +39,8 @@ class ProgramLayout:
         table: A row for each part, (parts, 8), by `Column`.
         constants: Constants of all parts, (k,).
         pairs: Names in words and least distance [m] of each watched pair.
-        kinds: `LimitKind` of the lower and upper bounds in the last program of `qp_at`, (2, dof).
+        kinds: `LimitKind` of the lower and upper bounds in the last program of `qp_at`, (dof,)
+            both, and the pair of each row, `StepViews.row_pair`, (m,).
     """
 
     def __init__(
@@ -70,8 +71,7 @@ class ProgramLayout:
         self._add(BlockKind.SOFT_TASK, soft, n)
         m = self._add(BlockKind.LIMIT, merged(limits, tasks), n)
         self.sizes = (n, m, p)
-        self.kinds = np.zeros((2, robot.dof))
-        self.row_pair = np.zeros(m)
+        self.kinds = (np.zeros(robot.dof), np.zeros(robot.dof), np.zeros(m))
         self.pairs: list[tuple[str, float]] = []
         for k, part in enumerate(self.parts):
             if isinstance(part, CollisionAvoidance):
@@ -245,7 +245,7 @@ class ProgramLayout:
             least=least,
             lower_kind=self.kinds[0],
             upper_kind=self.kinds[1],
-            row_pair=self.row_pair,
+            row_pair=self.kinds[2],
         )
 
 
