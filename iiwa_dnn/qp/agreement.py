@@ -15,15 +15,15 @@ An answer x is judged beside the point :math:`[x_r | y | z | z_{box}]` of a refe
 
 all rows scaled to length 1, where + selects rows and bounds with a multiplier at the reference.
 
-w is 1, or the largest coefficient of the row or the cost where that is not near 1. In the null
-space of S the cost is linear and no row with a multiplier leaves its limit, so a step along it
-leaves the objective as it is: where it is feasible, it leads to another solution. Where there is
-only one, and each active row has a multiplier, S is definite and (c) the largest entry of x - x_r.
+w is 1, or the largest coefficient of the row or the cost where that is not within 1e-3 and 1e3. (Of
+a row of 1e8 through x = 0, a point 1e-9 from the solution is 0.1 outside.) In the null space of S
+the cost is linear and no row with a multiplier leaves its limit, so a step along it leaves the
+objective as it is: where it is feasible, it leads to another solution. Where there is only one, and
+each active row has a multiplier, S is definite and (c) the largest entry of x - x_r.
 
 A reference with the residual r is up to about :math:`r / \lambda` from the solution along an
-eigenvector of S with the eigenvalue :math:`\lambda`: it says nothing of x where ten times that
-exceeds the tolerance. To make r small, a reference is polished as OSQP does it: x_r is then that of
-its active rows.
+eigenvector of S with the eigenvalue :math:`\lambda`: it says nothing of x where three times that
+exceeds the tolerance.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.qp.dense import ROUNDING
 from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector
-from iiwa_dnn.qp.program import field_slices
+from iiwa_dnn.qp.program import QP, field_slices
 
 USUAL = 1e3
 """Largest coefficient of a cost or a row, or its inverse, up to which it is not scaled."""
@@ -47,7 +47,6 @@ _ACTIVE = 1e-6
 _FLAT = ROUNDING
 """Eigenvalue of S, relative to n times the largest, up to which it is rounding: x is free along its
 eigenvector."""
-
 
 _NOISE = 2.0**-45
 """Root of a variable's curvature, relative to the largest, up to which it is rounding."""
@@ -121,32 +120,20 @@ def normalised(programs: Matrix, sizes: Sizes) -> tuple[Matrix, Matrix]:
         The programs, one `QP.data` a row, and the factors from their variables to those that were
         given, (N, n).
     """
-    n = sizes[0]
+    n, m, _ = sizes
     block = stacked(programs, sizes)
-    curvature = np.abs(np.diagonal(block.P, axis1=1, axis2=2))
-    largest = curvature.max(axis=1, keepdims=True, initial=1e-300)
-    root = np.sqrt(curvature / largest)
+    root = np.sqrt(np.abs(np.diagonal(block.P, axis1=1, axis2=2)))
+    root /= root.max(axis=1, keepdims=True, initial=np.finfo(float).tiny)
     factors = 1.0 / units(np.where(root > _NOISE, root, 0.0)[:, :, np.newaxis])
-    if (factors != 1.0).any():
-        columns = factors[:, np.newaxis]
-        parts = [
-            block.P * columns * columns.swapaxes(1, 2),
-            block.q * factors,
-            block.G * columns,
-            block.h,
-            block.A * columns,
-            block.b,
-            block.lb / factors,
-            block.ub / factors,
-        ]
-        programs = np.concatenate([part.reshape(len(factors), -1) for part in parts], axis=1)
-        block = stacked(programs, sizes)
-    cost = units(programs[:, np.newaxis, : n * n + n])
-    G = units(block.G)
-    A = units(block.A)
-    bounds = np.ones((len(programs), 2 * n))
-    divisors = [cost.repeat(n * n + n, 1), G.repeat(n, 1), G, A.repeat(n, 1), A, bounds]
-    return programs / np.concatenate(divisors, axis=1), factors
+    rows = factors[:, np.newaxis] * np.hstack(
+        [block.P * factors[:, :, np.newaxis], block.q[:, np.newaxis], block.G, block.A]
+    )
+    unit = units(rows)
+    unit[:, : n + 1] = units(np.abs(rows[:, : n + 1]).max(axis=2, initial=0.0))[:, np.newaxis]
+    rows = (rows / unit[:, :, np.newaxis]).reshape(len(rows), n * unit.shape[1])
+    P_q_G, A = np.split(rows, [n * (n + 1 + m)], axis=1)
+    h, b = np.split(np.hstack([block.h, block.b]) / unit[:, n + 1 :], [m], axis=1)
+    return np.hstack([P_q_G, h, A, b, block.lb / factors, block.ub / factors]), factors
 
 
 @np.errstate(invalid="ignore")
@@ -184,78 +171,25 @@ def objective_gaps(block: QPViews, x: Matrix, steps: Matrix) -> Matrix:
     return np.asarray(np.abs((gradient * steps).sum(axis=2)) / terms[:, np.newaxis])
 
 
-@np.errstate(divide="ignore", invalid="ignore")
-def unique_steps(
-    block: QPViews, references: Matrix, steps: Matrix, accuracy: Vector
-) -> tuple[Matrix, NDArray[np.bool_]]:
-    """Project the differences x - x_r on the directions in which x is unique.
+def unique_step(qp: QP, reference: Vector, step: Vector) -> tuple[Vector, float]:
+    """Project a difference x - x_r on the directions in which x is unique.
 
     Args:
-        block: N programs, normalised.
-        references: Their points by a reference, (N, 2 n + m + p).
-        steps: The differences x - x_r, (N, n); x is normalised too.
-        accuracy: Least eigenvalue of S along whose eigenvector each reference is accurate, (N,).
+        qp: The program, normalised.
+        reference: Its point by a reference, (2 n + m + p,).
+        step: The difference x - x_r, (n,); x is normalised too.
 
     Returns:
-        The differences in those directions, (N, n), and whether the reference is accurate in all
-        of them, (N,).
+        The difference in those directions, (n,), and the least eigenvalue of S there.
     """
-    n = steps.shape[1]
-    _, directions = _active_rows(block, references)
-    eigenvalues, vectors = np.linalg.eigh(block.P + directions.swapaxes(1, 2) @ directions)
-    fixed = eigenvalues > _FLAT * n * eigenvalues[:, -1:]
-    along = (vectors.swapaxes(1, 2) @ steps[:, :, np.newaxis])[:, :, 0]
-    unique: Matrix = (vectors @ np.where(fixed, along, 0.0)[:, :, np.newaxis])[:, :, 0]
-    is_off = fixed & (eigenvalues < accuracy[:, np.newaxis])
-    return unique, np.asarray(~is_off.any(axis=1))
-
-
-@np.errstate(divide="ignore", invalid="ignore")
-def _active_rows(block: QPViews, references: Matrix) -> tuple[Matrix, Matrix]:
-    """Find the rows that are active at points of a reference, (N, 2 n + m + p).
-
-    Returns:
-        The lengths of all rows [A; G; I], (N, k), and the rows, those that are active of length 1
-        and the others 0, (N, k, n).
-    """
-    p = block.b.shape[1]
-    eye = np.broadcast_to(np.eye(block.P.shape[1]), block.P.shape)
-    rows = np.concatenate([block.A, block.G, eye], axis=1)
-    length = np.linalg.norm(rows, axis=2)
-    force = length * np.abs(references[:, eye.shape[1] :])
-    active = force > _ACTIVE * np.maximum(force[:, p:].max(axis=1, keepdims=True, initial=0.0), 1.0)
-    active[:, :p] = length[:, :p] > 0.0
-    return length, np.where(active[:, :, np.newaxis], rows / length[:, :, np.newaxis], 0.0)
-
-
-def polished(block: QPViews, references: Matrix) -> Matrix:
-    """Solve the KKT systems of the rows that are active at points of a reference.
-
-    Args:
-        block: N programs.
-        references: Points with small residuals, (N, 2 n + m + p).
-
-    Returns:
-        The points, (N, 2 n + m + p), with the multipliers of inequality rows at least 0.
-    """
-    n = block.P.shape[1]
-    p = block.b.shape[1]
-    x = references[:, :n]
-    length, directions = _active_rows(block, references)
-    bounds = np.where(references[:, -n:] > 0.0, block.ub, block.lb)
-    limits = np.concatenate([block.b, block.h, bounds], axis=1)
-    points = references.copy()
-    for i, rows in enumerate(directions):
-        active = rows.any(axis=1)
-        scale = length[i, active]
-        C = rows[active]
-        forces = points[i, n:][active] * scale
-        gradient = block.P[i] @ x[i] + block.q[i] + forces @ C
-        excess = C @ x[i] - limits[i, active] / scale
-        K = np.block([[block.P[i], C.T], [C, np.zeros((len(C), len(C)))]])
-        step = np.linalg.lstsq(K, np.concatenate([gradient, excess]))[0]
-        points[i, n:] = 0.0
-        points[i, n:][active] = (forces - step[n:]) / scale
-        points[i, :n] -= step[:n]
-    np.maximum(points[:, n + p : -n], 0.0, out=points[:, n + p : -n])
-    return points
+    n, _, p = qp.sizes
+    rows = np.vstack([qp.A, qp.G, np.eye(n)])
+    length = np.linalg.norm(rows, axis=1)
+    force = length * np.abs(reference[n:])
+    active = force > _ACTIVE * max(1.0, force[p:].max())
+    active[:p] = length[:p] > 0.0
+    directions = rows[active] / length[active, np.newaxis]
+    eigenvalues, vectors = np.linalg.eigh(qp.P + directions.T @ directions)
+    is_unique = eigenvalues > _FLAT * n * eigenvalues[-1]
+    unique = vectors[:, is_unique]
+    return unique @ (unique.T @ step), float(eigenvalues[is_unique].min(initial=np.inf))

@@ -59,7 +59,7 @@ each gains three digits."""
 _ROUNDING = 2.0**-53
 _TINY = 1e-290
 """Bound on the underflow of a sum."""
-_SLIGHT = 1e-9
+_SLIGHT = 1e-6
 """Multiplier of a row of length 1, relative to the largest, up to which it is not active at the
 beginning."""
 _FRACTION = 0.9
@@ -128,7 +128,7 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
 
 
 def point_of(solution: Any, qp: QP) -> Vector:
-    """Return ``[x | y | z | z_box]`` of an answer, (2 n + m + p,); absent multipliers are zero.
+    """Return ``[x | y | z | z_box]`` of an answer, (2 n + m + p,); absent parts are 0, x NaN.
 
     Raises:
         InvalidInputError: The answer has a part of another size than the program's.
@@ -138,7 +138,8 @@ def point_of(solution: Any, qp: QP) -> Vector:
     for name, size in (("x", n), ("y", p), ("z", m), ("z_box", n)):
         part: Any = getattr(solution, name, None)
         given = part is not None and (name == "x" or np.size(part))
-        parts.append(check_size(name, np.asarray(part) if given else np.zeros(size), size))
+        default = np.nan if name == "x" else 0.0
+        parts.append(check_size(name, np.asarray(part) if given else np.full(size, default), size))
     return np.concatenate(parts)
 
 
@@ -169,59 +170,48 @@ class _Rows:
         self.S_error = np.where(qp.P == qp.P.T, 0.0, self.unit * np.abs(self.S))
 
 
-class Enclosure(NamedTuple):
-    """A box around the exact solution of a program.
-
-    Attributes:
-        center: Center of the box, (n,).
-        radius: Largest distance of each entry of the solution from the center, (n,); inf where
-            nothing was proven.
-        active: Active set, as in `Proof`.
-        reason: Reason why the active set or the box is not proven; empty if both are.
-    """
-
-    center: Vector
-    radius: Vector
-    active: IntVector
-    reason: str
-
-
 @np.errstate(all="ignore")
 def prove_point(qp: QP, point: Vector) -> Proof:
     """Bound the distance of a point ``[x | y | z | z_box]``, (2 n + m + p,), from the solution."""
     center, radius, active, reason = enclose_solution(qp, point)
-    distance = np.abs(point[: center.size] - center) + radius
-    bound = (1.0 + 4.0 * _ROUNDING) * float(distance.max())
-    if not bound < np.inf:
-        return Proof(np.inf, active, reason if np.isinf(radius).any() else FAR)
-    return Proof(bound, active, reason)
+    bound = (1.0 + 4.0 * _ROUNDING) * float((np.abs(point[: center.size] - center) + radius).max())
+    if bound < np.inf and reason != NOT_CONVEX:
+        return Proof(bound, active, reason)
+    return Proof(np.inf, active, FAR if reason in ("", WEAK) else reason)
 
 
 @np.errstate(all="ignore")
-def enclose_solution(qp: QP, point: Vector) -> Enclosure:
+def enclose_solution(qp: QP, point: Vector) -> tuple[Vector, Vector, IntVector, str]:
     """Enclose the solution, starting with the active set of a point ``[x | y | z | z_box]``.
 
     Args:
         qp: The program, of n variables, m inequality and p equality rows.
         point: The point, (2 n + m + p,); nothing about it is trusted.
+
+    Returns:
+        Center of a box around the solution and the largest distance of each entry from it, inf
+        where nothing was proven, (n,) each; and the active set and the reason of `Proof`. If that
+        is `NOT_CONVEX`, the box holds the one KKT point with that active set.
     """
     n, m, p = qp.sizes
     rows = _Rows(qp)
     center = point[:n]
     multipliers = np.concatenate([point[n:], -point[n + p + m :]])
     force = multipliers * np.linalg.norm(rows.rows, axis=1)
-    is_held = (multipliers > rows.limits - rows.rows @ center) & (force > _SLIGHT * force.max())
-    active = rows.equal | (rows.usable & is_held)
+    active = rows.equal | (
+        rows.usable
+        & (multipliers > rows.limits - rows.rows @ center)
+        & (force > _SLIGHT * force.max())
+    )
     active[p + m + n :] &= ~active[p + m : p + m + n]
     radius: Vector = np.full(n, np.inf)
     reason = UNDECIDED
     for attempt in range(ROUNDS):
         kept = _independent(rows, active)
-        enclosure = _enclose(rows, qp.q, kept)
-        if enclosure is None:
+        u, error = _enclose(rows, qp.q, kept)
+        if not np.isfinite(error).all():
             reason = DEPENDENT
             break
-        u, error = enclosure
         slack = _least_slack(rows, u[:n], error[:n])
         joins = rows.usable & ~active & ~(slack >= 0.0)
         uncertain = np.where(rows.equal[kept], -np.inf, error[n:] - u[n:])
@@ -229,15 +219,14 @@ def enclose_solution(qp: QP, point: Vector) -> Enclosure:
         if not joins.any() and (not leaving.size or attempt == ROUNDS - 1):
             missing = np.maximum(uncertain, 0.0) @ np.abs(rows.rows[kept]).sum(axis=1)
             moved, reason = _moved(qp, rows, float(missing), bool((uncertain >= 0.0).any()))
-            if not reason and (slack[rows.usable & ~active] == 0.0).any():
-                reason = WEAK
+            reason = reason or (WEAK if (slack[rows.usable & ~active] == 0.0).any() else "")
             center = u[:n]
             radius = (1.0 + rows.unit) * (error[:n] + moved)
             break
         active = active | joins
         active[leaving] = False
     upper, lower = np.split(active[p + m :].astype(np.int64), 2)
-    return Enclosure(center, radius, np.concatenate([upper - lower, active[p : p + m]]), reason)
+    return center, radius, np.concatenate([upper - lower, active[p : p + m]]), reason
 
 
 def _independent(rows: _Rows, active: Mask) -> NDArray[np.intp]:
@@ -255,11 +244,10 @@ def _least_slack(rows: _Rows, x: Vector, error: Vector) -> Vector:
     """
     slack, rounding = products(np.column_stack([rows.limits, -rows.rows]), np.append(1.0, x))
     reach = np.abs(rows.rows) @ error + rounding
-    slack -= (1.0 + rows.unit) * reach
-    return np.where(reach > 0.0, slack - rows.unit * np.abs(slack), slack)
+    return slack - (1.0 + rows.unit) * (reach + rows.unit * np.abs(slack) * (reach > 0.0))
 
 
-def _enclose(rows: _Rows, q: Vector, kept: NDArray[np.intp]) -> tuple[Vector, Vector] | None:
+def _enclose(rows: _Rows, q: Vector, kept: NDArray[np.intp]) -> tuple[Vector, Vector]:
     """Solve [[S, C^T], [C, 0]] u = [-q; d] and bound the error of each unknown.
 
     Args:
@@ -268,16 +256,16 @@ def _enclose(rows: _Rows, q: Vector, kept: NDArray[np.intp]) -> tuple[Vector, Ve
         kept: Indices of the active rows C, (k,).
 
     Returns:
-        Center and radii, (n + k,) both; None if it is not shown that there is exactly one solution.
+        Center and radii, (n + k,) both; radii are not finite if it is not shown that there is
+        exactly one solution.
     """
     C = rows.rows[kept]
-    k, n = C.shape
-    K = np.block([[rows.S, C.T], [C, np.zeros((k, k))]])
+    K = np.block([[rows.S, C.T], [C, np.zeros((len(C), len(C)))]])
     r = np.concatenate([-q, rows.limits[kept]])
     try:
         R = np.linalg.inv(K)
     except np.linalg.LinAlgError:
-        return None
+        return r, np.full(r.size, np.inf)
     u = R @ r
     system = np.column_stack([r, -K])
     residual, rounding = products(system, np.append(1.0, u))
@@ -288,14 +276,12 @@ def _enclose(rows: _Rows, q: Vector, kept: NDArray[np.intp]) -> tuple[Vector, Ve
     defect = np.abs(np.eye(r.size) - R @ K).sum(axis=1)
     alpha = (1.0 + rows.unit) * (defect + rows.unit * (1.0 + size @ np.abs(K).sum(axis=1)) + _TINY)
     largest = float(alpha.max())
-    if not largest < 0.5:
-        return None
     rho = np.abs(residual) + rounding
-    rho[:n] += rows.S_error @ np.abs(u[:n])
-    rho += _TINY * rho.any()
-    beta = (1.0 + rows.unit) * (size @ ((1.0 + rows.unit) * rho) + _TINY * rho.any())
+    rho[: q.size] += rows.S_error @ np.abs(u[: q.size])
+    rho = (1.0 + rows.unit) * rho + _TINY * rho.any()
+    beta = (1.0 + rows.unit) * (size @ rho + _TINY * rho.any())
     error = (1.0 + rows.unit) * (beta + alpha * beta.max() / (1.0 - largest))
-    return (u, error) if np.isfinite(error).all() else None
+    return u, error if largest < 0.5 else np.full(r.size, np.inf)
 
 
 def _moved(qp: QP, rows: _Rows, missing: float, weak: bool) -> tuple[float, str]:
@@ -312,10 +298,8 @@ def _moved(qp: QP, rows: _Rows, missing: float, weak: bool) -> tuple[float, str]
     """
     curvature = _curvature(rows.S, qp.A, rows.unit, _FRACTION if weak else 0.0)
     if not curvature > 0.0:
-        return np.inf, FLAT if weak else NOT_CONVEX
-    if not weak:
-        return 0.0, ""
-    return (1.0 + 2.0 * rows.unit) * (missing + _TINY) / curvature, WEAK
+        return (np.inf, FLAT) if weak else (0.0, NOT_CONVEX)
+    return (1.0 + 2.0 * rows.unit) * (missing + weak * _TINY) / curvature, WEAK if weak else ""
 
 
 def _curvature(S: Matrix, A: Matrix, unit: float, fraction: float) -> float:

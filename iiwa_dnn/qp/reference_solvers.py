@@ -66,18 +66,13 @@ def reference_solver(name: str, sizes: Sizes) -> Callable[[QP], Vector]:
 
     if name not in qpsolvers.available_solvers:
         raise MissingDependencyError(f"the solver {name}", f"pip install 'qpsolvers[{name}]'")
-    return partial(_solve, name)
+    return partial(_solve, qpsolvers.solve_problem, name)
 
 
-def _solve(name: str, qp: QP) -> Vector:
+def _solve(solve_problem: Callable[..., Any], name: str, qp: QP) -> Vector:
     """Solve a program with a solver of qpsolvers; return its point (2 n + m + p,), or NaN."""
-    import qpsolvers
-
-    solution = qpsolvers.solve_problem(qp.to_qpsolvers(), name, **OPTIONS.get(name, {}))
-    point = point_of(solution, qp)
-    if solution.x is None:
-        point[:] = np.nan
-    return _answer(qp, point, solution.found)
+    solution = solve_problem(qp.to_qpsolvers(), name, **OPTIONS.get(name, {}))
+    return _answer(qp, point_of(solution, qp), solution.found)
 
 
 def _answer(qp: QP, point: Vector, is_found: bool | None) -> Vector:
@@ -97,10 +92,9 @@ class ProxQP:
 
     def __init__(self, sizes: Sizes) -> None:
         """Allocate the workspace for programs of these sizes (n, m, p)."""
-        proxqp = import_extra("proxsuite", "pip install proxsuite").proxqp
         n, m, p = sizes
+        proxqp = import_extra("proxsuite", "pip install proxsuite").proxqp
         self.solver = proxqp.dense.QP(n, p, m, True)
-        self._solved = proxqp.PROXQP_SOLVED
         for setting, value in OPTIONS["proxqp"].items():
             setattr(self.solver.settings, setting, value)
 
@@ -111,4 +105,4 @@ class ProxQP:
         solver.solve()
         results = solver.results
         point = np.concatenate([results.x, results.y, results.z])
-        return _answer(qp, point, results.info.status == self._solved)
+        return _answer(qp, point, results.info.status.name == "PROXQP_SOLVED")

@@ -359,7 +359,8 @@ class Record:
             # Not np.load, which takes any file that is no archive for a pickled object.
             with Path(path).open("rb") as file:
                 stored = np.lib.npyio.NpzFile(file, allow_pickle=False)
-                arrays: dict[str, Any] = {name: stored[name] for name in COLUMNS}
+                names = [name for name in COLUMNS if name not in NEW or name in stored]
+                arrays: dict[str, Any] = {name: stored[name] for name in names}
                 settings = json.loads(str(stored["settings"]))
             if not len(arrays["dq_solver"]):
                 arrays["dq_solver"] = arrays["dq"]
@@ -383,6 +384,9 @@ OPTIONAL = frozenset(
     item.name for item in fields(Record) if item.default is not MISSING and item.name in COLUMNS
 )
 """Columns that may have the length zero."""
+
+NEW = frozenset({"row_pair"})
+"""Columns that files of the last version lack; they have the length zero then."""
 
 Record.__doc__ = "\n        ".join(
     [

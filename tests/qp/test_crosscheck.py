@@ -10,13 +10,17 @@ import qpsolvers
 import iiwa_dnn as d
 from helpers_qp import known_qp
 from helpers_simulation import run
-from iiwa_dnn.qp import QP, Solution, crosscheck
+from iiwa_dnn.qp import QP, Solution, crosscheck, proof
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.layout import Sizes
 
 SOLVERS = ("proxqp", "osqp")
 BOTH = CrossCheck(SOLVERS)
 EACH = [CrossCheck((name,)) for name in SOLVERS]
+
+
+def nothing_proven(qp: QP, point: np.ndarray) -> tuple[np.ndarray, float, None, str]:
+    return point[: qp.q.size], np.inf, None, "nothing proven"
 
 
 def value(qp: QP, x: np.ndarray) -> float:
@@ -140,7 +144,7 @@ def test_a_reference_is_judged_by_its_own_residual(spoilt, residual, monkeypatch
     if spoilt is not None:
         point[spoilt] = np.nan
     monkeypatch.setattr(crosscheck, "reference_solver", lambda *_: lambda qp: point)
-    monkeypatch.setattr(CrossCheck, "_proven_step", lambda *_: None)
+    monkeypatch.setattr(crosscheck, "enclose_solution", nothing_proven)
     agreement = BOTH.check(qp, np.zeros(1))
     np.testing.assert_array_equal(agreement.reference_residual, [[residual, residual]])
     assert np.isnan(agreement.solution_gap).all()
@@ -152,17 +156,17 @@ def test_a_reference_is_not_blamed_for_rounding(monkeypatch) -> None:
     A = np.array([[0.1, 0.2, 0.3, 0.4, 0.5]])
     qp = QP(np.eye(5), -x, A=A, b=A @ x + 5e-7)  # a digit or two of 1e9
     point = np.concatenate([x, np.zeros(6)])
-    assert qp.residuals(point).largest > 1e-7
-    tolerance = CrossCheck().reference_tolerance
-    assert CrossCheck()._answer("proxqp", lambda qp: point, qp)[1] == tolerance
-    wrong = point + np.arange(11) / 10.0
-    assert CrossCheck()._answer("proxqp", lambda qp: wrong, qp)[1] > tolerance
     monkeypatch.setattr(crosscheck, "reference_solver", lambda *_: lambda qp: point)
-    assert CrossCheck().check(qp, x).largest < 1e-6
+    monkeypatch.setattr(crosscheck, "enclose_solution", nothing_proven)
+    assert qp.residuals(point).largest > 1e-7
+    agreement = CrossCheck().check(qp, x)
+    assert (agreement.judge[0, 0], agreement.largest[0, 0] < 1e-6) == (0, True)
+    assert agreement.reference_residual == CrossCheck().reference_tolerance
+    wrong = point + np.arange(11) / 10.0
     monkeypatch.setattr(crosscheck, "reference_solver", lambda *_: lambda qp: wrong)
-    assert CrossCheck().check(qp, x).judge == 2  # of the proof
-    monkeypatch.setattr(CrossCheck, "_proven_step", lambda *_: None)
     assert CrossCheck().check(qp, x).judge == -1
+    monkeypatch.setattr(crosscheck, "enclose_solution", proof.enclose_solution)
+    assert CrossCheck().check(qp, x).judge == 2
 
 
 class Liar(d.DNNSolver):

@@ -9,6 +9,7 @@ import pytest
 
 from helpers_records import heart_record, make_record
 from iiwa_dnn.errors import FileError, InvalidInputError
+from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL, Record
 
 ROWS = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(3)]
@@ -149,6 +150,19 @@ def test_a_file_that_is_not_a_record_is_told_in_one_line(heart, tmp_path):
             Record.load(tmp_path / name)
         assert "\n" not in str(caught.value)
         assert str(tmp_path / name) in str(caught.value)
+
+
+def test_a_record_of_the_last_version_is_read(heart, tmp_path):
+    heart.save(tmp_path / "last.npz")
+    with np.load(tmp_path / "last.npz") as stored:
+        arrays = dict(stored)
+    del arrays["row_pair"]
+    arrays["limiting_rows"] = arrays["limiting_rows"].astype(np.int8)
+    np.savez(tmp_path / "last.npz", **arrays)
+    loaded = Record.load(tmp_path / "last.npz")
+    assert not len(loaded.row_pair)
+    assert compute_metrics(loaded)["incidents"] == compute_metrics(heart)["incidents"]
+    np.testing.assert_array_equal(loaded.dq, heart.dq)
 
 
 def test_a_save_that_fails_leaves_the_old_record(heart, tmp_path, monkeypatch):
