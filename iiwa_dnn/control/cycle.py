@@ -327,6 +327,9 @@ def _answer(log: StepLog, arrays: ProgramArrays, network: CompiledAnswer, state:
         overwritten, else unchanged.
     """
     qp = program_views(log.program, arrays.sizes)
+    if network.settings.duration == 0.0 and _is_empty(qp, network.settings.tolerance):
+        log.status = NOT_CONVERGED
+        return False
     before = state.copy()
     stats = log.stats
     stats.iterations, stats.time, stats.primal, stats.dual, stats.gap = enter_answer(
@@ -338,6 +341,22 @@ def _answer(log: StepLog, arrays: ProgramArrays, network: CompiledAnswer, state:
         copied(state, before)
         return False
     return True
+
+
+@compiled
+def _is_empty(qp: QPViews, tolerance: float) -> bool:
+    """Test whether some inequality row admits no point within the bounds, beyond the tolerance.
+
+    The network would search for one as long as it may.
+    """
+    for j in range(qp.h.size):
+        least = 0.0
+        for i in range(qp.q.size):
+            rate = qp.G[j, i]
+            least += rate * (qp.lb[i] if rate > 0.0 else qp.ub[i]) if rate != 0.0 else 0.0
+        if least > qp.h[j] + tolerance:
+            return True
+    return False
 
 
 @compiled

@@ -55,6 +55,10 @@ from iiwa_dnn.schemes.rate_limits import MotionConstants
 MAX_LINEAR_SOLVES = 60
 """Linear solves after which a program counts as one without a solution."""
 
+FALLBACK_BUDGET = 240
+"""Largest number of linear solves of a step for all of its fallback programs together. Beyond it
+none has a solution, and the arm brakes."""
+
 PENALTY = 1e-5
 """Weight w of the nominal cost in the search of a factor, if its largest entry is one."""
 
@@ -130,7 +134,7 @@ def fallback_size(sizes: Sizes) -> int:
 
 @compiled
 def solve_warm(qp: QPViews, tol: float, state: Vector, point: Vector, stats: SolveStats) -> bool:
-    """Solve a program by the network from a given state and, if that fails, from a cold start.
+    """Solve a program by the network from a given state and, if that fails, from zeros.
 
     Args:
         qp: The program, of n variables, m inequality and p equality rows.
@@ -138,16 +142,16 @@ def solve_warm(qp: QPViews, tol: float, state: Vector, point: Vector, stats: Sol
         state: State of the network, (3 n + m + p,), overwritten by the converged one, or by zeros
             if both tries fail.
         point: Primal-dual point [x | y | z | z_box], (2 n + m + p,), overwritten.
-        stats: Statistics of a step: linear solves are added to `iterations`, and `time` is
-            overwritten.
+        stats: Statistics of a step: linear solves are added to `iterations`, up to
+            `FALLBACK_BUDGET`, and `time` is overwritten.
 
     Returns:
         True if the residuals of `point` are within the tolerance, or above it by rounding alone.
     """
-    for _ in range(2):
-        linear_solves, time, primal, dual, gap = solve_within(
-            qp, tol, MAX_LINEAR_SOLVES, state, point
-        )
+    is_cold = largest_entry(state) == 0.0
+    for _ in range(1 if is_cold else 2):
+        budget = min(MAX_LINEAR_SOLVES, FALLBACK_BUDGET - int(stats.iterations))
+        linear_solves, time, primal, dual, gap = solve_within(qp, tol, budget, state, point)
         stats.iterations += linear_solves
         stats.time = time
         if within(primal, dual, gap, tol) or is_small_enough(qp, point, tol, 0.0):

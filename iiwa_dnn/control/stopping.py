@@ -11,7 +11,9 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.plan import ControlPlan, Instant
+from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp.dense import largest_entry
 from iiwa_dnn.schemes.parts import enter_rest
 from iiwa_dnn.schemes.program import Column, block_constants
 from iiwa_dnn.schemes.rate_limits import MotionConstants
@@ -202,3 +204,49 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector) -> float:
         if not agrees:
             return np.inf
     return periods * ratio
+
+
+@compiled
+def store_command(plan: ControlPlan, motion: MotionState, dq: Vector) -> float:
+    """Compute the next command of the stored motion to rest; at rest that is 0.
+
+    Args:
+        plan: Layout of the step.
+        motion: State of the motion, of n joints.
+        dq: The command [rad/s], (n,), overwritten; NaN at rest and where no motion is stored, so
+            that it widens no bounds.
+
+    Returns:
+        Periods until rest after the command; inf if no motion is stored and the arm moves.
+    """
+    rest = motion.stopping_periods
+    if rest == 0.0:
+        dq[:] = np.nan
+        moves = max(largest_entry(motion.last), largest_entry(motion.before)) > 0.0
+        return np.inf if moves else 0.0
+    limits = plan.yielding.limits
+    cubic = plan.yielding.cubic
+    dq[:] = 0.0
+    if limits.velocity.size == 0:
+        return 0.0
+    if cubic and plan.timing.vary:
+        rest = stretched(motion.last, motion.before, limits, plan.timing.dt, rest)
+    slow_down(plan, motion, rest, dq)
+    return max(rest - 1.0, 0.0)
+
+
+@compiled
+def slow_down(plan: ControlPlan, motion: MotionState, periods: float, dq: Vector) -> None:
+    """Compute the next command of a motion that comes to rest after a number of periods.
+
+    The command dq [rad/s], (n,), is overwritten, within velocity and acceleration limits.
+    """
+    limits = plan.yielding.limits
+    for i in range(motion.q.size):
+        last = motion.last[i]
+        fastest = max(limits.velocity[i], abs(last))
+        change = limits.acceleration[i] * plan.timing.dt
+        dq[i] = next_velocity(last, motion.before[i], periods, plan.yielding.cubic)
+        # After a change of the control period the curve may exceed a limit.
+        dq[i] = min(max(dq[i], last - change), last + change)
+        dq[i] = min(max(dq[i], -fastest), fastest)

@@ -36,7 +36,8 @@ from iiwa_dnn.control.stopping import (
     least_periods,
     next_velocity,
     periods_to_rest,
-    stretched,
+    slow_down,
+    store_command,
 )
 from iiwa_dnn.naming import LimitKind
 from iiwa_dnn.networks.integrators.base import SolveStats
@@ -134,15 +135,22 @@ def yield_step(
     kind = STOPPED
     factor = 0.0
     rest = 0.0
+    nominal_solves = log.stats.iterations
+    log.stats.iterations = 0.0
     if action != BRAKE:
         _widen_bounds(log, qp, yielding.limits)
         found, factor = _answer_fallback(log, qp, yielding, plan.fallback, action)
         kind = int(found)
     x = log.point[: qp.q.size].copy()
     limits = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, nominal.lb, nominal.ub)
+    own = log.program.copy()
+    wider = program_views(own, sizes)
+    copied(wider.lb, nominal.lb)
+    copied(wider.ub, nominal.ub)
+    _contain(wider, plan, instant)
     if kind != STOPPED:
-        _approach_answer(limits, plan, instant, log.stats, x)
-        rest = _make_stoppable(limits, plan, instant, log, x)
+        _approach_answer(limits, wider, plan, instant, log.stats, x)
+        rest = _make_stoppable(wider, plan, instant, log, x)
         missing = _note_missing(log, x[: sizes.joints])
         primal, dual, gap = point_residuals(limits, log.point)
         if missing > 0:
@@ -162,6 +170,7 @@ def yield_step(
         _keep_verified_distances(instant)
         log.point[:] = 0.0
         copied(log.point, x)
+    log.stats.iterations += nominal_solves
     log.stats.primal, log.stats.dual, log.stats.gap = point_residuals(qp, log.point)
     taken = _note_decision(log, nominal, yielding, x, kind, factor, action)
     if taken == NONE:
@@ -274,15 +283,21 @@ def _answer_fallback(
     tol = yielding.tolerance
     point = np.empty(2 * n + 2 + m + qp.b.size)
     size = 3 * n + 3 + m + qp.b.size
-    factor = largest_factor(qp, yielding, fallback[:size], point, log.stats, False)
-    note_limiting(point, n, m, 1, log.limiting)
+    factor = 1.0  # without a task
+    if qp.b.size > 0:
+        factor = largest_factor(qp, yielding, fallback[:size], point, log.stats, False)
+        note_limiting(point, n, m, 1, log.limiting)
     follows = action == SLOW and _is_path(log.targets) and not _races(qp, point[:n])
     if factor == 1.0 or (follows and factor >= CREEP):
         asked = qp.b.copy()
         scale_task(qp, yielding.weights, factor)
-        if solve_warm(qp, tol, fallback[size:], log.point, log.stats):
+        found = solve_warm(qp, tol, fallback[size:], log.point, log.stats)
+        if qp.b.size == 0:
+            note_limiting(log.point, n, m, 0, log.limiting)
+        if found:
             return SCALED, factor
         copied(qp.b, asked)
+        factor = factor if qp.b.size > 0 else -1.0
     if action == STOP:
         return STOPPED, 0.0
     retreat = 1.0
@@ -332,7 +347,12 @@ def _note_missing(log: StepLog, dq: Vector) -> int:
 
 @compiled
 def _approach_answer(
-    limits: QPViews, plan: ControlPlan, instant: Instant, stats: SolveStats, x: Vector
+    limits: QPViews,
+    wider: QPViews,
+    plan: ControlPlan,
+    instant: Instant,
+    stats: SolveStats,
+    x: Vector,
 ) -> None:
     """Replace the answer x of a fallback program by the next command towards it, within limits.
 
@@ -340,6 +360,7 @@ def _approach_answer(
 
     Args:
         limits: The program that was answered, with the nominal bounds.
+        wider: The same, with bounds and rows that admit the stored motion (`_contain`).
         plan: Layout of the step.
         instant: The instant of the step; the answer is written to `wanted` of the next state.
         stats: Statistics of the step, updated as in `solve_warm`.
@@ -354,7 +375,7 @@ def _approach_answer(
         _approach_together(plan, instant, x)
     else:
         _approach_each(limits, plan, instant, x)
-    nearest_within(limits, x, yielding, stats)
+    nearest_within(wider, x, yielding, stats)
 
 
 @compiled
@@ -413,28 +434,67 @@ def _make_stoppable(
     Returns:
         Periods until the arm rests after the command; 0 if no stopping motion has to be verified.
     """
-    yielding = plan.yielding
     dof = instant.motion.q.size
     rest = periods_to_rest(plan, instant, x[:dof])
     if rest < np.inf:
         return rest
     wanted = log.point[: x.size].copy()
-    if yielding.limits.velocity.size > 0:
+    if plan.yielding.limits.velocity.size > 0:
         _approach_together(plan, instant, wanted)
-        nearest_within(limits, wanted, yielding, log.stats)
+        nearest_within(limits, wanted, plan.yielding, log.stats)
+    copied(x, wanted)
     brake = np.zeros(x.size)
     left = _brake(limits, plan, instant, log, brake)
+    return _blend(plan, instant, brake[:dof], left, x[:dof])
+
+
+@compiled
+def _blend(plan: ControlPlan, instant: Instant, brake: Vector, left: float, x: Vector) -> float:
+    """Move a command towards one that brakes, by halves, until all limits agree with its stop.
+
+    Bounds and rows that admit both admit each command between them.
+
+    Args:
+        plan: Layout of the step.
+        instant: The instant of the step; `least` of the next state is overwritten if the braking
+            command itself is taken.
+        brake: The braking command [rad/s], (dof,).
+        left: Periods until rest after it.
+        x: The command, overwritten [rad/s], (dof,).
+
+    Returns:
+        Periods until the arm rests after the command.
+    """
+    wanted = x.copy()
     fraction = 1.0
     for _ in range(HALVINGS_NEAR if _is_near(plan, instant) else HALVINGS):
-        for i in range(dof):
+        for i in range(x.size):
             x[i] = brake[i] + fraction * (wanted[i] - brake[i])
-        rest = periods_to_rest(plan, instant, x[:dof])
+        rest = periods_to_rest(plan, instant, x)
         if rest < np.inf:
             return rest
         fraction *= 0.5
     copied(x, brake)
     _keep_verified_distances(instant)
     return left
+
+
+@compiled
+def _contain(limits: QPViews, plan: ControlPlan, instant: Instant) -> None:
+    """Widen bounds and rows of a program so that they admit the stored stopping motion.
+
+    Writes limits.lb, limits.ub and limits.h; nothing if no motion is stored. The next command of
+    the motion is then within them, so they are not empty.
+    """
+    if instant.motion.stopping_periods == 0.0:
+        return
+    brake = np.zeros(limits.q.size)
+    store_command(plan, instant.motion, brake[: instant.motion.q.size])
+    for i in range(instant.motion.q.size):
+        limits.lb[i] = min(limits.lb[i], brake[i])
+        limits.ub[i] = max(limits.ub[i], brake[i])
+    for j in range(limits.h.size):
+        limits.h[j] = max(limits.h[j], row_dot(limits.G, j, brake))
 
 
 @compiled
@@ -472,24 +532,18 @@ def _brake(limits: QPViews, plan: ControlPlan, instant: Instant, log: StepLog, d
         Periods until rest after the command; 0 if no stopping motion from it is verified.
     """
     yielding = plan.yielding
-    motion_state = instant.motion
+    motion = instant.motion
     dq[:] = 0.0
+    if motion.stopping_periods > 0.0:
+        return store_command(plan, motion, dq)
     if yielding.limits.velocity.size == 0:
         return 0.0
-    rest: float = motion_state.stopping_periods
-    dof = motion_state.q.size
-    dt = plan.timing.dt
-    periods = rest
-    last = motion_state.last
-    before = motion_state.before
-    if rest == 0.0:
-        periods = least_periods(last, before, yielding.limits, dt, yielding.cubic, False)
-    elif yielding.cubic and plan.timing.vary:
-        periods = stretched(last, before, yielding.limits, dt, rest)
+    dof = motion.q.size
+    periods = least_periods(
+        motion.last, motion.before, yielding.limits, plan.timing.dt, yielding.cubic, False
+    )
     if periods < np.inf:
-        _slow_down(plan, instant, periods, dq)
-    if rest > 0.0:
-        return max(periods - 1.0, 0.0)
+        slow_down(plan, motion, periods, dq)
     lb = limits.lb.copy()
     ub = limits.ub.copy()
     for i in range(dq.size if periods < np.inf else 0):
@@ -504,21 +558,3 @@ def _brake(limits: QPViews, plan: ControlPlan, instant: Instant, log: StepLog, d
     nearest_within(braking, dq, yielding, log.stats)
     rest = periods_to_rest(plan, instant, dq[:dof])
     return rest if rest < np.inf else 0.0
-
-
-@compiled
-def _slow_down(plan: ControlPlan, instant: Instant, periods: float, dq: Vector) -> None:
-    """Compute the next command of a motion that comes to rest after a number of periods.
-
-    The command dq [rad/s], (n,), is overwritten, within velocity and acceleration limits.
-    """
-    motion_state = instant.motion
-    yielding = plan.yielding
-    for i in range(motion_state.q.size):
-        last = motion_state.last[i]
-        fastest = max(yielding.limits.velocity[i], abs(last))
-        change = yielding.limits.acceleration[i] * plan.timing.dt
-        dq[i] = next_velocity(last, motion_state.before[i], periods, yielding.cubic)
-        # After a change of the control period the curve may exceed a limit.
-        dq[i] = min(max(dq[i], last - change), last + change)
-        dq[i] = min(max(dq[i], -fastest), fastest)

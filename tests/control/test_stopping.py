@@ -8,6 +8,7 @@ import pytest
 import iiwa_dnn as d
 from helpers_simulation import driven, own
 from iiwa_dnn.control import stopping
+from iiwa_dnn.control.policies import ProgramKind
 from iiwa_dnn.schemes import rest
 from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.scene import Pair, second_order
@@ -288,3 +289,27 @@ def test_a_limit_says_whether_it_holds_at_a_step_only() -> None:
     titles = [each.title for each in (*JERK, beside(0.1, BALL), d.JointLimits(), quick)]
     assert titles[:2] == ["AccelerationLimits", "JerkLimits"]
     assert titles[2:] == ["CollisionAvoidance", "JointLimits", "Own (this step only)"]
+
+
+def test_an_arm_pressed_into_a_corner_is_answered_within_few_linear_solves() -> None:
+    """Where bounds and rows leave nothing, they are widened to the stored motion: 265 before."""
+    pytest.importorskip("coal")
+    import hostile
+
+    robot = d.load_robot("panda").with_limits(acceleration=10.0, jerk=np.inf)
+    ball = d.Sphere([0.5, 0.2, 0.5], 0.08)
+    wall = d.Box([0.5, -0.35, 0.2], [0.2, 0.1, 0.4])
+    post = d.Capsule([0.3, 0.45, 0.0], [0.3, 0.45, 0.7], 0.04)
+    avoidance = d.CollisionAvoidance([ball, wall, post], distance=0.02)
+    case = hostile.Case(robot, avoidance, 2e-3, 900, False, "none", "slow")
+    shield = d.Shield(robot, case.dt, avoidance.obstacles)
+    q = case.start.q
+    solves = []
+    limited = 0
+    for _, request in zip(range(900), hostile.requests(case, 8), strict=False):
+        command = shield.step(q, **request)
+        q = command.next_q
+        solves.append(command.solution.iterations)
+        limited += command.kind is ProgramKind.RATE_LIMITED
+    assert limited > 100
+    assert max(solves) < 60
