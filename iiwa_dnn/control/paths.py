@@ -24,7 +24,6 @@ from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
 from iiwa_dnn.schemes.rate_limits import largest_gain
 from iiwa_dnn.schemes.tasks import GainTask
-from iiwa_dnn.schemes.tip_speed import TipSpeedLimit
 
 References = Reference | Mapping[str, Reference]
 
@@ -102,8 +101,6 @@ def setup_warnings(
     if dt > SLOWEST:
         yield f"a control period of {dt:g} s is long: the arm follows each command blindly"
     limits = program.limits
-    if program.rate_limits is None and any(isinstance(limit, TipSpeedLimit) for limit in limits):
-        yield "TipSpeedLimit holds beside AccelerationLimits alone: a command may be above it"
     lagging = [type(limit).__name__ for limit in limits if limit.row_count(robot)]
     if mode == "continuous" and lagging:
         yield (

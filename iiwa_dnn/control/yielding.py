@@ -68,10 +68,9 @@ SINGULAR = 0.05
 POSITION_GAIN = 20.0
 """Velocity bound per distance to a position limit in fallback programs [1/s]."""
 
-HALVINGS = 4
-HALVINGS_NEAR = 12
-"""Numbers of blends of the stopping motion with a command that are tried, each with half the
-command's part of the one before; HALVINGS_NEAR if a pair keeps less than its scene's distance."""
+HALVINGS = 12
+"""Number of halvings of the way from a command to the stored stopping motion. A pair that begins
+near an obstacle may leave it slowly alone."""
 
 
 def make_yielding(program: ProgramLayout, tol: float, alike: bool) -> Yielding:
@@ -94,7 +93,6 @@ def make_yielding(program: ProgramLayout, tol: float, alike: bool) -> Yielding:
         tol,
         [*program.places_of(MotionLimits), -1][0],
         np.array(rests, dtype=np.int64),
-        program.least,
         not all(isinstance(part, Limit) and part.rows_suffice for part in lasting),
         bool((limits.jerk < np.inf).any()),
         bool((weights == 0.0).any()),
@@ -281,14 +279,9 @@ def _answer_fallback(
     n = qp.q.size
     m = qp.h.size
     tol = yielding.tolerance
-    point = np.empty(2 * n + 2 + m + qp.b.size)
     size = 3 * n + 3 + m + qp.b.size
-    factor = 1.0  # without a task
-    if qp.b.size > 0:
-        factor = largest_factor(qp, yielding, fallback[:size], point, log.stats, False)
-        note_limiting(point, n, m, 1, log.limiting)
-    follows = action == SLOW and _is_path(log.targets) and not _races(qp, point[:n])
-    if factor == 1.0 or (follows and factor >= CREEP):
+    factor = _scaling_factor(log, qp, yielding, fallback[:size], action)
+    if factor >= CREEP:
         asked = qp.b.copy()
         scale_task(qp, yielding.weights, factor)
         found = solve_warm(qp, tol, fallback[size:], log.point, log.stats)
@@ -302,12 +295,39 @@ def _answer_fallback(
         return STOPPED, 0.0
     retreat = 1.0
     if factor < 0.0:
+        point = np.empty(2 * n + 2 + m + qp.b.size)
         retreat = largest_factor(qp, yielding, np.zeros(size), point, log.stats, True)
         retreat = max(retreat, 0.0)  # without a factor, the distance must not shrink
     relax_task(qp, yielding.weights, retreat)
     found = solve_warm(qp, tol, fallback[size:], log.point, log.stats)
     note_limiting(log.point, n, m, 0, log.limiting)
     return RELAXED if found else STOPPED, 0.0
+
+
+@compiled
+def _scaling_factor(
+    log: StepLog, qp: QPViews, yielding: Yielding, state: Vector, action: int
+) -> float:
+    """Compute the factor by which a policy scales the task; without a task it is 1.
+
+    Args:
+        log: The step's log; limiting and stats are overwritten.
+        qp: The program with widened bounds.
+        yielding: Constants of the fallback programs.
+        state: Network state of the search, overwritten.
+        action: Action of the policy.
+
+    Returns:
+        The factor; 0 if the policy does not scale by it; -1 if 0 is infeasible, too.
+    """
+    if qp.b.size == 0:
+        return 1.0
+    n = qp.q.size
+    point = np.empty(2 * n + 2 + qp.h.size + qp.b.size)
+    factor = largest_factor(qp, yielding, state, point, log.stats, False)
+    note_limiting(point, n, qp.h.size, 1, log.limiting)
+    follows = action == SLOW and _is_path(log.targets) and not _races(qp, point[:n])
+    return factor if factor == 1.0 or follows else min(factor, 0.0)
 
 
 @compiled
@@ -421,7 +441,11 @@ def _approach_together(plan: ControlPlan, instant: Instant, x: Vector) -> None:
 def _make_stoppable(
     limits: QPViews, plan: ControlPlan, instant: Instant, log: StepLog, x: Vector
 ) -> float:
-    """Blend a command towards the stored stopping motion until the arm can stop after it.
+    """Move a command towards the stored stopping motion, by halves, until all limits agree.
+
+    If they do not agree with the command, the way begins at the next one on a straight line to the
+    answer, along which all joints keep their direction. Bounds and rows that admit both admit each
+    command between them.
 
     Args:
         limits: The program that was answered, with the nominal bounds.
@@ -442,35 +466,13 @@ def _make_stoppable(
     if plan.yielding.limits.velocity.size > 0:
         _approach_together(plan, instant, wanted)
         nearest_within(limits, wanted, plan.yielding, log.stats)
-    copied(x, wanted)
     brake = np.zeros(x.size)
     left = _brake(limits, plan, instant, log, brake)
-    return _blend(plan, instant, brake[:dof], left, x[:dof])
-
-
-@compiled
-def _blend(plan: ControlPlan, instant: Instant, brake: Vector, left: float, x: Vector) -> float:
-    """Move a command towards one that brakes, by halves, until all limits agree with its stop.
-
-    Bounds and rows that admit both admit each command between them.
-
-    Args:
-        plan: Layout of the step.
-        instant: The instant of the step; `least` of the next state is overwritten if the braking
-            command itself is taken.
-        brake: The braking command [rad/s], (dof,).
-        left: Periods until rest after it.
-        x: The command, overwritten [rad/s], (dof,).
-
-    Returns:
-        Periods until the arm rests after the command.
-    """
-    wanted = x.copy()
     fraction = 1.0
-    for _ in range(HALVINGS_NEAR if _is_near(plan, instant) else HALVINGS):
-        for i in range(x.size):
+    for _ in range(HALVINGS):
+        for i in range(dof):
             x[i] = brake[i] + fraction * (wanted[i] - brake[i])
-        rest = periods_to_rest(plan, instant, x)
+        rest = periods_to_rest(plan, instant, x[:dof])
         if rest < np.inf:
             return rest
         fraction *= 0.5
@@ -495,15 +497,6 @@ def _contain(limits: QPViews, plan: ControlPlan, instant: Instant) -> None:
         limits.ub[i] = max(limits.ub[i], brake[i])
     for j in range(limits.h.size):
         limits.h[j] = max(limits.h[j], row_dot(limits.G, j, brake))
-
-
-@compiled
-def _is_near(plan: ControlPlan, instant: Instant) -> bool:
-    """Test whether a pair has to keep less than the least distance of its scene."""
-    found = False
-    for k in range(plan.yielding.distances.size):
-        found = found or instant.step.least[k] < plan.yielding.distances[k]
-    return found
 
 
 @compiled

@@ -243,7 +243,7 @@ def make_scene(
     bodies = _bodies(robot, obstacles)
     numbered = model.pairs(robot) if self_collision else []
     numbered += _obstacle_pairs(robot, bodies, len(model.capsules), len(links))
-    rows = [_pair(robot, bodies, each, distances[0]) for each in numbered]
+    rows = [make_pair(robot, bodies, each, distances[0]) for each in numbered]
     pairs = np.reshape(rows, (-1, Pair.width(robot.dof)))
     frames = tuple(dict.fromkeys(links))
     moved = _moved_ends(robot, frames, _constants(robot, distances, bodies, pairs))
@@ -360,7 +360,7 @@ def _constants(
     return np.concatenate([head, robot.dq_max, *bodies, pairs.ravel()])
 
 
-def _pair(robot: Robot, bodies: list[Body], watched: Watched, distance: float) -> Pair:
+def make_pair(robot: Robot, bodies: list[Body], watched: Watched, distance: float) -> Pair:
     """Make a pair of bodies, the second a segment: which joints move one relative to the other.
 
     Its `unmoved_end` is 0; `distance` is the least one that is to be kept [m].

@@ -59,9 +59,6 @@ def test_a_network_that_lags_says_that_it_keeps_bounds_alone() -> None:
     near = near_target(np.array(PAPER_Q0), 0, size=2e-3)
     with pytest.warns(UserWarning, match="the rows of CollisionAvoidance hold where"):
         controller.step(PAPER_Q0, 0.0, near)
-    alone = d.DoubleIndicator(home=PAPER_Q0, extra_limits=(d.TipSpeedLimit(1.0),))
-    with pytest.warns(UserWarning, match="TipSpeedLimit holds beside AccelerationLimits alone"):
-        d.Controller(paper_robot(), alone).step(PAPER_Q0, 0.0, near)
 
 
 def test_a_loop_that_is_most_likely_wrong_is_warned_of() -> None:

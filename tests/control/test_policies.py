@@ -10,8 +10,10 @@ from scipy.optimize import linprog
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import fixed, near_target, paper_robot, paper_start
+from iiwa_dnn.control import fallback
 from iiwa_dnn.control.policies import Action, Policy, ProgramKind
 from iiwa_dnn.naming import ACTIONS
+from iiwa_dnn.networks.integrators.base import SolveStats
 
 WEIGHTS = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])
 """Weights of a pose's rows where they yield: a metre counts twice as much as a radian."""
@@ -192,3 +194,15 @@ def test_the_codes_in_a_record_stay_what_they_are() -> None:
     assert {code: name for name, code in codes.items() if code} == ACTIONS
     kinds = {kind.name: int(kind) for kind in ProgramKind}
     assert kinds == {"NOMINAL": 0, "SCALED": 1, "RELAXED": 2, "RATE_LIMITED": 3, "STOPPED": 4}
+
+
+def test_the_linear_solves_of_a_step_have_a_bound() -> None:
+    """Both tries at a program without a solution, the second with what the first has left."""
+    qp = two_joints(0.5, G=[[1.0, 1.0]], h=[0.5])
+    qp.lb[:] = 0.5
+    stats = SolveStats.zeros()
+    stats.iterations = fallback.FALLBACK_BUDGET - 70.0
+    state = np.ones(3 * 2 + qp.h.size + qp.b.size)
+    point = np.empty(2 * 2 + qp.h.size + qp.b.size)
+    assert not fallback.solve_warm(qp.views, 1e-9, state, point, stats)
+    assert stats.iterations == fallback.FALLBACK_BUDGET

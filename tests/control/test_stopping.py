@@ -9,6 +9,7 @@ import iiwa_dnn as d
 from helpers_simulation import driven, own
 from iiwa_dnn.control import stopping
 from iiwa_dnn.control.policies import ProgramKind
+from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.schemes import rest
 from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.scene import Pair, second_order
@@ -313,3 +314,56 @@ def test_an_arm_pressed_into_a_corner_is_answered_within_few_linear_solves() -> 
         limited += command.kind is ProgramKind.RATE_LIMITED
     assert limited > 100
     assert max(solves) < 60
+
+
+def test_a_stored_motion_counts_the_periods_of_its_step() -> None:
+    """It is verified in the longest periods, four of the stated ones each."""
+    robot = ROBOT.with_limits(acceleration=10.0, jerk=np.inf)
+    shield = d.Shield(robot, 1e-3, [d.Sphere([0.0, 0.0, 3.0], 0.1)], longest_period=4e-3)
+    q = START.q
+    for _ in range(50):
+        command = shield.step(q, np.full(7, 0.3), dt=1e-3)
+        q = command.next_q
+    motion = shield.layout(ROBOT.tip).step.program.arrays.sizes
+    state = MotionState.of(np.array(command.state.motion), motion.joints, motion.pairs)
+    assert command.dq == pytest.approx(0.3)
+    assert state.stopping_periods == 4.0 * np.ceil(0.3 / (10.0 * 4e-3))
+
+
+def test_an_arm_that_is_halted_carries_the_stored_motion_out() -> None:
+    scheme = d.DoubleIndicator(extra_limits=(*ACCELERATION, beside(0.02, WALL)))
+    controller = d.Controller(ROBOT, scheme, dt=4e-3)
+    path, commands = driven(controller, START.q, 40, tip_at(0.0, 0.2, 0.0))
+    begun = commands[-1].dq
+    periods = int(controller._state.motion.stopping_periods)
+    assert periods > 5
+    controller.halt()
+    _, commands = driven(controller, path[-1], periods + 1, tip_at(0.0, 0.2, 0.0))
+    left = 1.0 - np.minimum(np.arange(1, periods + 2) / periods, 1.0)
+    found = [command.dq for command in commands]
+    np.testing.assert_allclose(found, left[:, np.newaxis] * begun, atol=1e-12)
+
+
+def test_a_joint_does_not_pass_its_limit_in_the_longest_period_whatever_its_gain() -> None:
+    limits = (d.JointLimits(gain=1000.0),)
+    scheme = d.Scheme([d.KineticEnergy()], [d.PositionTask()], limits)
+    robot = ROBOT.with_limits(lower=START.q - 0.05, upper=START.q + 0.05)
+    controller = d.Controller(robot, scheme, dt=1e-3, longest_period=1e-2, policy="relax")
+    q = START.q
+    for k in range(60):
+        command = controller.step(q, 1e-2 * k, tip_at(0.3, 0.3, 0.0))
+        q = q + 1e-2 * command.dq
+        assert robot.outside(q) == ""
+    assert np.abs(q - START.q).max() > 0.049
+
+
+def test_a_policy_that_acted_is_asked_first_at_the_next_step() -> None:
+    scheme = d.DoubleIndicator(orientation="none", extra_limits=ACCELERATION)
+    controller = d.Controller(ROBOT, scheme, dt=4e-3)
+    _, commands = driven(controller, START.q, 3, tip_at(0.0, 0.05, 0.0))
+    assert [command.kind.name for command in commands] == ["RATE_LIMITED"] * 3
+    assert controller._state.motion.yields
+    # The nominal program of such a step is not solved: its network's state stays.
+    before = controller.solver.state_for(controller.program.sizes).copy()
+    controller.step(commands[-1].next_q, 0.0, tip_at(0.0, 0.05, 0.0))
+    np.testing.assert_array_equal(controller.solver.state_for(controller.program.sizes), before)
