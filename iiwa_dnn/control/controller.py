@@ -28,7 +28,6 @@ from iiwa_dnn.control.plan import ControlPlan, Instant
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.state import ControllerState, MotionState, count_as_sent
 from iiwa_dnn.control.stopping import periods_to_rest
-from iiwa_dnn.control.yielding import BRAKE
 from iiwa_dnn.errors import InvalidInputError, warn_caller
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
@@ -352,10 +351,12 @@ class Controller:
             return control_layout
         with self._lock:
             program = self.scheme.program(self.robot)
-            policy = int(Action[self.policy.upper()]) if self.mode == "converged" else BRAKE
+            policy = int(Action[self.policy.upper()])
             paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
             longest = self.longest_period
-            control_layout = ControlLayout(program, paths, self.solver, self.dt, policy, longest)
+            control_layout = ControlLayout(
+                program, paths, self.solver, self.dt, policy, longest, self.mode == "continuous"
+            )
             self._state.watch([names for names, _ in program.pairs])
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = control_layout

@@ -23,7 +23,7 @@ from iiwa_dnn.control.command import (
     note_active,
     note_command,
 )
-from iiwa_dnn.control.fallback import fallback_size
+from iiwa_dnn.control.fallback import FALLBACK_BUDGET, fallback_size
 from iiwa_dnn.control.plan import ControlPlan, Instant, PathColumn, Paths
 from iiwa_dnn.control.state import MotionState, change_spacing
 from iiwa_dnn.control.stopping import periods_to_rest
@@ -91,6 +91,7 @@ class ControlLayout:
         dt: float,
         policy: int,
         longest: float | None = None,
+        lags: bool = False,
     ) -> None:
         """Lay a control step out.
 
@@ -99,8 +100,10 @@ class ControlLayout:
             references: Reference of each tracked frame, or none.
             solver: The network that answers the programs.
             dt: Control period [s].
-            policy: Action of a step without a solution; `BRAKE`: in continuous mode.
+            policy: Action of a step without a solution.
             longest: Longest control period [s]; None: all are dt.
+            lags: Whether the network advances by the period (continuous mode); a step without a
+                solution then brakes.
 
         Raises:
             InvalidInputError: With a jerk limit, a joint's range is too short to turn round in; or
@@ -113,7 +116,6 @@ class ControlLayout:
         self.shape = (sizes.joints,)
         self.width = MotionState.width(sizes.joints, sizes.pairs)
         self.log_layout = lay_out_log(sizes, LimitNames(program))
-        lags = policy == BRAKE
         # A subclass that solves in a way of its own is asked, not bypassed.
         own = (
             solver.compiled_answer(program.sizes, lags * dt) if type(solver) is DNNSolver else None
@@ -136,7 +138,7 @@ class ControlLayout:
             paths or none,
             yielding,
             fallback,
-            policy,
+            BRAKE if lags else policy,
             samples,
             constant_periods(dt),
         )
@@ -147,6 +149,11 @@ class ControlLayout:
             for k in program.places_of(JointLimits):
                 limits = PositionConstants.of(program.constants_of(k))
                 limits.gain = min(limits.gain, 1.0 / longest)
+
+    @property
+    def most_solves(self) -> float:
+        """Largest number of linear solves of a step, for its own program and all others."""
+        return float(self.plan.network.settings.budget) + FALLBACK_BUDGET
 
 
 def _asked(solver: DNNSolver, sizes: Sizes, duration: float) -> CompiledAnswer:

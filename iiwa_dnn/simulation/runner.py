@@ -206,6 +206,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         "start_speed": max((abs(path.at(0.0).data[12:]).max() for path in paths), default=0.0),
         "q0": start.q,
         "tol": solver.tol,
+        "most_linear_solves": controller.control_layout.most_solves,
         "rho": solver.network.rho,
         "network": solver.network.settings(),
         "integrator": integrator.settings(),

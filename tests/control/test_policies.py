@@ -9,7 +9,7 @@ from scipy.optimize import linprog
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
-from helpers_simulation import fixed, near_target, paper_robot, paper_start
+from helpers_simulation import fixed, near_target, paper_robot, paper_start, run
 from iiwa_dnn.control import fallback
 from iiwa_dnn.control.policies import Action, Policy, ProgramKind
 from iiwa_dnn.naming import ACTIONS
@@ -206,3 +206,6 @@ def test_the_linear_solves_of_a_step_have_a_bound() -> None:
     point = np.empty(2 * 2 + qp.h.size + qp.b.size)
     assert not fallback.solve_warm(qp.views, 1e-9, state, point, stats)
     assert stats.iterations == fallback.FALLBACK_BUDGET
+    scheme = d.DoubleIndicator(extra_limits=(d.AccelerationLimits(),))
+    record = run(scheme, duration=0.01)
+    assert record.settings["most_linear_solves"] == 300.0  # docs/robustness.md
