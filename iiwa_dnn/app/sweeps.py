@@ -93,9 +93,7 @@ def paper(
     names = [*paper_tables.EXPERIMENTS] if table is None else [f"table{table}"]
     folder, compute = start_sweep(sweep, "paper")
     if identify:
-        found = grid.identify(folder, partial(compute, runs.measure), scope)
-        print("" if sweep.quiet else found, end="")
-        return 0
+        return _say(sweep, grid.identify(folder, partial(compute, runs.measure), scope))
     tables = {}
     early: list[str] = []
     for name in names:
@@ -120,6 +118,12 @@ def paper(
         said = paper_report.summary(tables) if table is None else [text]
         print(*said, f"written to {folder}", sep="\n\n")
     return int(bool(early))
+
+
+def _say(sweep: Sweeping, text: str) -> int:
+    """Print a text unless a sweep is quiet; return the exit code of one that went well."""
+    print("" if sweep.quiet else text, end="")
+    return 0
 
 
 def _figures(compute: Callable[..., list[Any]], scope: Any, folder: Path) -> list[str]:

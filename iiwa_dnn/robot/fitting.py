@@ -266,7 +266,8 @@ def _box(points: Array) -> Body:
     boxes = []
     for axes in (np.eye(3), _principal_axes(points)):
         along = points @ axes.T
-        low, high = along.min(axis=0), along.max(axis=0)
+        low = along.min(axis=0)
+        high = along.max(axis=0)
         half = np.maximum(0.5 * (high - low), GRID)
         boxes.append(Body(axes.T @ (0.5 * (low + high)), axes.T, half, 0.0, points))
     return min(boxes, key=lambda each: each.volume)
