@@ -48,7 +48,7 @@ def run(program: Path, *numbers: float) -> list[float]:
 
 def text_size(folder: Path, build: Path) -> int:
     """Return the size of a controller's code [bytes], optimized for size."""
-    file = build / "controller.o"
+    file = build / "armstep.o"
     run_compiler([*SMALL, "-c"], [folder / "controller.c"], file)
     said = subprocess.run(["size", file], check=True, capture_output=True, text=True).stdout
     return int(said.splitlines()[1].split()[0])
@@ -61,11 +61,13 @@ def compared(steps: int) -> Iterator[dict[str, Any]]:
         case = cases()[name]
         controller = Controller(case.robot, case.scheme, case.reference, policy=case.policy)
         with tempfile.TemporaryDirectory() as build:
-            folder = c99(controller, Path(build) / "c", paper.START)
+            folder = c99(controller, Path(build) / "c", paper.START, name="arm")
             row = {"name": name, "size": load(folder).size}
             row["text"] = text_size(folder, Path(build))
             program = Path(build) / "loop"
-            run_compiler([*FAST, f"-I{folder}"], [driver, folder / "controller.c"], program)
+            run_compiler(
+                [*FAST, f"-I{folder}"], [driver, folder / "armstep.c", folder / "arm.c"], program
+            )
             quietest = min(run(program, steps, *paper.START) for _ in range(ROUNDS))
             yield row | dict(zip(("median", "p99", "p999"), quietest, strict=True))
 

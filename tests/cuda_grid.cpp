@@ -3,6 +3,7 @@
 #include <utility>
 
 #define __global__
+#define __device__
 #define __noinline__ __attribute__((noinline))
 
 struct index {
@@ -31,6 +32,11 @@ template <class... A> static void launch(void (*kernel)(A...), unsigned blocks, 
 extern "C" void run_grid_step(unsigned blocks, unsigned threads, void **given)
 {
     launch(grid_step, blocks, threads, given);
+}
+
+extern "C" void run_grid_load(unsigned blocks, unsigned threads, void **given)
+{
+    launch(grid_load, blocks, threads, given);
 }
 
 extern "C" void run_grid_rest(unsigned blocks, unsigned threads, void **given)

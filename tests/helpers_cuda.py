@@ -107,7 +107,7 @@ def packaged_with_grid(shield: Shield, folder: Path, name: str, *flags: str) -> 
     """Export a shield as a package with CUDA; return it, and the streams of the stand-in."""
     package = packaged(shield, folder, name, flags=flags, cuda=True)
     library = folder / "grid.so"
-    own = ["-std=c++20", "-O1", "-ffp-contract=off", "-fno-math-errno", "-w", "-shared", "-fPIC"]
+    own = ["-std=c++20", "-O1", "-fno-math-errno", "-w", "-shared", "-fPIC"]
     source = Path(__file__).with_name("cuda_grid.cpp")
     run("g++", *own, *flags, "-I", folder / name, source, "-o", library)
     streams: list[int] = []

@@ -1,10 +1,13 @@
 """Exported controllers, and the programs that compile them."""
 
+import atexit
 import importlib
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +15,7 @@ import pytest
 
 from iiwa_dnn import Controller, Shield
 from iiwa_dnn.export import load, python
+from iiwa_dnn.export.core import core
 
 QUICK = ("-std=c99", "-O0")
 """Flags with which compiling takes a third of the time."""
@@ -37,6 +41,19 @@ def run(*words: str | Path, cwd: Path | None = None) -> str:
     return done.stdout
 
 
+@cache
+def compiled_core(flags: tuple[str, ...]) -> Path:
+    """Compile the core, once in a process for the same flags; return the file."""
+    folder = Path(tempfile.mkdtemp())
+    atexit.register(shutil.rmtree, folder)
+    (folder / "armstep.h").write_text(core().header, encoding="utf-8")
+    (folder / "armstep.c").write_text(core().code, encoding="utf-8")
+    made = folder / f"armstep.{'so' if '-shared' in flags else 'o'}"
+    kind = [] if "-shared" in flags else ["-c"]
+    run("gcc", *flags, *kind, folder / "armstep.c", "-o", made)
+    return made
+
+
 def packaged(
     made: Controller | Shield,
     folder: Path,
@@ -48,9 +65,10 @@ def packaged(
     """Export a controller or a shield as a package of Python, compile and import it."""
     project = python(made, folder, name, q0=q0, cuda=cuda)
     package = project / name
-    (source,) = package.glob("*.c")
-    own = ["-std=c99", "-O1", "-ffp-contract=off", "-shared", "-fPIC", *flags]
-    run("gcc", *own, source, "-o", package / "_library.bin", "-lm")
+    own = ["-std=c99", "-O1", "-shared", "-fPIC", *flags]
+    core = compiled_core(tuple(each for each in own if each != "-shared"))
+    sources = [each for each in package.glob("*.c") if each.name != "armstep.c"]
+    run("gcc", *own, core, *sources, "-o", package / "_library.bin", "-lm")
     for inner in [each for each in sys.modules if each.partition(".")[0] == name]:
         del sys.modules[inner]  # of an earlier export by this name
     sys.path.insert(0, str(project))

@@ -3,7 +3,7 @@
  * ./exported_loop steps q1 ... qn prints median, p99 and p99.9 of a step [us].
  */
 #define _POSIX_C_SOURCE 199309L
-#include "controller.h"
+#include "arm.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,26 +26,32 @@ static int compare(const void *one, const void *other)
 
 int main(int count, char **words)
 {
-    static struct controller c;
-    double q[CONTROLLER_DOF];
-    double dq[CONTROLLER_DOF];
-    double target[18 * CONTROLLER_FRAMES];
+    static struct armstep own;
+    static double memory[ARM_MEMORY], scratch[ARM_SCRATCH];
+    double q[ARM_JOINTS];
+    double dq[ARM_JOINTS];
+    double target[ARMSTEP_TARGET * ARM_FRAMES];
     const size_t steps = (size_t)atol(words[1]);
     double *times = malloc(steps * sizeof *times);
-    if (times == NULL || count != 2 + CONTROLLER_DOF) {
+    if (times == NULL || count != 2 + ARM_JOINTS) {
         return 2;
     }
-    for (int i = 0; i < CONTROLLER_DOF; i++) {
+    for (int i = 0; i < ARM_JOINTS; i++) {
         q[i] = atof(words[2 + i]);
     }
-    controller_init(&c);
+    if (armstep_load(&own, &arm) != ARMSTEP_OK) {
+        return 2;
+    }
+    armstep_begin(&own, memory, scratch);
     for (size_t k = 0; k < steps; k++) {
-        controller_target(&c, (double)k * CONTROLLER_DT, target);
+        const double t = (double)k * arm.dt;
+        const struct armstep_input input = {q, ARMSTEP_REQUEST_NONE, target, t, 0.0, 0.0};
+        armstep_targets(&own, memory, scratch, t, target);
         const double began = now();
-        controller_step(&c, q, target, dq);
+        armstep_step(&own, memory, scratch, &input, dq);
         times[k] = now() - began;
-        for (int i = 0; i < CONTROLLER_DOF; i++) {
-            q[i] += CONTROLLER_DT * dq[i];
+        for (int i = 0; i < ARM_JOINTS; i++) {
+            q[i] += arm.dt * dq[i];
         }
     }
     qsort(times, steps, sizeof *times, compare);

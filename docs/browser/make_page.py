@@ -26,8 +26,8 @@ from iiwa_dnn.robot.collision import collision_model
 from iiwa_dnn.robot.shapes import visual_shapes
 
 HERE = Path(__file__).parent
-TABLE = "plan_arrays_constants"
-"""Table of the C in which the ball's center lies; the page writes there when a hand moves it."""
+TABLE = "arm_numbers"
+"""Numbers of the C among which the ball's center lies; the page writes there as a hand moves it."""
 
 HEART = ("q", "dq", "target", "begin", "step", TABLE)
 SHIELD = ("q", "dq", "target", "begin", "step", "twist", "ball")
@@ -99,12 +99,12 @@ def compiled(
 ) -> bytes:
     """Export a controller or a shield and compile it with its page for a browser."""
     with tempfile.TemporaryDirectory() as place:
-        folder = iiwa_dnn.export.c99(exported, place, q0)
+        folder = iiwa_dnn.export.c99(exported, place, q0, name="arm")
         result = folder / "page.wasm"
-        source = folder / f"{type(exported).__name__.lower()}.c"
+        source = folder / "arm.c"
         if TABLE in names:
             source.write_text(opened(source.read_text()))
-        sources = (source, HERE / page, HERE / "memory.c")
+        sources = (folder / "armstep.c", source, HERE / page, HERE / "memory.c")
         linked = (
             "no-entry",
             "strip-all",

@@ -12,5 +12,6 @@ double ceil(double x);
 double cos(double x);
 double fabs(double x);
 double floor(double x);
+double fmod(double x, double y);
 double sin(double x);
 double sqrt(double x);

@@ -1,28 +1,32 @@
 /* An exported controller and an arm that follows every command, for the page to call. */
 #include <stddef.h>
 
-#include "controller.h"
+#include "arm.h"
 
-static struct controller c;
+static struct armstep own;
+static double memory[ARM_MEMORY];
+static double scratch[ARM_SCRATCH];
 
-double q[CONTROLLER_DOF];                /* joint positions [rad] */
-double dq[CONTROLLER_DOF];               /* last command [rad/s] */
-double target[18 * CONTROLLER_FRAMES];   /* last target */
+double q[ARM_JOINTS];                       /* joint positions [rad] */
+double dq[ARM_JOINTS];                      /* last command [rad/s] */
+double target[ARMSTEP_TARGET * ARM_FRAMES]; /* last target */
 
 /* Begin at rest, at the joint positions that are in q. */
 void begin(void)
 {
-    controller_init(&c);
+    if (own.tables == NULL)
+        armstep_load(&own, &arm); /* once: then the page may move the ball */
+    armstep_begin(&own, memory, scratch);
 }
 
 /* Take a step towards the reference at time t [s], or towards the target as it is; return its action. */
 int step(double t, int along)
 {
     if (along)
-        controller_target(&c, t, target);
-    int action = controller_step(&c, q, target, dq);
-    for (int i = 0; i < CONTROLLER_DOF; i++)
-        q[i] += CONTROLLER_DT * dq[i];
+        armstep_targets(&own, memory, scratch, t, target);
+    const struct armstep_input input = {q, ARMSTEP_REQUEST_NONE, target, t, 0.0, 0.0};
+    const int action = armstep_step(&own, memory, scratch, &input, dq);
+    for (int i = 0; i < ARM_JOINTS; i++)
+        q[i] += arm.dt * dq[i];
     return action;
 }
-

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from .expressions import Use
 from .kinds import FLOAT, VOID, Kind
 from .translator import Function, Translator
 
@@ -35,7 +36,7 @@ def extension(translator: Translator) -> str:
     ]
     parts = [
         *map(prelude, ("binding.h", "kernels.h", "arena.h")),
-        prelude("checked.h") * translator.is_checked,
+        prelude("checked.h") * (translator.use is Use.CHECKED),
         translator.text(),
         prelude("binding.c"),
         *map(_wrapper, called),
@@ -78,7 +79,7 @@ def _wrapper(own: Function) -> str:
         read += conditions
     if own.result is not VOID:
         call = f"result = {call}"
-    if own.translator.is_checked:
+    if own.translator.use is Use.CHECKED:
         call = f"BEGIN_CHECKED {call} END_CHECKED"
     elif own.decoration == "released":
         call = f"Py_BEGIN_ALLOW_THREADS {call} Py_END_ALLOW_THREADS"

@@ -46,9 +46,10 @@ def build(package: Path) -> Path:
     if noted and noted[0] == _digest(package, noted[2:], kind):
         return made
     from .binding import extension  # not needed by an import after which nothing is compiled
+    from .expressions import Use
     from .translator import Translator
 
-    translator = Translator(package, is_checked)
+    translator = Translator(package, Use.CHECKED if is_checked else Use.LIBRARY)
     translator.all()
     text = extension(translator)
     bare = re.sub(r"#line[^\n]*|/\*.*?\*/", "", text, flags=re.DOTALL)

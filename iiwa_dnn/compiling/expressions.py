@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ast
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from .kinds import ARRAYS, BOOL, FLOAT, INT, Kind, Kinds, commented
+from .kinds import ARRAYS, BOOL, FLOAT, INT, VOID, Kind, Kinds, commented
 from .sources import Module, Package, TranslationError, c_word, decoration, fail
 
 Rank = IntEnum("Rank", "CHOICE OR AND EQUALITY COMPARISON SUM PRODUCT UNARY PRIMARY")
@@ -55,7 +56,6 @@ class Value(NamedTuple):
         rank: Binding strength of the outermost operator.
         pointer: For a struct that is reached through a pointer, the pointer's text; else "".
         parts: For an array written as a literal, pointer to its first element, and its sizes.
-        is_plan: Whether the expression is the exported plan or a member of the plan.
         places: Variables, or members of variables, whose memory the expression may view.
     """
 
@@ -64,7 +64,6 @@ class Value(NamedTuple):
     rank: int = Rank.PRIMARY
     pointer: str = ""
     parts: tuple[Value, ...] = ()
-    is_plan: bool = False
     places: frozenset[str] = frozenset()
 
     def within(self, rank: int) -> str:
@@ -75,7 +74,7 @@ class Value(NamedTuple):
         """Return a member of a struct."""
         owner = f"{self.pointer}->" if self.pointer else f"{self.within(Rank.PRIMARY)}."
         places = frozenset(f"{place}.{name}" for place in self.places)
-        return Value(kind, f"{owner}{c_word(name)}", is_plan=self.is_plan, places=places)
+        return Value(kind, f"{owner}{c_word(name)}", places=places)
 
     def converted(self, kind: Kind) -> Value:
         """Return an integer converted to a float if `kind` is `FLOAT`; else the value unchanged."""
@@ -115,6 +114,8 @@ class Value(NamedTuple):
 
 def joined(sign: str, values: Sequence[Value]) -> Value:
     """Join whole numbers by an operator, from left to right; a single one is returned unchanged."""
+    if sign == "*" and all(own.text.isdigit() for own in values):
+        return number(math.prod(int(own.text) for own in values))
     whole = values[0]
     for value in values[1:]:
         rank = _RANKS.get(sign, Rank.SUM)
@@ -163,29 +164,46 @@ def _arrays(kind: Kind, place: str = "") -> Iterator[str]:
         yield from _arrays(own, f"{place}.{name}")
 
 
+class Use(IntEnum):
+    """Uses of translated C.
+
+    Members:
+        LIBRARY: The package's library, called from Python.
+        CHECKED: The same, which compares each index with its axis.
+        CORE: C that somebody reads.
+        OWN: The same, of functions of a user's: where their memory is too little, they return.
+    """
+
+    LIBRARY = 0
+    CHECKED = 1
+    CORE = 2
+    OWN = 3
+
+    @property
+    def is_read(self) -> bool:
+        """Whether somebody reads the C."""
+        return self >= Use.CORE
+
+
 class Translation:
     """Types, constants and settings that all functions of a translation share.
 
     Attributes:
         package: The package of the functions.
         kinds: Types of the functions' variables.
-        constants: Declarations of constants of modules and of the exported plan, by C names.
-        tables: Declarations of the exported plan's tables, by their names in C.
-        plan: For each type of named tuples in the exported plan, the members that are constants.
-        parts: Functions that entries of an export call by number, the first by 1; None in the
-            library, whose entries call by address.
-        is_checked: Whether indices are checked when the C runs.
+        constants: Declarations of constants of modules, by C names.
+        numbers: Number of each part by its name in C: of the kernels that have the types of an
+            entry, which calls them by their numbers.
+        use: What the C is for.
     """
 
-    def __init__(self, folder: Path, is_checked: bool) -> None:
-        """Take the folder of a package, and whether indices are checked."""
+    def __init__(self, folder: Path, use: Use) -> None:
+        """Take the folder of a package, and what the C is for."""
         self.package = Package(folder)
-        self.is_checked = is_checked
+        self.use = use
         self.kinds = Kinds(self.package)
-        self.parts: list[Any] | None = None
         self.constants: dict[str, str] = {}
-        self.tables: dict[str, str] = {}
-        self.plan: dict[str, dict[str, Value]] = {}
+        self.numbers: dict[str, int] = {}
 
     def function(self, module: Module, node: ast.FunctionDef) -> Expressions:
         """Return the translation of a function, which is made at the first call."""
@@ -229,7 +247,6 @@ class Expressions:
         written: Arrays that the function writes, as places in Python.
         aliases: For each variable, or member of one, the places whose memory it may view.
         assigned: Variables that have a value on every path to the current statement.
-        plans: Variables that hold the exported plan or a member of the plan.
         lines: Lines of the C body that are translated.
         is_certain: Whether the current expression is evaluated whenever its statement runs.
         uses_arena: Whether the function, or a kernel that it calls, takes memory.
@@ -249,10 +266,9 @@ class Expressions:
         self.written: set[str] = set()
         self.aliases: dict[str, set[str]] = {}
         self.assigned = {*parameters}
-        self.plans = {own for own, kind in parameters.items() if kind.tag in translator.plan}
         self.lines: list[str] = []
         self.is_certain = True
-        self.uses_arena = translator.parts is None
+        self.uses_arena = translator.use is not Use.CORE  # else for those that call it alone
         self._kept = 0
 
     @property
@@ -323,7 +339,7 @@ class Expressions:
         self.require(name in self.assigned, node, "is not assigned on every path here")
         kind = self.kinds[name]
         places = frozenset([name])
-        own = Value(kind, c_word(name), is_plan=name in self.plans, places=places)
+        own = Value(kind, c_word(name), places=places)
         if kind.is_named and name in self.parameters:
             return own._replace(text=f"*{own.text}", rank=Rank.UNARY, pointer=own.text)
         return own
@@ -392,11 +408,10 @@ class Expressions:
         owner = self.value(node.value)
         if owner.kind.axes and node.attr == "size":
             return owner.size
-        known = self.translator.plan.get(owner.kind.tag, {}) if owner.is_plan else {}
         own = owner.member(node.attr, owner.kind.members[node.attr])
         if owner.kind.sizes and own.kind in NUMBERS:
             return self._number(owner, node.attr, own)
-        return known.get(node.attr, own)
+        return own
 
     def _number(self, owner: Value, name: str, own: Value) -> Value:
         """Translate a number of a record, where integers and truth values are stored as floats."""
@@ -453,7 +468,7 @@ class Expressions:
 
     def _checked(self, index: Value, size: Value) -> Value:
         """Return an index; in a checked build, one that is compared with a size when the C runs."""
-        if not self.translator.is_checked:
+        if self.translator.use is not Use.CHECKED:
             return index
         return Value(INT, f"checked({index.text}, {size.text})")
 
@@ -477,7 +492,7 @@ class Expressions:
             case ast.Attribute(value=owner, attr="reshape"):
                 own = self._once(owner)
                 shape = [*map(self._once, node.args)]
-                if self.translator.is_checked:
+                if self.translator.use is Use.CHECKED:
                     texts = [own.size.text, joined("*", shape).text, shape[0].text]
                     shape[0] = Value(INT, f"shaped({', '.join(texts)})")
                 return array(own.kind.element, own.data, shape)._replace(places=own.places)
@@ -512,7 +527,7 @@ class Expressions:
         if len(shared) == len(sizes) + 1:
             sizes.append(f"int_max(0, ({own} - ({asked})) / {shared[-1]})")
             asked += f" + {shared[-1]} * {sizes[-1]}"
-        if self.translator.is_checked:
+        if self.translator.use is Use.CHECKED:
             text = Value(INT, f"shaped({own}, {asked}, {own})")
             numbers = array(FLOAT, numbers.data, [text])._replace(places=numbers.places)
         views = {f".{name}": numbers.places for name in kind.members}
@@ -535,7 +550,29 @@ class Expressions:
         self.uses_arena = True
         texts = ", ".join(["arena", *(own.text for own in given)])
         data = Value(element, f"({element.tag} *)arena_{word}({texts})", Rank.UNARY)
+        if self.translator.use is Use.OWN:
+            data = self._checked_memory(element, word, [own.text for own in given])
         return array(element, data, sizes)
+
+    def _checked_memory(self, element: Kind, word: str, given: list[str]) -> Value:
+        """Take memory for `_taken`, before which the function ends if there is too little."""
+        self.require(self.is_certain, self.node, "takes memory in some cases alone")
+        self._kept += 1
+        name = f"own_{self._kept}"
+        size = f"8 * (size_t)({given[-1]})"
+        fill = {
+            "zeros": f"memset({name}, 0, {size});",
+            "copy": f"memcpy({name}, {given[0]}, {size});",
+        }
+        self.lines += [
+            f"{element.tag} *const {name} = ({element.tag} *)arena_empty(arena, {given[-1]});",
+            "if (arena->full) {",
+            "    arena_leave(arena, &mark);",
+            "    return;" if self.result is VOID else f"    return ({self.result.tag}){{0}};",
+            "}",
+            *[fill[word]] * (word in fill),
+        ]
+        return Value(element, name)
 
     def _kernel(self, node: ast.Call, home: Module, found: ast.FunctionDef) -> Value:
         """Translate the call of another kernel."""
@@ -545,8 +582,6 @@ class Expressions:
         given = {}
         for each, (name, kind) in zip(node.args, own.parameters.items(), strict=True):
             value = self.value(each).converted(kind)
-            known = not self.translator.plan.get(value.kind.tag) or value.is_plan
-            self.require(known, each, "is another one than the plan's")
             texts.append(self._address(value, each) if value.kind.is_named else value.text)
             given[name] = value.places
         self.written |= _inserted(own.written, given)

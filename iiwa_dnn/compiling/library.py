@@ -62,6 +62,11 @@ def source_of(kernel: Any) -> Any:
     return _SOURCES.get(id(kernel), kernel)
 
 
+def numbered_kernels() -> set[str]:
+    """Return the names in C of the parts: of the kernels that can be entered by numbers."""
+    return {name for name, number in _LIBRARY.numbers.items() if number}
+
+
 def raise_failure() -> None:
     """Raise the error of a Python callback in this thread's last call of a kernel, if any."""
     error = _ERRORS.pop(threading.get_ident(), None)

@@ -11,12 +11,11 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from functools import partial
 from itertools import groupby
 from pathlib import Path
 from types import MappingProxyType
 
-from .expressions import NUMBERS, SIGNS, Expressions, Rank, Translation, Value
+from .expressions import NUMBERS, SIGNS, Expressions, Rank, Translation, Use, Value
 from .kinds import FLOAT, INT, VOID
 from .sources import (
     ENTRY,
@@ -33,14 +32,12 @@ class Translator(Translation):
 
     Attributes:
         functions: Translated functions by module and name, each after those that it calls.
-        numbers: Number of each part by its name in C, from `text` on.
     """
 
-    def __init__(self, folder: Path, is_checked: bool = False) -> None:
-        """Take the folder of a package, and whether indices are checked in C."""
-        super().__init__(folder, is_checked)
+    def __init__(self, folder: Path, use: Use = Use.LIBRARY) -> None:
+        """Take the folder of a package, and what the C is for."""
+        super().__init__(folder, use)
         self.functions: dict[tuple[str, str], Function] = {}
-        self.numbers: dict[str, int] = {}
 
     def all(self) -> None:
         """Translate all kernels of the package."""
@@ -48,14 +45,14 @@ class Translator(Translation):
             self.function(module, node)
 
     def text(self, titles: Mapping[str, str] = MappingProxyType({})) -> str:
-        """Return types, constants, tables and functions as one text of C.
+        """Return types, constants and functions as one text of C.
 
         Args:
             titles: Titles of the sections of functions, in their order, by subpackages; the title
                 by an empty name is of functions from outside of the package.
         """
         self._number_parts()
-        enter = _entry if self.parts is None else partial(_numbered, parts=self.parts)
+        enter = _entry_of_own_parts if self.use.is_read else _entry
         ranks = {room: i for i, room in enumerate(titles)}
         functions = sorted(self.functions.values(), key=lambda own: ranks.get(own.room(titles), 0))
         defined: set[str] = set()
@@ -69,16 +66,14 @@ class Translator(Translation):
                 early |= {*re.findall(r"\w+(?=\()", body)} - defined
                 bodies.append(body)
         heads = [f"{own.head};" for own in functions if own.name in early]
-        declared = [self.kinds.structs, self.constants, self.tables]
-        parts = ["\n\n".join(own.values()) for own in declared]
-        parts[2:2] = [f"\n/* ---- {TABLES} ---- */\n"] * bool(self.tables)
+        parts = ["\n\n".join(own.values()) for own in (self.kinds.structs, self.constants)]
         return "\n".join([*parts, *heads, *bodies])
 
     def _number_parts(self) -> None:
         """Number the parts, which are the kernels that have the types of an entry, from 1."""
         types = {own.code[1:] for own in self.functions.values() if own.decoration == ENTRY}
-        parts = [own for own in self.functions.values() if own.code in types]
-        self.numbers = {own.name: n for n, own in enumerate(parts, 1)}
+        parts = sorted(own.name for own in self.functions.values() if own.code in types)
+        self.numbers = {name: number for number, name in enumerate(parts, 1)}
 
     def function(
         self, module: Module, node: ast.FunctionDef, like: Function | None = None
@@ -92,9 +87,6 @@ class Translator(Translation):
             self.functions[key] = self.functions.pop(key)  # after those that it calls
         return self.functions[key]
 
-
-TABLES = "Tables: limits, gains, capsules and lengths"
-"""Title of the section of an exported plan's tables."""
 
 _LEFT = "return"
 """Mark of a block whose end is never reached, among the names of variables."""
@@ -136,6 +128,12 @@ class Function(Expressions):
         self._is_const = [False]
 
     @property
+    def others(self) -> Iterable[Function]:
+        """All functions of the translation."""
+        assert isinstance(self.translator, Translator)
+        return self.translator.functions.values()
+
+    @property
     def about(self) -> str:
         """Docstring of the function, "" without one."""
         return ast.get_docstring(self.node) or ""
@@ -158,6 +156,11 @@ class Function(Expressions):
         own = ["struct arena *arena"] * self.uses_arena
         own += map("".join, zip(self.types, names, strict=True))
         return f"static inline {self.result.tag} {self.name}({', '.join(own) or 'void'})"
+
+    @property
+    def entry_name(self) -> str:
+        """Name in C of an entry's kind."""
+        return f"ARMSTEP_{self.node.name.removeprefix('enter_').upper()}"
 
     @property
     def code(self) -> str:
@@ -220,7 +223,7 @@ class Function(Expressions):
     def _block(self, statements: list[ast.stmt]) -> None:
         """Translate statements one after another."""
         for node in statements:
-            if self.translator.parts is None:  # of a library, which nobody reads
+            if not self.translator.use.is_read:
                 self.lines.append(f'#line {node.lineno} "{self.module.path}"')
             try:
                 self._statement(node)
@@ -366,25 +369,33 @@ class Function(Expressions):
             self._is_const[self._declared[name]] = False
             self.lines.append(f"{own} {sign} {value.converted(kind).text};")
             return
-        if value.is_plan and self._stored[name] == 1:
-            self.plans.add(name)
         self._declared[name] = len(self._is_const)
         text = value.converted(kind).initializer
         self.lines.append(f"\0{len(self._is_const)} {kind.tag} {own} = {text};")
         self._is_const.append(True)
 
 
-def _numbered(own: Function, parts: list[Function]) -> str:
-    """Write the body of an entry in exported C: a call of one of some functions by its number."""
+def _entry_of_own_parts(own: Function) -> str:
+    """Write the body of an entry in C for readers: a call of a part, or of one of a user's.
+
+    The result of a part that there is not is false, or NaN.
+    """
     address, *names = map(c_word, own.parameters)
-    back = "return " * (own.result is not VOID)
-    lines = []
-    for n, part in enumerate(parts, 1):
-        if part.code == own.code[1:]:
-            given = ", ".join([*["arena"] * part.uses_arena, *names])
-            lines += [f"if ({address} == {n}) {{", f"    {back}{part.name}({given});", "}"]
-    if back:
-        lines += [f"const {own.result.tag} none = {{0}};", "return none;"]
+    types = ", ".join(["struct arena *", *map(str.strip, own.types[1:])])
+    given = ", ".join(["arena", *names])
+    call = f"(({own.result.tag} (*)({types}))own_part->function)({given});"
+    lines = [
+        *_choice(own),
+        f"const struct armstep_own *own_part = own_part_of(arena, {address}, {own.entry_name});",
+        "if (own_part != NULL) {",
+        f"    {'return ' * (own.result is not VOID)}{call}",
+        "}",
+    ]
+    if own.result.members:
+        nothing = ", ".join(["NAN"] * len(own.result.members))
+        lines += [f"const {own.result.tag} none = {{{{{nothing}}}}};", "return none;"]
+    elif own.result is not VOID:
+        lines.append("return 0;")
     return own.written_out(own.about, lines)
 
 
@@ -413,7 +424,7 @@ def _choice(own: Function) -> list[str]:
     """Write the statement by which an entry calls a part by its number, and returns."""
     address, *names = map(c_word, own.parameters)
     lines = [f"switch ({address}) {{"]
-    for part in own.translator.functions.values():
+    for part in own.others:
         if part.code == own.code[1:]:
             given = ", ".join([*["arena"] * part.uses_arena, *names])
             lines.append(f"case {own.translator.numbers[part.name]}:")

@@ -29,7 +29,7 @@ from iiwa_dnn.control.requests import (
     falls_short,
 )
 from iiwa_dnn.control.state import MotionState, change_spacing, count_as_sent
-from iiwa_dnn.control.stopping import least_periods, next_velocity
+from iiwa_dnn.control.stopping import brake_blindly, least_periods
 from iiwa_dnn.control.yielding import NONE
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
@@ -45,6 +45,9 @@ from iiwa_dnn.schemes.viability import joint_bounds
 
 TURN = 2.0 * math.pi
 """Turn after which a joint without position limits is at the same place [rad]."""
+
+SHORTEST, LONGEST = 1e-9, 1e3
+"""Periods below and above which a stated one is refused [s]: quotients by them overflow."""
 
 FOLLOWING = 1e-12
 """Difference of measured and commanded positions that counts as rounding [rad]."""
@@ -274,6 +277,18 @@ def send_arm(plan: ArmPlan, memory: Vector, dq: Vector, period: float) -> None:
 
 
 @compiled
+def brake_arm(plan: ArmPlan, memory: Vector) -> None:
+    """Take the next command of an arm's motion to rest, in place of a step that is refused."""
+    arm = arm_state(plan, memory)
+    motion = motion_of(plan, arm)
+    brake_blindly(motion, plan.motion, plan.step.yielding.cubic)
+    arm.age += arm.period
+    arm.period = plan.settings.dt
+    arm.is_clipped = True
+    _advance(arm, plan.settings, motion)
+
+
+@compiled
 def step_arm(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> int:
     """Take a step of a shield; its command is then the last one of `motion_of` the arm.
 
@@ -327,7 +342,10 @@ def _fits(settings: ArmSettings, inputs: ArmInput) -> bool:
     """Test whether the stated periods of a step have a meaning, and are not above the limits."""
     dt = inputs.dt
     elapsed = inputs.elapsed
-    if not (dt >= 0.0 and elapsed >= 0.0 and dt + elapsed < np.inf and min(dt, elapsed) == 0.0):
+    stated = max(dt, elapsed)
+    if not (dt >= 0.0 and elapsed >= 0.0 and stated <= LONGEST and min(dt, elapsed) == 0.0):
+        return False
+    if stated > 0.0 and stated < SHORTEST:
         return False
     longest: float = settings.longest
     return longest > 0.0 or (elapsed == 0.0 and dt <= settings.dt * (1.0 + SLACK))
@@ -625,17 +643,7 @@ def _answer(
 def _brake_blindly(plan: ArmPlan, arm: ArmState, motion: MotionState) -> None:
     """Advance an arm whose positions have no kinematics by a command of a motion to rest."""
     arm.reasons[Reason.Q_NOT_FINITE] = 1.0
-    cubic = plan.step.yielding.cubic
-    periods = motion.stopping_periods
-    if periods == 0.0:
-        periods = least_periods(
-            motion.last, motion.before, plan.motion, motion.spacing, cubic, False
-        )
-    for i in range(motion.last.size):
-        last = motion.last[i]
-        motion.last[i] = next_velocity(last, motion.before[i], periods, cubic)
-        motion.before[i] = last
-    motion.stopping_periods = max(periods - 1.0, 0.0)
+    brake_blindly(motion, plan.motion, plan.step.yielding.cubic)
 
 
 @compiled

@@ -255,7 +255,7 @@ def take_step(
     next_motion_state = MotionState.of(next_numbers, sizes.joints, sizes.pairs)
     if plan.samples:
         sample_targets(plan.paths, t - motion_state.path_lag, timing.expected, log.targets)
-    if not _is_valid(t, q, data, data.size - log.targets.size):
+    if not is_valid(t, q, data, data.size - log.targets.size):
         return INVALID
     copied(motion_state.q, q)
     change_spacing(motion_state, timing.dt)
@@ -297,7 +297,7 @@ def take_step(
 
 
 @compiled
-def _is_valid(t: float, q: Vector, data: Vector, targets: int) -> bool:
+def is_valid(t: float, q: Vector, data: Vector, targets: int) -> bool:
     """Test whether t [s], q (n,) [rad] and the targets, from data[targets] on, are valid."""
     for i in range(q.size):
         if not abs(q[i]) <= LARGEST:

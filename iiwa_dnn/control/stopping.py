@@ -85,6 +85,29 @@ def least_periods(
 
 
 @compiled
+def brake_blindly(motion: MotionState, limits: MotionConstants, cubic: bool) -> None:
+    """Advance a motion by the next command of its motion to rest, where no program can be asked.
+
+    That is the stored one; without one, the motion in which all joints come to rest together.
+
+    Args:
+        motion: State of the motion of n joints, overwritten.
+        limits: Limits of the joints; of none, if neither acceleration nor jerk is limited: the
+            joints stop at once.
+        cubic: Whether a jerk is limited.
+    """
+    periods = motion.stopping_periods
+    if periods == 0.0 and limits.acceleration.size > 0 and motion.spacing > 0.0:
+        last = motion.last
+        periods = least_periods(last, motion.before, limits, motion.spacing, cubic, False)
+    for i in range(motion.last.size):
+        sent = motion.last[i]
+        motion.last[i] = next_velocity(sent, motion.before[i], periods, cubic)
+        motion.before[i] = sent
+    motion.stopping_periods = max(periods - 1.0, 0.0)
+
+
+@compiled
 def stretched(
     x: Vector, before: Vector, limits: MotionConstants, dt: float, periods: float
 ) -> float:

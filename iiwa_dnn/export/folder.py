@@ -1,4 +1,4 @@
-"""Write folders of exports: code, recorded steps, a program that compares them, examples."""
+"""Write folders of exports: the core, tables, recorded steps, a program that compares them."""
 
 import copy
 import json
@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from enum import IntEnum
+from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -18,16 +19,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
+from iiwa_dnn.compiling.sources import c_word
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.paths import by_frame
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.requests import TWIST, Reason, Request
 from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.control.shields import Shields
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
-from iiwa_dnn.export.code import PARTS, TEMPLATES, controller_code, filled, shield_code
+from iiwa_dnn.export.arm_tables import Tables
+from iiwa_dnn.export.core import LAID_OUT, RELEASE, TEMPLATES, core, filled
 from iiwa_dnn.export.cuda import write_cuda
-from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
+from iiwa_dnn.export.nodes import Node, braced, constant
+from iiwa_dnn.files import prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Lissajous
 from iiwa_dnn.robot import Configuration
@@ -59,8 +62,9 @@ def c99(
     folder: str | os.PathLike[str],
     q0: ArrayLike | None = None,
     overwrite: bool = False,
+    name: str | None = None,
 ) -> Path:
-    """Write a controller or a shield as a folder of C99.
+    """Write a controller or a shield as a folder of C99: the core, and the tables of the arm.
 
     Args:
         made: The controller or shield, which is not changed. A shield takes twists of its
@@ -71,21 +75,52 @@ def c99(
             of a scheme that states none; None: the controller's positions, or the start posture of
             a shield's robot.
         overwrite: Write into a folder that holds other files too.
+        name: Name of the tables in C, and of their files; None: that of the robot.
 
     Returns:
         The folder.
 
     Raises:
-        InvalidInputError: A part of the controller is not compiled or has no translation; the
-            part is named.
+        InvalidInputError: A part of the controller is not compiled or has no translation, the part
+            is named; or the name is none.
         FileError: The folder holds other files, or cannot be written.
     """
-    texts = _texts(made, None, q0)
+    export = _Export(made, None, q0, name)
     folder = _claimed(folder, VECTORS, overwrite)
-    write_csv(folder / VECTORS, *texts["vectors"])
-    for path in _templates("c", texts["kind"]):
-        write_text(folder / path.name, filled(path, texts))
+    export.write_code(folder)
+    for path in _templates("c", f"c_{export.tables.kind}"):
+        write_text(folder / path.name, filled(path, export.texts))
     return folder
+
+
+def tables(
+    made: Controller | Shield,
+    path: str | os.PathLike[str],
+    frame: str | None = None,
+    q0: ArrayLike | None = None,
+) -> Path:
+    """Write the tables of a controller or a shield as JSON.
+
+    Each number has its name, parts are named; a digest and the sizes stand at the beginning.
+
+    Args:
+        made: The controller or shield, which is not changed.
+        path: The file, whose name without its ending names the tables.
+        frame: Frame of a shield's twists; None stands for the tip.
+        q0: As for `c99`.
+
+    Returns:
+        The file.
+
+    Raises:
+        InvalidInputError: A part is not compiled, or is none of the package's; the part is named.
+        NotFoundError: There is no such frame.
+        FileError: The file cannot be written.
+    """
+    file = Path(path)
+    twin, _ = _begun(made, q0)
+    write_text(file, Tables(twin, frame).json(file.stem))
+    return file
 
 
 def _claimed(folder: str | os.PathLike[str], mark: str, overwrite: bool) -> Path:
@@ -141,31 +176,39 @@ def python(
         MissingDependencyError: `platforms` are given, and ziglang is not installed.
         FileError: The folder holds other files, or cannot be written.
     """
+    if cuda and not isinstance(made, Shield):
+        raise InvalidInputError("cuda", "is for a shield", made)
+    export = _Export(made, frame, q0, _checked_name(name))
+    texts = export.texts | {
+        "package_version": "0.1.0",
+        "extras": (TEMPLATES / "parts" / "cuda.toml").read_text(encoding="utf-8") * cuda,
+    }
+    package = prepare_folder(_claimed(folder, f"*/{VECTORS}", overwrite) / name)
+    export.write_code(package)
+    for path in _templates("python", f"python_{export.tables.kind}"):
+        is_outer = path.name in ("README.md", "hatch_build.py.in", "pyproject.toml.in")
+        place = package.parent if is_outer else package
+        write_text(place / path.name.removesuffix(".in"), filled(path, texts))
+    if cuda:
+        write_cuda(package, texts, [core().header, core().code, *export.code.values()])
+    for platform in PLATFORMS if "all" in platforms else platforms:
+        _compile_for(package, platform)
+    return package.parent
+
+
+def _checked_name(name: str) -> str:
+    """Return a name that Python and C take; refuse others."""
     if not re.fullmatch("[a-z][a-z0-9_]*", name):
         raise InvalidInputError("name", f"must be small letters, digits and _, not {name!r}", name)
     if keyword.iskeyword(name):
         problem = f"must be no keyword of Python, as {name!r} is: no module can be imported by it"
         raise InvalidInputError("name", problem, name)
-    texts = _texts(made, frame, q0) | {"name": name, "package_version": "0.1.0"}
-    kind = texts["kind"]
-    if cuda and kind != "shield":
-        raise InvalidInputError("cuda", "is for a shield", made)
-    texts["extras"] = filled(PARTS / "cuda.toml", {}) * cuda
-    package = prepare_folder(_claimed(folder, f"*/{VECTORS}", overwrite) / name)
-    write_csv(package / VECTORS, *texts["vectors"])
-    sources = [TEMPLATES / kind / f"{kind}{end}" for end in (".c", ".h")]
-    for path in (*sources, *_templates("python", f"python_{kind}")):
-        is_outer = path.name in ("README.md", "hatch_build.py.in", "pyproject.toml.in")
-        place = package.parent if is_outer else package
-        write_text(place / path.name.removesuffix(".in"), filled(path, texts))
-    if cuda:
-        write_cuda(package, texts)
-    for platform in PLATFORMS if "all" in platforms else platforms:
-        _compile_for(package, kind, platform)
-    return package.parent
+    if c_word(name) != name:
+        raise InvalidInputError("name", f"must be no word of C, as {name!r} is", name)
+    return name
 
 
-def _compile_for(package: Path, kind: str, platform: str) -> None:
+def _compile_for(package: Path, platform: str) -> None:
     """Compile the library of a package for a platform, by zig."""
     if platform not in PLATFORMS:
         raise NotFoundError("platform", platform, PLATFORMS)
@@ -175,7 +218,7 @@ def _compile_for(package: Path, kind: str, platform: str) -> None:
     output = package / f"_library_{platform}.bin"
     words = [sys.executable, "-m", "ziglang", "cc", "-target", PLATFORMS[platform], *flags]
     done = subprocess.run(
-        [*words, str(package / f"{kind}.c"), "-o", str(output), "-lm"],
+        [*words, *map(str, sorted(package.glob("*.c"))), "-o", str(output), "-lm"],
         capture_output=True,
         text=True,
         check=False,
@@ -187,52 +230,165 @@ def _compile_for(package: Path, kind: str, platform: str) -> None:
             other.unlink()
 
 
-def _texts(made: Controller | Shield, frame: str | None, q0: ArrayLike | None) -> dict[str, Any]:
-    """Return the texts of a controller or a shield for the templates, and recorded steps."""
+def _begun(made: Controller | Shield, q0: ArrayLike | None) -> tuple[Any, Vector]:
+    """Return a shield, or a copy of a controller that begins; and where it begins, (n,) [rad].
+
+    Raises:
+        InvalidInputError: It is neither, or a controller with varying periods.
+    """
     if isinstance(made, Shield):
-        texts = _shield_texts(made, frame, q0)
-    else:
-        texts = _controller_texts(checks.instance("made", made, Controller), q0)
-    robot = made.robot
-    words = ("lower", "upper", "velocity", "acceleration", "jerk")
-    own = (*robot.limits[:2], robot.dq_max, robot.ddq_max, robot.dddq_max)
-    limits = {word: values.tolist() for word, values in zip(words, own, strict=True)}
-    return texts | {
-        "Kind": texts["kind"].capitalize(),
-        "call": filled(PARTS / f"{texts['kind']}_call.c", texts),
-        "steps": STEPS,
-        "columns": len(texts["vectors"][0]),
-        "velocity_limits": _numbers(np.where(robot.dq_max < np.inf, robot.dq_max, 1.0)),
-        "joints": repr(tuple(robot.joint_names)),
-        "joint_limits": re.sub(r"\binf\b", "np.inf", repr(limits)),
-    }
+        robot = made.robot
+        return made, Configuration(robot, robot.start_posture() if q0 is None else q0).q
+    controller = checks.instance("made", made, Controller)
+    if controller.longest_period is not None:
+        raise InvalidInputError("controller", "with longest_period has no C", controller)
+    twin = copy.copy(controller)
+    start = Configuration(twin.robot, twin.positions if q0 is None else q0)
+    twin.reset()
+    twin.anchor(start)
+    return twin, start.q
+
+
+class _Export:
+    """Texts of an export.
+
+    Attributes:
+        tables: Tables of the arm.
+        texts: Texts by their names in the templates.
+        code: Texts of the tables' files by their names.
+        vectors: Names of the columns of recorded steps, and their rows.
+    """
+
+    def __init__(
+        self, made: Controller | Shield, frame: str | None, q0: ArrayLike | None, name: str | None
+    ) -> None:
+        """Take what is exported, as for `python`; None for the name stands for the robot's."""
+        twin, q = _begun(made, q0)
+        self.tables = Tables(twin, frame)
+        own = re.sub(r"\W", "_", twin.robot.name.lower()).strip("_")
+        self._name = _checked_name(name or f"{'arm_' * (not own[:1].isalpha())}{own}")
+        self.texts = self._common()
+        if isinstance(twin, Shield):
+            rows = _shield_run(twin, self.tables.frames[0], q, max(q.size, TWIST))
+            self.texts |= {"tolerance": "0.0"}
+        else:
+            rows = run(twin, q, STEPS)
+            self.texts |= self._of_controller(twin, rows)
+        width = rows.shape[1] - 2 * q.size - 4
+        names = ["t", *_names(q=q.size), "kind", "dt", *_names(request=width, dq=q.size), "result"]
+        self.vectors = (names, rows)
+        self.texts |= {"q0": _numbers(q), "columns": len(names), "request": width}
+        guard = (TEMPLATES / "core" / "guard.c").read_text(encoding="utf-8")
+        folder = TEMPLATES / "tables"
+        ends = {f"{self._name}.{end}": f"tables.{end}" for end in "hc"}
+        if self.tables.own.names:
+            ends[f"{self._name}_own.c"] = "own.c"
+        self.code = {
+            file: filled(folder / own, self.texts | {"guard": guard}) for file, own in ends.items()
+        }
+
+    def write_code(self, folder: Path) -> None:
+        """Write the core, the tables and the recorded steps into a folder."""
+        files = {"armstep.h": core().header, "armstep.c": core().code, **self.code}
+        for file, text in files.items():
+            write_text(folder / file, text)
+        write_csv(folder / VECTORS, *self.vectors)
+
+    def _common(self) -> dict[str, Any]:
+        """Return the texts that both kinds have."""
+        tables = self.tables
+        name = self._name
+        robot = tables.robot
+        flat = tables.flat
+        words = {
+            "joint": robot.joint_names,
+            "frame": tables.frames,
+            "obstacle": tables.obstacles,
+            "limit": tables.limit_names,
+        }
+        trees = {"numbers": ("double", flat.named), "integers": ("ptrdiff_t", flat.worded)}
+        both = {
+            word: f"{Node(own).declaration(f'{name}_{word}', kind)} = {Node(own).initializer()}"
+            for word, (kind, own) in trees.items()
+        }
+        arrays = {
+            word: braced([*map(constant, own.tolist())], robot.joint_names)
+            for word, own in tables.limits.items()
+        }
+        plain = {word: values.tolist() for word, values in tables.limits.items()}
+        return {
+            **both,
+            **arrays,
+            **{f"{word}_words": _quoted(own) for word, own in words.items()},
+            **{f"{word}_names": ", ".join(own) or "none" for word, own in words.items()},
+            **{word: repr(float(value)) for word, value in tables.periods.items()},
+            "name": name,
+            "NAME": name.upper(),
+            "kind": tables.kind,
+            "KIND": tables.kind.upper(),
+            "Kind": tables.kind.capitalize(),
+            "robot": robot.name,
+            "version": version("iiwa-dnn"),
+            "release": RELEASE,
+            "laid_out": LAID_OUT,
+            "kept": tables.kept,
+            "watched": len(tables.program.pairs) or "none, not even links",
+            "joints": robot.dof,
+            "frames": len(tables.frames),
+            "obstacles": len(tables.obstacles),
+            "limits": len(tables.limit_names),
+            "first_row": tables.first_row,
+            "memory": tables.memory,
+            "scratch": tables.scratch,
+            "digest": f"{tables.digest:016x}",
+            "number_count": len(flat.numbers),
+            "integer_count": len(flat.integers),
+            "parts": ", ".join(map(str, flat.parts)),
+            "part_count": len(flat.parts),
+            **self._own_texts(),
+            "steps": STEPS,
+            "joint_tuple": repr(tuple(robot.joint_names)),
+            "frame_tuple": repr(tuple(tables.frames)),
+            "joint_limits": re.sub(r"\binf\b", "np.inf", repr(plain)),
+            "longest_or_none": repr(tables.periods["longest"] or None),
+            "reason_members": _members(Reason),
+            "action_members": _members(Action),
+            "program_members": _members(ProgramKind),
+            "has_reference": tables.has_reference,
+        }
+
+    def _own_texts(self) -> dict[str, Any]:
+        """Return the texts of parts from outside of the package."""
+        own = self.tables.own
+        name = f"{self._name}_own"
+        count = len(own.names)
+        return {
+            "own": name if count else "NULL",
+            "own_count": count,
+            "own_declaration": f"extern const struct armstep_own {name}[{count}];\n" * bool(count),
+            "own_code": own.text() if count else "",
+            "own_rows": "\n".join(own.rows),
+        }
+
+    def _of_controller(self, controller: Controller, rows: Matrix) -> dict[str, Any]:
+        """Return the texts of a controller, whose recorded steps are known."""
+        n = controller.robot.dof
+        resting = rows[0, 3 + n : -1 - n].reshape(-1, TARGET_SIZE) * _POSE
+        return {
+            "tolerance": f"{10.0 * controller.solver.tol:g}",
+            "target": _numbers(resting.ravel()),
+            "request_of_step": "NULL" if self.tables.has_reference else "target",
+        }
+
+
+def _quoted(words: Sequence[str]) -> str:
+    """Write words as strings of C, one after another; NULL for none."""
+    return ", ".join(map(json.dumps, words)) or "NULL"
 
 
 def _names(**counts: int) -> list[str]:
     """Return names of columns: each name with the numbers from 1 to its count."""
     return [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
-
-
-def _shield_texts(shield: Shield, frame: str | None, q0: ArrayLike | None) -> dict[str, Any]:
-    """Return the texts of a shield, and recorded steps with requests of all kinds.
-
-    Raises:
-        NotFoundError: There is no such frame.
-    """
-    robot = shield.robot
-    tip = frame or robot.tip
-    texts = shield_code(shield, tip)
-    start = Configuration(robot, robot.start_posture() if q0 is None else q0).q
-    width = max(robot.dof, TWIST)
-    n = robot.dof
-    names = _names(q=n, kind=1, dt=1, request=width, dq=n, reason=1)
-    return texts | {
-        "tolerance": "0.0",
-        "q0": _numbers(start),
-        "longest_or_none": repr(shield.longest_period),
-        "reason_members": _members(Reason),
-        "vectors": (names, _shield_run(shield, tip, start, width)),
-    }
 
 
 def _members(kind: type[IntEnum]) -> str:
@@ -246,15 +402,15 @@ def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
     The arm moves as commanded, late by the shield's `delay`. Requests have `width` numbers.
 
     Returns:
-        Rows of the joint positions, kind of the request, stated period [s], the request, the
-        command and its reason.
+        Rows of the time [s], joint positions, kind of the request, stated period [s], the request,
+        the command and its reason.
     """
     random = np.random.default_rng(0)
     arms = Shields(shield, frame=frame)
     kinds = [Request.VELOCITY, Request.TWIST, Request.POSITION, Request.NONE]
     late = math.ceil(shield.delay / shield.dt)
     path = [q] * (1 + late)
-    rows = []
+    rows: list[Vector] = []
     request: Vector = np.zeros(width)
     kind = Request.NONE
     for k in range(STEPS):
@@ -273,8 +429,9 @@ def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
             position=asked[:, : q.size] if kind == Request.POSITION else None,
             dt=period or None,
         )
-        own = [q, [float(kind), period], request, command.dq[0], [float(command.reason[0])]]
-        rows.append(np.concatenate(own))
+        said = [float(kind), period]
+        result = [float(command.reason[0])]
+        rows.append(np.concatenate([[k * shield.dt], q, said, request, command.dq[0], result]))
         path.append(command.next_q[0])
         q = path[1 + k] + (0.05 if k == 300 else 0.0)
     return np.array(rows)
@@ -297,7 +454,8 @@ def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
     the exported C.
 
     Returns:
-        Rows of the time [s], joint positions, targets of all frames, the command and the action.
+        Rows of the time [s], joint positions, two zeros, targets of all frames, the command and
+        the action.
     """
     twin = copy.copy(controller)
     if twin.reference is None:
@@ -308,60 +466,15 @@ def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
         }
     take_exported_kinematics(twin)
     q = q0.copy()
-    rows = []
+    rows: list[Vector] = []
     for k in range(steps):
         t = k * twin.dt
         targets = twin.targets(t - twin.path_lag)
         command = twin.step(q, t)
-        rows.append(np.concatenate([[t], q, targets.ravel(), command.dq, [float(command.action)]]))
+        result = [float(command.action)]
+        rows.append(np.concatenate([[t], q, [0.0, 0.0], targets.ravel(), command.dq, result]))
         q = q + twin.dt * command.dq
     return np.array(rows)
-
-
-def _controller_texts(controller: Controller, q0: ArrayLike | None) -> dict[str, Any]:
-    """Return the texts of a controller, and recorded steps.
-
-    Raises:
-        InvalidInputError: A part of the controller has no C; the part is named.
-    """
-    if controller.longest_period is not None:
-        raise InvalidInputError("controller", "with longest_period has no C", controller)
-    twin = copy.copy(controller)
-    robot = twin.robot
-    start = Configuration(robot, twin.positions if q0 is None else q0)
-    twin.reset()
-    twin.anchor(start)
-    texts = controller_code(twin)
-    rows = run(twin, start.q, STEPS)
-    frames = twin.program.target_frames
-    sampled = texts["has_reference"]
-    paths = by_frame(twin.reference, frames[0])
-    n = robot.dof
-    resting = rows[0, 1 + n : -1 - n].reshape(-1, TARGET_SIZE) * _POSE
-    settings = {
-        "q_lower": robot.q_lower,
-        "q_upper": robot.q_upper,
-        "dq_max": robot.dq_max,
-        "mode": twin.mode,
-        "policy": twin.policy,
-        "tolerance": twin.solver.tol,
-        "network": twin.solver.network.settings(),
-        "reference": {name: path.settings() for name, path in paths.items()},
-        "scheme": twin.scheme.settings(),
-    }
-    return texts | {
-        "vectors": (["t", *_names(q=n, target=18 * len(frames), dq=n), "action"], rows),
-        "tolerance": f"{10.0 * twin.solver.tol:g}",
-        "q0": _numbers(start.q),
-        "target": _numbers(resting.ravel()),
-        "sample": "        controller_target(&c, k * CONTROLLER_DT, target);\n" * sampled,
-        "fri_sample": "        controller_target(&controller_, t_, target);\n" * sampled,
-        "usage": "controller_target(&c, t, target);  /* the reference */\n" * sampled,
-        "settings": json.dumps(plain(settings), indent=2),
-        "frame_tuple": repr(tuple(frames)),
-        "action_members": _members(Action),
-        "program_members": _members(ProgramKind),
-    }
 
 
 def _numbers(values: Vector) -> str:

@@ -16,10 +16,14 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.build import run_compiler
 from iiwa_dnn.errors import FileError
+from iiwa_dnn.export.core import LAID_OUT
 from iiwa_dnn.qp import Vector
 
 FLAGS = ("-std=c99", "-O2")
 """Flags of the compiler, unless others are given."""
+
+CORE = "armstep.h"
+"""Header of the core."""
 
 
 class ExportedCommand(NamedTuple):
@@ -44,20 +48,29 @@ class ExportedController:
         size: Bytes of the controller's memory.
     """
 
-    def __init__(self, library: Any, header: str) -> None:
-        """Take the loaded library of a controller and the text of its header; begin at rest."""
-        macros = dict(re.findall(r"#define CONTROLLER_(\w+) (\S+)", header))
-        self.dof = int(macros["DOF"])
-        self.frames = int(macros["FRAMES"])
-        self.dt = float(macros["DT"])
-        self.size = int(macros["SIZE"])
+    def __init__(self, library: Any, name: str, header: str, dt: float) -> None:
+        """Take the loaded library, name and header of its tables, and its period; begin at rest.
+
+        Raises:
+            FileError: The library refuses the tables.
+        """
+        known = {word: int(n) for word, n in re.findall(r"_([A-Z]+) = (\d+)", header)}
+        self.dof = known["JOINTS"]
+        self.frames = known["FRAMES"]
+        self.dt = dt
+        self.size = 8 * known["MEMORY"]
         self._library = library
-        self._memory = (ctypes.c_double * (self.size // 8))()
+        self._arm = (ctypes.c_double * (LAID_OUT + 1))()
+        self._memory = (ctypes.c_double * known["MEMORY"])()
+        self._scratch = (ctypes.c_double * known["SCRATCH"])()
+        status = library.armstep_load(self._arm, ctypes.byref(ctypes.c_char.in_dll(library, name)))
+        if status:
+            raise FileError(f"{name}.c", f"the tables do not load: status {status}")
         self.reset()
 
     def reset(self) -> None:
         """Forget the last commands and begin at rest."""
-        self._library.controller_init(self._memory)
+        self._library.armstep_begin(self._arm, self._memory, self._scratch)
 
     def step(self, q: ArrayLike, target: ArrayLike) -> ExportedCommand:
         """Compute the command for joint positions.
@@ -70,20 +83,31 @@ class ExportedController:
             InvalidInputError: `q` or `target` has a wrong shape or is not finite.
         """
         wanted = checks.finite_array("target", np.ravel(target), (18 * self.frames,))
-        return self._command(self._library.controller_step, q, wanted)
+        joints = checks.finite_array("q", q, (self.dof,))
+        dq = np.empty(self.dof)
+        given = _Input(joints.ctypes.data, 0, wanted.ctypes.data, 0.0, 0.0, 0.0)
+        place = (self._arm, self._memory, self._scratch)
+        return ExportedCommand(
+            dq, self._library.armstep_step(*place, ctypes.byref(given), dq.ctypes)
+        )
 
     def target(self, t: float) -> Vector:
         """Compute the targets of the controller's reference at a time [s], (18 frames,)."""
         target = np.empty(18 * self.frames)
-        self._library.controller_target(self._memory, ctypes.c_double(t), target.ctypes)
+        place = (self._arm, self._memory, self._scratch)
+        self._library.armstep_targets(*place, ctypes.c_double(t), target.ctypes)
         return target
 
-    def _command(self, step: Any, q: ArrayLike, asked: Vector | None) -> ExportedCommand:
-        """Call a C function `step` with joint positions and targets, or without targets."""
-        joints = checks.finite_array("q", q, (self.dof,))
-        dq = np.empty(self.dof)
-        given = None if asked is None else asked.ctypes
-        return ExportedCommand(dq, step(self._memory, joints.ctypes, given, dq.ctypes))
+
+class _Input(ctypes.Structure):
+    _fields_ = (
+        ("q", ctypes.c_void_p),
+        ("kind", ctypes.c_int),
+        ("request", ctypes.c_void_p),
+        ("t", ctypes.c_double),
+        ("dt", ctypes.c_double),
+        ("elapsed", ctypes.c_double),
+    )
 
 
 def load(folder: str | os.PathLike[str], flags: Sequence[str] = FLAGS) -> ExportedController:
@@ -93,13 +117,21 @@ def load(folder: str | os.PathLike[str], flags: Sequence[str] = FLAGS) -> Export
         FileError: The folder holds no controller, or one that does not compile, or there is no
             compiler.
     """
-    source = Path(folder) / "controller.c"
+    place = Path(folder)
+    headers = [own for own in place.glob("*.h") if own.with_suffix(".c").is_file()]
+    tables = next((own for own in headers if own.name != CORE), None)
+    if tables is None:
+        raise FileError(place, "holds no tables beside a header")
+    sources = [place / "armstep.c", *sorted(place.glob(f"{tables.stem}*.c"))]
     with tempfile.TemporaryDirectory() as build:
         library = Path(build) / "controller.so"
         try:
-            run_compiler([*flags, "-shared", "-fPIC"], [source], library)
+            run_compiler([*flags, "-shared", "-fPIC"], sources, library)
         except (LookupError, RuntimeError) as error:
-            raise FileError(source, str(error)) from error
-        header = source.with_suffix(".h").read_text(encoding="utf-8")
+            raise FileError(sources[-1], str(error)) from error
+        header = tables.read_text(encoding="utf-8")
+        period = re.search(r"\.dt = (\S+),\n    \.longest", sources[1].read_text(encoding="utf-8"))
         # The system keeps the file as long as it is loaded.
-        return ExportedController(ctypes.CDLL(str(library)), header)
+        return ExportedController(
+            ctypes.CDLL(str(library)), tables.stem, header, float(period[1] if period else "nan")
+        )

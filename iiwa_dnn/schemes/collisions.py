@@ -194,7 +194,7 @@ def _rank(slacks: Vector, k: int) -> int:
     """
     rank = 0
     for i in range(slacks.size):
-        rank += slacks[i] < slacks[k] or (slacks[i] == slacks[k] and i < k)
+        rank += slacks[i] < slacks[k] or (i < k and slacks[i] == slacks[k])
     return rank
 
 

@@ -430,22 +430,6 @@ def test_tables_go_by_the_full_names_of_their_modules(tmp_path: Path) -> None:
     assert (library.one_own_f(0), library.two_own_f(0)) == (1.0, 2.0)
 
 
-def test_another_instance_than_the_plans_is_refused(tmp_path: Path) -> None:
-    """An export puts the plan's values in place of its members."""
-    source = """def f(plan: Views) -> float:
-    own = Views(plan.data, plan.rows, 2.0)
-    return g(plan) + g(own)
-
-@compiled
-def g(views: Views) -> float:
-    return views.rate
-"""
-    translator = Translator(_write(tmp_path, source))
-    translator.plan["own_Views"] = {"rate": translator.constant("plan_rate", 0.5, "")}
-    with pytest.raises(TranslationError, match="`own` is another one than the plan's"):
-        translator.all()
-
-
 @pytest.mark.parametrize("source", BY_THE_COMPILER)
 def test_types_that_do_not_fit_are_refused_by_the_compiler(tmp_path: Path, source: str) -> None:
     line = HEAD.count("\n") + 5

@@ -22,7 +22,9 @@ from iiwa_dnn.compiling.kinds import attributes
 from iiwa_dnn.compiling.sources import Package
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.export import ExportedController, c99, load, python
+from iiwa_dnn.export.arm_tables import STATE
 from iiwa_dnn.export.folder import run as run_controller, take_exported_kinematics
+from iiwa_dnn.export.load import _Input
 from iiwa_dnn.schemes.joint_limits import PositionConstants
 from iiwa_dnn.studies.runs import paper_robot
 
@@ -33,6 +35,11 @@ pytestmark = needs("gcc")
 def heart(tmp_path_factory: pytest.TempPathFactory) -> Path:
     controller, q0 = drawing()
     return c99(controller, tmp_path_factory.mktemp("heart"), q0)
+
+
+def code_of(folder: Path) -> list[Path]:
+    """List the files of a folder that go into a program."""
+    return [each for each in folder.glob("*.c") if each.stem not in ("compare", "example")]
 
 
 def loaded(folder: Path) -> ExportedController:
@@ -54,6 +61,9 @@ def exported(loaded_heart: ExportedController) -> ExportedController:
 REACHING = ("inertia, velocity limits active", "collisions with balls")
 """Controllers whose limits become active."""
 
+UNTOUCHED = 12345.678
+"""Number in scratch that no step writes."""
+
 STEPS = 2000
 """Steps until what a controller is there for has come and gone."""
 
@@ -63,12 +73,11 @@ STEPS = 2000
 def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) -> None:
     """Pinocchio's own kinematics have other last digits: tests/robot/test_kinematics_kernel.py.
 
-    Less memory on the stack than there is, five eighths of it, is enough.
+    Less scratch than there is, five eighths of it, is enough.
     """
     controller, q0 = SETTINGS[name]()
-    n, m, p = controller.program.sizes
-    flags = [*WARNINGS, *QUICK, f"-DCONTROLLER_SCRATCH={5 * n * (n + m + p + 10)}"]
-    there = packaged(controller, tmp_path, "a_controller", q0, flags).Controller()
+    there = packaged(controller, tmp_path, "a_controller", q0, [*WARNINGS, *QUICK]).Controller()
+    there._room[:] = UNTOUCHED
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
     take_exported_kinematics(controller)
     dt = controller.dt
@@ -80,7 +89,7 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
         command = controller.step(q, k * dt)
         found = there.step(q, k * dt)
         assert targets.tobytes() == command.targets.tobytes()
-        assert found._memory[: command.data.size].tobytes() == command.data.tobytes()
+        assert found._memory[STATE : STATE + command.data.size].tobytes() == command.data.tobytes()
         assert found.dq.tobytes() == command.dq.tobytes()
         assert found.next_q.tobytes() == command.next_q.tobytes()
         said = (found.action, found.program, found.fraction, there.path_lag)
@@ -91,6 +100,7 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
             limited += bool(limits)
         actions.add(found.action)
         q = command.next_q
+    assert np.flatnonzero(there._room != UNTOUCHED).max() < 5 * there._room.size // 8
     assert np.abs(q - q0).max() > 1e-4
     assert limited > 5 or name not in REACHING
     assert len(actions) > 1 or not name.startswith(("without", "yielding", "collisions with balls"))
@@ -111,7 +121,7 @@ def test_the_folder_passes_its_own_test_which_can_fail(
     heart: Path, compiler: str, flags: tuple[str, ...], runner: tuple[str, ...], tmp_path: Path
 ) -> None:
     program = (*runner, tmp_path / "compare")
-    sources = [heart / "compare.c", heart / "controller.c"]
+    sources = [heart / "compare.c", *code_of(heart)]
     run(compiler, *WARNINGS, "-O0", "-DROUNDS=1", *flags, "-o", program[-1], *sources, "-lm")
     said = run(*program, heart / "vectors.csv")
     assert said.startswith("500 steps: 0 commands differ")
@@ -137,37 +147,36 @@ def test_make_and_the_example_run_as_the_readme_says(heart: Path, tmp_path: Path
 @pytest.mark.parametrize("name", [*REACHING, "a network of one's own"])
 def test_the_code_reads_as_c_by_hand(name: str, tmp_path: Path) -> None:
     controller, q0 = SETTINGS[name]()
-    c99(controller, tmp_path, q0)
-    text = (tmp_path / "controller.c").read_text(encoding="utf-8")
-    assert max(map(len, text.splitlines())) <= 120
+    c99(controller, tmp_path, q0, name="arm")
+    lines = [line for own in code_of(tmp_path) for line in own.read_text("utf-8").splitlines()]
+    assert max(map(len, lines)) <= 120
+    text = (tmp_path / "armstep.c").read_text(encoding="utf-8")
     kernels = text[text.index("/* ----") :]
     assert not re.search(r"\(\*\w+\)[.[]|&\(\*|[=(] \(\((?!\w+ \*\)&)", kernels)
     assert "        const double below = step->q.data[i] - limits.lower.data[i];\n" in kernels
     sections = [text.index(f"/* ---- {title}") for title in SECTIONS if title in text]
     assert sections == sorted(sections)
-    run("gcc", *WARNINGS, "-fsyntax-only", tmp_path / "controller.c")
-    run(
-        "g++", "-std=c++17", "-Wall", "-Werror", "-fsyntax-only", "-xc++", tmp_path / "controller.c"
-    )
+    for words in (["gcc", *WARNINGS], ["g++", "-std=c++17", "-Wall", "-Werror", "-xc++"]):
+        run(*words, "-fsyntax-only", *code_of(tmp_path))
 
 
-SECTIONS = ("Tables", "Kinematics", "Targets", "Program", "Network", "Control step", "Interface")
+SECTIONS = ("Kinematics", "Targets", "Program", "Network", "Control step", "Tables", "Interface")
 
 
 @needs("clang")
 def test_clang_has_no_warning_either(heart: Path) -> None:
-    names = ("controller.c", "compare.c", "example.c")
-    run("clang", *WARNINGS, "-fsyntax-only", *(heart / name for name in names))
+    run("clang", *WARNINGS, "-fsyntax-only", *heart.glob("*.c"))
 
 
 def test_the_code_is_plain_c_and_its_memory_is_stated(
     heart: Path, exported: ExportedController
 ) -> None:
-    text = (heart / "controller.c").read_text(encoding="utf-8")
+    text = (heart / "armstep.c").read_text(encoding="utf-8")
     code = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
-    included = {"math", "stdbool", "stddef", "stdint", "string"}
+    included = {"float", "math", "stdbool", "stddef", "stdint", "string"}
     assert set(re.findall(r"#include <(\S+)\.h>", code)) == included
     assert not re.search(r"\b(malloc|free|alloca|printf|fopen|goto|setjmp|restrict)\b", code)
+    assert not re.search(r"__(builtin|atomic|attribute)", code)
     for words in (
         "static inline ptrdiff_t control_cycle_take_step(struct arena *arena, Vector data,",
         "/* Tighten the bounds lb and ub (n,) [rad/s] to those of `JointLimits`.",
@@ -176,7 +185,7 @@ def test_the_code_is_plain_c_and_its_memory_is_stated(
         assert words in text
     assert exported.size <= 16_000
     readme = (heart / "README.md").read_text(encoding="utf-8")
-    assert f"`struct controller` | {exported.size} bytes" in readme
+    assert f"memory of an arm | 8 × {exported.size // 8} bytes" in readme
     assert "@" not in readme
 
 
@@ -186,38 +195,40 @@ CORTEX = ("-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard", "-mthumb")
 @pytest.mark.parametrize(
     ("prefix", "flags", "most"),
     [
-        ("", (), 36_000),
-        pytest.param("arm-none-eabi-", CORTEX, 24_000, marks=needs("arm-none-eabi-gcc")),
+        ("", ("-fno-pie",), 96_000),
+        pytest.param("arm-none-eabi-", CORTEX, 62_000, marks=needs("arm-none-eabi-gcc")),
     ],
 )
 def test_size_without_global_state(
     heart: Path, prefix: str, flags: tuple[str, ...], most: int, tmp_path: Path
 ) -> None:
-    """Of a program that takes steps and asks for no names."""
-    made = tmp_path / "controller.o"
-    linked = ["-r", "-nostdlib", "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections"]
-    linked += ["-Wl,-u,controller_step", "-Wl,-u,controller_target", "-Wl,-e,controller_init"]
-    own = [*WARNINGS, *flags, "-Os", *linked]
-    run(f"{prefix}gcc", *own, "-o", made, heart / "controller.c")
+    """Of the core, for shields and controllers of any arm."""
+    made = tmp_path / "armstep.o"
+    run(f"{prefix}gcc", *WARNINGS, *flags, "-Os", "-c", "-o", made, heart / "armstep.c")
     text, data, bss = map(int, run(f"{prefix}size", made).splitlines()[1].split()[:3])
-    assert text <= most  # with the fallback programs, each of a size of its own
+    assert text <= most
     assert data == bss == 0
 
 
-def test_inputs_that_are_no_numbers_change_nothing(exported: ExportedController) -> None:
+def test_inputs_that_are_no_numbers_stop_the_arm(exported: ExportedController) -> None:
     rows = run_controller(*drawing(), 20)
-    expected = [exported.step(row[1:8], row[8:26]).dq for row in rows]
+    expected = [exported.step(row[1:8], row[10:28]).dq for row in rows]
     exported.reset()
     for k, (row, before) in enumerate(zip(rows, expected, strict=True)):
         dq = np.ones(7)
-        q, target = row[1:8].copy(), row[8:26].copy()
+        q, target = row[1:8].copy(), row[10:28].copy()
         (q if k % 2 else target)[k % 7] = (np.nan, np.inf, -np.inf)[k % 3]
-        pointers = [ctypes.c_void_p(array.ctypes.data) for array in (q, target, dq)]
-        memory = bytes(exported._memory)
-        assert exported._library.controller_step(exported._memory, *pointers) == -1
-        assert bytes(exported._memory) == memory  # `motion_state` held the refused positions
-        assert not dq.any()
-        np.testing.assert_array_equal(exported.step(row[1:8], row[8:26]).dq, before)
+        given = (q.ctypes.data, 0, target.ctypes.data)
+        assert stepped(exported, given, dq) == -1
+        assert not dq.any()  # without acceleration limits it stops at once
+        np.testing.assert_array_equal(exported.step(row[1:8], row[10:28]).dq, before)
+
+
+def stepped(exported: ExportedController, given: tuple[Any, ...], dq: np.ndarray) -> int:
+    """Take a step whose inputs are not checked."""
+    place = (exported._arm, exported._memory, exported._scratch)
+    own = ctypes.byref(_Input(*given))
+    return int(exported._library.armstep_step(*place, own, ctypes.c_void_p(dq.ctypes.data)))
 
 
 class _Local(iiwa_dnn.Limit):
@@ -263,7 +274,8 @@ def test_a_kernel_as_the_page_of_schemes_shows_it_is_exported(
     for k in range(50):
         command = controller.step(q0, k * controller.dt)
         assert exported.step(q0, command.targets).dq.tobytes() == command.dq.tobytes()
-    code = (tmp_path / "folder" / "controller.c").read_text(encoding="utf-8")
+    [file] = (tmp_path / "folder").glob("*_own.c")
+    code = file.read_text(encoding="utf-8")
     assert "h.data[0] = own.at->gain * (d - own.at->distance);" in code
 
 
@@ -277,18 +289,19 @@ class Page(iiwa_dnn.Limit):
         return np.array([robot.frame_id("iiwa7_link_4"), 20.0, 0.1, 0.5, 0.5, 0.5])
 
 
-def numbers_of(folder: Path, kind: str, name: str, tmp_path: Path) -> list[float]:
+def numbers_of(folder: Path, name: str, tmp_path: Path) -> list[float]:
     """Print the numbers that a table holds in C."""
     source = tmp_path / "table.c"
     source.write_text(
-        f'''#include <stdio.h>
-#include "{kind}.c"
+        f"""#include <stdio.h>
+#include "arm.c"
 int main(void)
 {{
-    const double *numbers = (const double *)&{name};
-    for (size_t k = 0; k < sizeof {name} / sizeof *numbers; k++) printf("%.17g\\n", numbers[k]);
+    const double *numbers = (const double *)&arm_numbers.plan.step.{name};
+    const size_t count = sizeof arm_numbers.plan.step.{name} / sizeof *numbers;
+    for (size_t k = 0; k < count; k++) printf("%.17g\\n", numbers[k]);
     return 0;
-}}'''
+}}"""
     )
     run("gcc", "-std=c99", "-O0", f"-I{folder}", source, "-o", tmp_path / "table", "-lm")
     return [float(line) for line in run(tmp_path / "table").split()]
@@ -297,15 +310,15 @@ int main(void)
 @pytest.mark.parametrize("name", ["other tasks", "collisions with balls", "tilting poses"])
 def test_tables_have_pythons_numbers_by_their_names(name: str, tmp_path: Path) -> None:
     controller, q0 = SETTINGS[name]()
-    folder = c99(controller, tmp_path, q0)
+    folder = c99(controller, tmp_path, q0, name="arm")
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
     plan = controller.control_layout.plan
     for field, numbers in (
-        ("plan_arrays_constants", plan.arrays.constants),
-        ("plan_paths_constants", plan.paths.constants),
-        ("plan_yielding_limits", plan.yielding.limits),
+        ("arrays.constants", plan.arrays.constants),
+        ("paths.constants", plan.paths.constants),
+        ("yielding.limits", plan.yielding.limits),
     ):
-        found = numbers_of(folder, "controller", field, tmp_path)
+        found = numbers_of(folder, field, tmp_path)
         np.testing.assert_array_equal(found, numbers, field)
 
 
@@ -315,11 +328,14 @@ ROOT = Path(iiwa_dnn.__file__).parent
 @pytest.mark.parametrize("kind", ["controller", "shield"])
 def test_a_reviewer_finds_limits_gains_and_capsules_by_name(kind: str, tmp_path: Path) -> None:
     if kind == "shield":
-        c99(make_shield(), tmp_path, START)
+        c99(make_shield(), tmp_path, START, name="arm")
     else:
         controller, q0 = SETTINGS["collisions with balls"]()
-        c99(controller, tmp_path, q0)
-    text = " ".join((tmp_path / f"{kind}.c").read_text(encoding="utf-8").split()).replace("{ ", "{")
+        c99(controller, tmp_path, q0, name="arm")
+    whole = "".join(
+        (tmp_path / f"{own}.c").read_text(encoding="utf-8") for own in ("arm", "armstep")
+    )
+    text = " ".join(whole.split()).replace("{ ", "{")
     limit = repr(float(paper_robot().dq_max[3]))
     about = attributes(cleandoc(PositionConstants.__doc__ or ""))
     for words in (
@@ -334,7 +350,7 @@ def test_a_reviewer_finds_limits_gains_and_capsules_by_name(kind: str, tmp_path:
     ):
         assert words in text
     # No number of a table stands without a name but in matrices.
-    assert not re.search(r"static const double \w+\[\d{2,}\] =", text)
+    assert not re.search(r"static const double arm_\w+\[\d{2,}\] =", text)
 
 
 class _Plain(iiwa_dnn.Heart):
@@ -347,9 +363,11 @@ class _Plain(iiwa_dnn.Heart):
 def test_a_reference_without_compiled_form_leaves_the_targets_to_the_caller(tmp_path: Path) -> None:
     controller, q0 = drawing(path=_Plain())
     folder = c99(controller, tmp_path, q0)
-    for name in ("controller.h", "README.md"):
-        assert "controller_target" not in (folder / name).read_text(encoding="utf-8")
+    assert "| a reference | False |" in (folder / "README.md").read_text(encoding="utf-8")
     run("gcc", *WARNINGS, "-fsyntax-only", folder / "example.c")
+    exported = loaded(folder)
+    assert stepped(exported, (np.asarray(q0).ctypes.data, 0, None), np.empty(7)) == -1
+    assert exported.step(q0, controller.targets(0.0).ravel()).action == 0
 
 
 def test_the_controller_that_is_exported_stays_as_it_is(tmp_path: Path) -> None:
@@ -387,18 +405,19 @@ def test_without_a_reference_the_vectors_follow_a_figure(tmp_path: Path) -> None
     rows = np.loadtxt(folder / "vectors.csv", delimiter=",", skiprows=1)
     exported = loaded(folder)
     for row in rows:
-        dq, action = exported.step(row[1:8], row[8:26])
+        dq, action = exported.step(row[1:8], row[10:28])
         assert action == row[-1]
-        np.testing.assert_allclose(dq, row[26:33], rtol=0, atol=1e-9)
-    assert np.ptp(rows[:, 8]) > 1e-3
+        np.testing.assert_allclose(dq, row[28:35], rtol=0, atol=1e-9)
+    assert np.ptp(rows[:, 10]) > 1e-3
 
 
 def test_errors_of_loading(
     heart: Path, exported: ExportedController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(FileError, match=r"controller\.c"):
+    with pytest.raises(FileError, match="no tables"):
         load(tmp_path)
-    (tmp_path / "controller.c").write_text("int broken(", encoding="utf-8")
+    for name in ("armstep.c", "broken.c", "broken.h"):
+        (tmp_path / name).write_text("int broken(", encoding="utf-8")
     with pytest.raises(FileError, match="does not compile"):
         load(tmp_path)
     monkeypatch.setattr(build, "compiler", Mock(side_effect=LookupError("apt-get install gcc")))

@@ -4,6 +4,7 @@ import copy
 import multiprocessing
 import pickle
 import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -195,13 +196,18 @@ def test_a_library_that_is_missing_or_another_is_said_in_a_line(tmp_path: Path) 
     (tmp_path / "lonely" / "_library.bin").write_bytes(b"no library")
     done = subprocess.run(command, cwd=project, capture_output=True, text=True, check=False)
     assert "ImportError: lonely's library is none for this machine" in done.stderr
-    text = (tmp_path / "lonely" / "shield.c").read_text(encoding="utf-8")
-    other = tmp_path / "other.c"
-    other.write_text(text.replace("return SHIELD_DIGEST;", 'return "another";'))
+    text = (tmp_path / "lonely" / "lonely.c").read_text(encoding="utf-8")
     flags = ["-std=c99", "-O0", "-shared", "-fPIC", "-I", tmp_path / "lonely"]
-    run("gcc", *flags, other, "-o", tmp_path / "lonely" / "_library.bin", "-lm")
-    done = subprocess.run(command, cwd=project, capture_output=True, text=True, check=False)
-    assert "ImportError: lonely's library is of another version" in done.stderr
+    for changed, said in (
+        (re.sub(r"UINT64_C\(0x\w+", "UINT64_C(0x1", text), "library is of another version"),
+        (text.replace(".velocity = {", ".velocity = {0.5 + ", 1), "tables do not load: status 2"),
+    ):
+        assert changed != text
+        (tmp_path / "other.c").write_text(changed)
+        sources = [tmp_path / "other.c", tmp_path / "lonely" / "armstep.c"]
+        run("gcc", *flags, *sources, "-o", tmp_path / "lonely" / "_library.bin", "-lm")
+        done = subprocess.run(command, cwd=project, capture_output=True, text=True, check=False)
+        assert f"ImportError: lonely's {said}" in done.stderr
 
 
 def test_its_wheel_runs_its_own_vectors_without_this_package(tmp_path: Path) -> None:
@@ -230,7 +236,7 @@ assert "iiwa_dnn" not in sys.modules and "pinocchio" not in sys.modules
     assert "500 steps, 0 differ" in said
 
 
-@pytest.mark.parametrize("name", ["a-b", "class", "A", "", "1a"])
+@pytest.mark.parametrize("name", ["a-b", "class", "A", "", "1a", "double"])
 def test_a_name_that_is_none_is_refused(name: str, tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match="name: must be"):
         export.python(Shield(SMOOTH, DT), tmp_path, name)
@@ -242,8 +248,8 @@ def test_one_wheel_serves_the_platforms_that_are_compiled_for(tmp_path: Path) ->
     project = export.python(Shield(SMOOTH, DT), tmp_path / "project", "fat", q0=START)
     package = project / "fat"
     name = f"_library_linux_{platform.machine()}.bin"
-    flags = ["-std=c99", "-O1", "-ffp-contract=off", "-shared", "-fPIC"]
-    run("gcc", *flags, package / "shield.c", "-o", package / name, "-lm")
+    flags = ["-std=c99", "-O1", "-shared", "-fPIC"]
+    run("gcc", *flags, *package.glob("*.c"), "-o", package / name, "-lm")
     run(sys.executable, "-m", "hatchling", "build", "-t", "wheel", cwd=project)
     [wheel] = (project / "dist").glob("fat-0.1.0-py3-none-any.whl")
     with zipfile.ZipFile(wheel) as own:

@@ -1,5 +1,5 @@
 /* Compares the @kind@ with the Python package: ./compare vectors.csv */
-#include "@kind@.h"
+#include "@name@.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,6 +7,7 @@
 
 #define STEPS @steps@
 #define COLUMNS @columns@
+#define REQUEST @request@ /* numbers of a request, or of targets */
 #ifndef ROUNDS
 #define ROUNDS 20 /* of which the time is the mean */
 #endif
@@ -14,8 +15,11 @@
 /* Largest difference of a command in units of the velocity limits. */
 #define TOLERANCE @tolerance@
 
+/* A row: time, joint positions, kind of the request, stated period, request; command and result. */
 static double rows[STEPS][COLUMNS];
-static const double velocity_limits[@dof@] = {@velocity_limits@};
+static struct armstep laid_out;
+static double memory[@NAME@_MEMORY];
+static double scratch[@NAME@_SCRATCH];
 
 static int read_rows(const char *path)
 {
@@ -35,18 +39,20 @@ static int read_rows(const char *path)
     return count == STEPS * COLUMNS;
 }
 
-@call@
 /* Goes through all steps once; returns how many commands differ. */
-static int run(struct @kind@ *own)
+static int run(void)
 {
     int differing = 0;
-    @kind@_init(own);
+    armstep_begin(&laid_out, memory, scratch);
     for (int k = 0; k < STEPS; k++) {
-        const double *expected = rows[k] + COLUMNS - 1 - @dof@;
-        double dq[@dof@];
-        int differs = take_step(own, rows[k], dq) != (int)expected[@dof@];
-        for (int i = 0; i < @dof@; i++) {
-            differs += !(fabs(dq[i] - expected[i]) <= TOLERANCE * velocity_limits[i]);
+        const double *said = rows[k] + 1 + @NAME@_JOINTS;
+        const double *expected = said + 2 + REQUEST;
+        const struct armstep_input input = {rows[k] + 1, (int)said[0], said + 2, rows[k][0], said[1], 0.0};
+        double dq[@NAME@_JOINTS];
+        int differs = armstep_step(&laid_out, memory, scratch, &input, dq) != (int)expected[@NAME@_JOINTS];
+        for (int i = 0; i < @NAME@_JOINTS; i++) {
+            const double most = @name@.velocity[i] < HUGE_VAL ? @name@.velocity[i] : 1.0;
+            differs += !(fabs(dq[i] - expected[i]) <= TOLERANCE * most);
         }
         differing += differs != 0;
     }
@@ -55,15 +61,19 @@ static int run(struct @kind@ *own)
 
 int main(int count, char **words)
 {
-    static struct @kind@ own;
+    const enum armstep_status status = armstep_load(&laid_out, &@name@);
+    if (status != ARMSTEP_OK) {
+        fprintf(stderr, "the tables do not load: %d\n", (int)status);
+        return 2;
+    }
     if (!read_rows(count > 1 ? words[1] : "vectors.csv")) {
         fprintf(stderr, "vectors.csv: cannot be read\n");
         return 2;
     }
-    const int differing = run(&own);
+    const int differing = run();
     const clock_t began = clock();
     for (int k = 0; k < ROUNDS; k++) {
-        run(&own);
+        run();
     }
     const double seconds = (double)(clock() - began) / CLOCKS_PER_SEC;
     printf("%d steps: %d commands differ from Python's", STEPS, differing);

@@ -1,4 +1,4 @@
-/* Shields of many arms of the robot @robot@ on a GPU, one thread an arm: shield.c and kernels over a grid.
+/* Shields of many arms of the robot @robot@ on a GPU, one thread an arm: armstep.c, its tables, and kernels over a grid.
  *
  * Compile it by NVRTC with -fmad=false --std=c++20 --device-as-default-execution-space: the commands are
  * then those of the CPU, to the last bit. Number i of arm k of `count` stands at arms[i * count + k], so
@@ -8,34 +8,47 @@
 #define INFINITY __builtin_bit_cast(double, 0x7ff0000000000000ll)
 #define PTRDIFF_MAX 0x7fffffffffffffffll
 #define PTRDIFF_MIN (-PTRDIFF_MAX - 1)
-#define __atomic_fetch_add(next, more, order) atomicAdd((unsigned long long *)(next), more)
+#define NAN __builtin_bit_cast(double, 0x7ff8000000000000ll)
+#define DBL_MAX 0x1.fffffffffffffp+1023
+#define DBL_MIN 0x1p-1022
+#define UINT64_C(number) number##ull
+typedef unsigned long long uint64_t;
 #else
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 #endif
 
-@shield@
+@sources@
 
 /* ---- Kernels over a grid ---- */
 
 #define GRID_ARM ((ptrdiff_t)blockIdx.x * blockDim.x + threadIdx.x)
-#define GRID_NUMBERS ((ptrdiff_t)(sizeof(struct shield) / sizeof(double)))
+#define GRID_NUMBERS ((@NAME@_MEMORY + 7) / 8 * 8)
 
-static void grid_read(struct shield *own, const double *arms, ptrdiff_t count, ptrdiff_t k)
+/* The tables, laid out by grid_load. */
+static __device__ struct armstep grid_tables;
+
+extern "C" __global__ void grid_load(int *status)
+{
+    *status = armstep_load(&grid_tables, &@name@);
+}
+
+static void grid_read(double *own, const double *arms, ptrdiff_t count, ptrdiff_t k)
 {
 #pragma unroll 8
     for (ptrdiff_t i = 0; i < GRID_NUMBERS; i++) {
-        own->memory[i] = arms[i * count + k];
+        own[i] = arms[i * count + k];
     }
 }
 
-static void grid_write(const struct shield *own, double *arms, ptrdiff_t count, ptrdiff_t k)
+static void grid_write(const double *own, double *arms, ptrdiff_t count, ptrdiff_t k)
 {
 #pragma unroll 8
     for (ptrdiff_t i = 0; i < GRID_NUMBERS; i++) {
-        arms[i * count + k] = own->memory[i];
+        arms[i * count + k] = own[i];
     }
 }
 
@@ -49,9 +62,9 @@ static bool grid_is_finite(const double *numbers, ptrdiff_t count)
     return true;
 }
 
-/* Take a step of each arm, as shield_step.
+/* Take a step of each arm, as armstep_step.
  *
- * q, dq and next_q are (count, SHIELD_JOINTS), requests (count, SHIELD_JOINTS) or (count, 6); NULL: none.
+ * q, dq and next_q are (count, @NAME@_JOINTS), requests (count, @NAME@_JOINTS) or (count, 6); NULL: none.
  * `given` (count) says which arms have a new request; NULL: all. The obstacles of arm k begin at
  * places[k * stride]; NULL: they are where they were. Where they are not finite, they stay there, and the
  * arm brakes as for a request that is not.
@@ -63,45 +76,47 @@ extern "C" __global__ void grid_step(
 )
 {
     const double wrong[] = {INFINITY, 0.0, 0.0, 0.0, 0.0, 0.0};
-    const ptrdiff_t width = kind == SHIELD_REQUEST_TWIST ? 6 : SHIELD_JOINTS;
+    const ptrdiff_t width = kind == ARMSTEP_REQUEST_TWIST ? 6 : @NAME@_JOINTS;
     const ptrdiff_t k = GRID_ARM;
-    struct shield own;
+    double own[GRID_NUMBERS];
+    double scratch[@NAME@_SCRATCH];
     if (k >= count) {
         return;
     }
-    grid_read(&own, arms, count, k);
-    struct shield_input input = {q + k * SHIELD_JOINTS, (enum shield_request)kind, NULL, dt, elapsed};
+    grid_read(own, arms, count, k);
+    struct armstep_input input = {q + k * @NAME@_JOINTS, kind, NULL, 0.0, dt, elapsed};
     if (requests && (!given || given[k])) {
         input.request = requests + k * width;
     }
-    if (places && grid_is_finite(places + k * stride, 3 * SHIELD_OBSTACLES)) {
-        shield_place(&own, places + k * stride);
+    if (places && grid_is_finite(places + k * stride, 3 * @NAME@_OBSTACLES)) {
+        armstep_place(&grid_tables, own, places + k * stride);
     } else if (places) {
-        input.kind = SHIELD_REQUEST_TWIST;
+        input.kind = ARMSTEP_REQUEST_TWIST;
         input.request = wrong;
     }
-    reasons[k] = shield_step(&own, &input, dq + k * SHIELD_JOINTS);
-    memcpy(next_q + k * SHIELD_JOINTS, shield_next_q(&own), SHIELD_JOINTS * sizeof *dq);
-    clipped[k] = shield_is_clipped(&own);
-    grid_write(&own, arms, count, k);
+    reasons[k] = armstep_step(&grid_tables, own, scratch, &input, dq + k * @NAME@_JOINTS);
+    memcpy(next_q + k * @NAME@_JOINTS, armstep_next_q(&grid_tables, own), @NAME@_JOINTS * sizeof *dq);
+    clipped[k] = armstep_is_clipped(&grid_tables, own);
+    grid_write(own, arms, count, k);
 }
 
-/* Let the arms of a mask (count), NULL: all, stand at q (count, SHIELD_JOINTS), or at what is measured next
+/* Let the arms of a mask (count), NULL: all, stand at q (count, @NAME@_JOINTS), or at what is measured next
  * (NULL); or let them brake until then. */
 extern "C" __global__ void grid_rest(
     double *arms, ptrdiff_t count, const bool *mask, const double *q, bool halts
 )
 {
     const ptrdiff_t k = GRID_ARM;
-    struct shield own;
+    double own[GRID_NUMBERS];
+    double scratch[@NAME@_SCRATCH];
     if (k >= count || (mask && !mask[k])) {
         return;
     }
-    grid_read(&own, arms, count, k);
+    grid_read(own, arms, count, k);
     if (halts) {
-        shield_halt(&own);
+        armstep_halt(&grid_tables, own);
     } else {
-        shield_reset(&own, q ? q + k * SHIELD_JOINTS : NULL);
+        armstep_rest(&grid_tables, own, scratch, q ? q + k * @NAME@_JOINTS : NULL);
     }
-    grid_write(&own, arms, count, k);
+    grid_write(own, arms, count, k);
 }

@@ -1,4 +1,4 @@
-"""Write arrays of an exported plan as C variables that are initialised by names of fields.
+"""Write arrays of a plan as C variables that are initialised by names of fields, or as JSON.
 
 Beside each limit, gain and capsule stands its joint or link, from the docstrings its meaning.
 """
@@ -18,7 +18,6 @@ from iiwa_dnn.compiling.expressions import number
 from iiwa_dnn.compiling.kinds import attributes, commented
 from iiwa_dnn.compiling.records import Record
 from iiwa_dnn.qp import Vector
-from iiwa_dnn.qp.layout import IntMatrix
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot.kinematics import Placement
@@ -44,6 +43,26 @@ _ROWS: dict[tuple[type, str], type[Record]] = {
     (SceneViews, "pairs"): Pair,
 }
 """Records in the rows of the matrices of named tuples."""
+
+
+class PartNumber(int):
+    """Number of a part, which C and JSON name.
+
+    Attributes:
+        name: Name of the part.
+        text: The number in C.
+    """
+
+    name: str
+    text: str
+
+    @classmethod
+    def of(cls, number: int, name: str, text: str) -> PartNumber:
+        """Make one from its number, its name and its text in C."""
+        own = cls(number)
+        own.name = name
+        own.text = text
+        return own
 
 
 class Node(NamedTuple):
@@ -86,7 +105,7 @@ class Node(NamedTuple):
             keys = {name: name for name in own._fields}
         items = {name: rows_of(own, name) for name in keys}
         inner = {k: cls.of(each, labels, keys[k]) for k, each in items.items() if np.size(each)}
-        return cls(inner, about=about_members(own))
+        return cls(inner, about=about_members(type(own)))
 
     def declaration(self, name: str, kind: str) -> str:
         """Declare the node as a variable or member of C; `kind` is the C type of its numbers."""
@@ -108,6 +127,18 @@ class Node(NamedTuple):
             first: Node = self.value[0]
             return first.sentence
         return self.about.get("", "")
+
+    @property
+    def plain(self) -> Any:
+        """Value for JSON: parts by their names, infinities as words."""
+        if isinstance(self.value, dict):
+            return {name: own.plain for name, own in self.value.items()}
+        if isinstance(self.value, list):
+            return [own.plain for own in self.value]
+        if isinstance(self.value, PartNumber):
+            return self.value.name
+        is_number = isinstance(self.value, int) or np.isfinite(self.value)
+        return self.value if is_number else str(self.value)
 
     def initializer(self) -> str:
         """Write the C initializer; long structs and labelled arrays have a line for each item."""
@@ -140,12 +171,14 @@ def _block(lines: Sequence[str]) -> str:
 
 def constant(own: float) -> str:
     """Write a number in C; behind a member of an enumeration stands its name as a comment."""
+    if isinstance(own, PartNumber):
+        return own.text
     return number(own).text + (f" /* {own.name} */" if isinstance(own, IntEnum) else "")
 
 
-def about_members(own: object) -> dict[str, str]:
-    """Read the docstring of an object's class: by an empty name its first line, then attributes."""
-    text = cleandoc(type(own).__doc__ or "")
+def about_members(own: type) -> dict[str, str]:
+    """Read the docstring of a class: by an empty name its first line, then attributes."""
+    text = cleandoc(own.__doc__ or "")
     return {"": text.partition("\n")[0], **attributes(text)}
 
 
@@ -155,22 +188,16 @@ def rows_of(own: Any, name: str) -> Any:
     return kind.of(getattr(own, name)) if kind else getattr(own, name)
 
 
-def function_table(table: IntMatrix, columns: type[IntEnum], functions: Sequence[str]) -> Node:
-    """Make a node of a table whose rows are structs.
-
-    Args:
-        table: The table, (k, columns).
-        columns: Names of the columns.
-        functions: Comment on each row, the C name of the row's function.
-    """
-    about = attributes(cleandoc(columns.__doc__ or ""))
-    rows = []
-    for row in table.tolist():
+def table_node(rows: Sequence[Sequence[int]], columns: type[IntEnum]) -> Node:
+    """Make a node of a table whose rows are structs, by the names of its columns."""
+    about = {name.lower(): text for name, text in about_members(columns).items()}
+    nodes = []
+    for row in rows:
         members = {own.name.lower(): Node(row[own]) for own in columns}
         if columns is Column:
             members["kind"] = Node(BlockKind(row[Column.KIND]))
-        rows.append(Node(members, about={name.lower(): text for name, text in about.items()}))
-    return Node(rows, functions)
+        nodes.append(Node(members, about=about))
+    return Node(nodes)
 
 
 def robot_labels(robot: Robot, frames: Sequence[int]) -> Labels:

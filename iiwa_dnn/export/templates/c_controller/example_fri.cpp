@@ -1,20 +1,27 @@
 // A client of KUKA's Fast Robot Interface that moves the arm by the controller, in position control.
 // It needs KUKA's FRI client SDK, in the folder SDK with its library built:
-//     cc -O2 -c controller.c
-//     c++ -O2 -I$SDK/include example_fri.cpp controller.o libFRIClient.a -o example_fri
+//     cc -O2 -c armstep.c @name@.c
+//     c++ -O2 -I$SDK/include example_fri.cpp armstep.o @name@.o libFRIClient.a -o example_fri
 #include <cmath>
 #include <cstddef>  // the SDK's headers take NULL for granted
+#include <stdexcept>
 
-#include "controller.h"
+#include "@name@.h"
 #include "friClientApplication.h"
 #include "friLBRClient.h"
 #include "friUdpConnection.h"
 
-static_assert(CONTROLLER_DOF == KUKA::FRI::LBRState::NUMBER_OF_JOINTS, "an LBR arm has 7 joints");
+static_assert(@NAME@_JOINTS == KUKA::FRI::LBRState::NUMBER_OF_JOINTS, "an LBR arm has 7 joints");
 
 class ControllerClient : public KUKA::FRI::LBRClient {
 public:
-    ControllerClient() { controller_init(&controller_); }
+    ControllerClient()
+    {
+        if (armstep_load(&arm_, &@name@) != ARMSTEP_OK) {
+            throw std::runtime_error("the tables do not load");
+        }
+        armstep_begin(&arm_, memory_, scratch_);
+    }
 
     // Called by the FRI at every sample while the robot may be commanded.
     void command() override
@@ -22,31 +29,34 @@ public:
         if (!started_) {
             // Where the robot is commanded to be: the measured position would be a small jump.
             const double *held = robotState().getIpoJointPosition();
-            for (int i = 0; i < CONTROLLER_DOF; i++) {
+            for (int i = 0; i < @NAME@_JOINTS; i++) {
                 q_[i] = held[i];
             }
             started_ = true;
         }
-        if (std::fabs(robotState().getSampleTime() - CONTROLLER_DT) > 1e-9) {
-            last_action = CONTROLLER_INVALID;  // another sample time is another speed
+        if (std::fabs(robotState().getSampleTime() - @name@.dt) > 1e-9) {
+            last_action = ARMSTEP_INVALID;  // another sample time is another speed
             robotCommand().setJointPosition(q_);
             return;
         }
-        double dq[CONTROLLER_DOF];
-@fri_sample@        last_action = controller_step(&controller_, q_, target, dq);
-        for (int i = 0; i < CONTROLLER_DOF; i++) {
-            q_[i] += CONTROLLER_DT * dq[i];  // what was commanded, free of the encoders' noise
+        double dq[@NAME@_JOINTS];
+        const struct armstep_input input = {q_, ARMSTEP_REQUEST_NONE, @request_of_step@, t_, 0.0, 0.0};
+        last_action = armstep_step(&arm_, memory_, scratch_, &input, dq);
+        for (int i = 0; i < @NAME@_JOINTS; i++) {
+            q_[i] += @name@.dt * dq[i];  // what was commanded, free of the encoders' noise
         }
         robotCommand().setJointPosition(q_);
-        t_ += CONTROLLER_DT;
+        t_ += @name@.dt;
     }
 
-    double target[18 * CONTROLLER_FRAMES] = {@target@};  // see README.md
+    double target[ARMSTEP_TARGET * @NAME@_FRAMES] = {@target@};  // see README.md
     int last_action = 0;
 
 private:
-    struct controller controller_;
-    double q_[CONTROLLER_DOF] = {0.0};
+    struct armstep arm_;
+    double memory_[@NAME@_MEMORY];
+    double scratch_[@NAME@_SCRATCH];
+    double q_[@NAME@_JOINTS] = {0.0};
     double t_ = 0.0;
     bool started_ = false;
 };

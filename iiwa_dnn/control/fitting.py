@@ -1,0 +1,308 @@
+"""Kernels that test whether a plan that was read holds together, and count what its steps take.
+
+Sizes have to agree and indices to lie within their arrays, so that no step on the plan leaves them.
+Constants of parts are tested where they say sizes or indices themselves: those of collisions. That
+the others are those of their parts is what a digest of the tables vouches for.
+"""
+
+from __future__ import annotations
+
+from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.control.arms import ArmPlan
+from iiwa_dnn.control.command import log_sizes
+from iiwa_dnn.control.fallback import Yielding
+from iiwa_dnn.control.plan import ControlPlan, PathColumn
+from iiwa_dnn.control.requests import RequestConstants
+from iiwa_dnn.control.tracking import TrackingPlan
+from iiwa_dnn.qp import Vector
+from iiwa_dnn.references.targets import TargetData
+from iiwa_dnn.robot.kinematics_kernel import ModelTables
+from iiwa_dnn.schemes.program import BlockKind, Column, ProgramArrays, ProgramSizes, block_constants
+from iiwa_dnn.schemes.rate_limits import MotionConstants
+from iiwa_dnn.schemes.scene import Body, Pair, SceneHead, scene_views
+from iiwa_dnn.schemes.step import TARGET_SIZE
+
+MOST = 1000
+"""Largest size of a plan: joints, rows, frames, pairs."""
+
+LOG = 20
+MOTION = 5
+"""Numbers of `StepLog` and `MotionState` beside those of the sizes that they state."""
+
+
+@compiled
+def shield_scratch(plan: ArmPlan) -> int:
+    """Count the numbers that a call takes for itself: twice what the package's kernels do."""
+    base = plan.step.arrays
+    n = base.sizes.n
+    taken = 8 * n * (n + base.sizes.m + 10) + 2 * plan.width + 2 * base.constants.size
+    return taken + 12 * (base.placements.shape[0] + 4 * n)
+
+
+@compiled
+def controller_scratch(plan: TrackingPlan) -> int:
+    """Count the numbers that a call takes for itself: twice what the package's kernels do."""
+    base = plan.step.arrays
+    n = base.sizes.n
+    taken = 8 * n * (n + base.sizes.m + base.sizes.p + 10)
+    return taken + 2 * (12 * base.placements.shape[0] + base.inertia.size + plan.sizes.motion)
+
+
+@compiled
+def shield_fits(plan: ArmPlan, collisions: int) -> bool:
+    """Test whether the plan of a shield holds together; `collisions` numbers that kernel."""
+    n = plan.step.arrays.sizes.joints
+    if not _control_fits(plan.step, plan.robot, collisions) or plan.motion.lower.size != n:
+        return False
+    if plan.lower.size != n or plan.upper.size != n or not _state_fits(plan):
+        return False
+    own = plan.sizes
+    return _networks_fit(plan.step, own.network, own.fallback) and _parts_fit(plan, collisions)
+
+
+@compiled
+def _state_fits(plan: ArmPlan) -> bool:
+    """Test the sizes of an arm's state."""
+    sizes = plan.step.arrays.sizes
+    own = plan.sizes
+    n = sizes.joints
+    if sizes.frames != 1 or own.n != n or own.request != max(n, 6):
+        return False
+    if own.motion != _motion_width(sizes) or own.limiting != sizes.n + sizes.m:
+        return False
+    if own.obstacles != len(plan.velocities) or not _is_within(own.sent, 0, MOST * (1 + n)):
+        return False
+    return own.sent % (1 + n) == 0
+
+
+@compiled
+def controller_fits(plan: TrackingPlan, collisions: int) -> bool:
+    """Test whether the plan of a controller holds together, as `shield_fits`."""
+    sizes = plan.step.arrays.sizes
+    own = plan.sizes
+    if not _control_fits(plan.step, plan.robot, collisions) or own.motion != _motion_width(sizes):
+        return False
+    return _networks_fit(plan.step, own.network, own.fallback) and own.log == _log_width(sizes)
+
+
+@compiled
+def _is_within(index: int, first: int, end: int) -> bool:
+    """Test whether an index is one from `first` to the one before `end`."""
+    return first <= index and index < end
+
+
+@compiled
+def _motion_width(sizes: ProgramSizes) -> int:
+    """Count the numbers of a `MotionState`."""
+    return MOTION + 4 * sizes.joints + sizes.pairs
+
+
+@compiled
+def _control_fits(plan: ControlPlan, robot: ModelTables, collisions: int) -> bool:
+    """Test the layout of a control step."""
+    arrays = plan.arrays
+    if not _sizes_fit(arrays.sizes) or not _arrays_fit(arrays) or not _model_fits(robot, arrays):
+        return False
+    for k in range(len(arrays.table)):
+        if not _row_fits(arrays, k):
+            return False
+        constants = block_constants(arrays, k)
+        if arrays.table[k, Column.ADDRESS] == collisions and not _scene_fits(constants, arrays):
+            return False
+    return _yielding_fits(plan.yielding, arrays) and _paths_fit(plan)
+
+
+@compiled
+def _sizes_fit(sizes: ProgramSizes) -> bool:
+    """Test the sizes of programs."""
+    if not _is_within(sizes.joints, 1, sizes.n + 1) or not _is_within(sizes.n, 1, MOST):
+        return False
+    if not _is_within(sizes.m, 0, MOST) or not _is_within(sizes.p, 0, MOST):
+        return False
+    return _is_within(sizes.pairs, 0, MOST) and _is_within(sizes.frames, 1, MOST)
+
+
+@compiled
+def _arrays_fit(arrays: ProgramArrays) -> bool:
+    """Test the shapes of the arrays from which programs are assembled."""
+    n = arrays.sizes.joints
+    frames = len(arrays.placements)
+    if not _is_within(frames, 1, MOST) or not _is_within(arrays.tip, 0, frames):
+        return False
+    if arrays.placements.shape[1] != 12 or arrays.table.shape[1] != 8:
+        return False
+    if len(arrays.support) != frames or arrays.support.shape[1] != n:
+        return False
+    return arrays.inertia.size == 0 or arrays.inertia.size == n * n
+
+
+@compiled
+def _row_fits(arrays: ProgramArrays, k: int) -> bool:
+    """Test the row of part k in the table of parts."""
+    entry = arrays.table[k]
+    kind = entry[Column.KIND]
+    rows = arrays.sizes.m
+    more = 0
+    if kind == BlockKind.TASK:
+        rows = arrays.sizes.p
+    elif kind == BlockKind.SOFT_TASK:
+        more = 1  # the weight
+    if not _is_within(entry[Column.ROWS], 0, MOST) or not _is_within(entry[Column.FIRST], 0, MOST):
+        return False
+    fills = kind == BlockKind.TASK or kind == BlockKind.LIMIT
+    if fills and entry[Column.FIRST] + entry[Column.ROWS] > rows:
+        return False
+    if not _is_within(entry[Column.TARGET], 0, arrays.sizes.frames):
+        return False
+    stop = entry[Column.STOP]
+    return _is_within(stop, 0, arrays.constants.size + 1 - more) and _is_within(
+        entry[Column.START], 0, stop + 1
+    )
+
+
+@compiled
+def _model_fits(robot: ModelTables, arrays: ProgramArrays) -> bool:
+    """Test the tables of the robot."""
+    n = arrays.sizes.joints
+    frames = len(arrays.placements)
+    if robot.parents.size != n or robot.joints.size != 12 * n or robot.joints.shape[1] != 12:
+        return False
+    if robot.slides.size != n or robot.carriers.size != robot.frames.size:
+        return False
+    if len(robot.offsets) != robot.frames.size or robot.offsets.shape[1] != 12:
+        return False
+    if not _bodies_fit(robot, arrays):
+        return False
+    for i in range(n):
+        if not _is_within(robot.parents[i], 0, i + 1):
+            return False
+    return _frames_fit(robot, frames)
+
+
+@compiled
+def _bodies_fit(robot: ModelTables, arrays: ProgramArrays) -> bool:
+    """Test the tables of what the joints carry, which are empty without the inertia matrix."""
+    n = arrays.sizes.joints
+    if len(robot.bodies) == 0:
+        return True
+    if len(robot.bodies) != n or robot.bodies.shape[1] != 18 or arrays.inertia.size != n * n:
+        return False
+    return len(robot.supports) == n and robot.supports.shape[1] == n and robot.armature.size == n
+
+
+@compiled
+def _frames_fit(robot: ModelTables, frames: int) -> bool:
+    """Test the indices of the robot's frames, of which there are `frames`."""
+    n = robot.parents.size
+    for k in range(robot.frames.size):
+        if not _is_within(robot.frames[k], 0, frames) or not _is_within(
+            robot.carriers[k], 0, n + 1
+        ):
+            return False
+    return True
+
+
+@compiled
+def _yielding_fits(own: Yielding, arrays: ProgramArrays) -> bool:
+    """Test the constants of fallback programs and stopping motions."""
+    n = arrays.sizes.joints
+    parts = len(arrays.table)
+    if own.weights.size != arrays.sizes.p or not _is_within(own.rates, -1, parts):
+        return False
+    if own.rates >= 0:
+        limits = MotionConstants.of(block_constants(arrays, own.rates))
+        if own.limits.lower.size != n or limits.lag.size != n:
+            return False
+    elif own.limits.lower.size > 0 and own.limits.lower.size != n:
+        return False
+    outside = 0
+    for k in range(own.rests.size):
+        outside += not _is_within(own.rests[k], 0, parts)
+    return outside == 0
+
+
+@compiled
+def _scene_fits(constants: Vector, arrays: ProgramArrays) -> bool:
+    """Test the constants of a scene: bodies in frames, and pairs of bodies."""
+    n = arrays.sizes.joints
+    if constants.size < SceneHead.width() + n:
+        return False
+    head = SceneHead.of(constants[: SceneHead.width()])
+    if not _is_within(head.bodies, 0, MOST) or not _is_within(head.pairs, 0, MOST):
+        return False
+    tables = Body.width() * head.bodies + head.pair_size * head.pairs
+    if head.pair_size < 0 or constants.size != SceneHead.width() + n + tables:
+        return False
+    if not _is_within(head.first, 0, arrays.sizes.pairs + 1 - head.pairs):
+        return False
+    scene = scene_views(constants, n)
+    for k in range(head.bodies):
+        body = Body.of(scene.bodies[k])
+        if not _is_within(body.frame, 0, len(arrays.placements)):
+            return False
+    for k in range(head.pairs):
+        pair = Pair.of(scene.pairs[k])
+        if pair.radii.size != n:
+            return False
+        if not _is_within(pair.first, 0, head.bodies) or not _is_within(
+            pair.second, 0, head.bodies
+        ):
+            return False
+    return True
+
+
+@compiled
+def _paths_fit(plan: ControlPlan) -> bool:
+    """Test the table of paths: none, or one for each frame."""
+    table = plan.paths.table
+    if (len(table) > 0 and len(table) != plan.arrays.sizes.frames) or table.shape[1] != 4:
+        return False
+    for k in range(len(table)):
+        start = table[k, PathColumn.START]
+        stop = table[k, PathColumn.STOP]
+        if not _is_within(stop, 0, plan.paths.constants.size + 1):
+            return False
+        if not _is_within(start, 0, stop + 1 - TargetData.width()):
+            return False
+    return True
+
+
+@compiled
+def _networks_fit(plan: ControlPlan, network: int, fallback: int) -> bool:
+    """Test the lengths of the states of networks."""
+    sizes = plan.arrays.sizes
+    whole = sizes.n + sizes.m + sizes.p
+    if fallback != 6 * sizes.n + 2 * sizes.m + 2 * sizes.p + 3 or plan.fallback.size != fallback:
+        return False
+    return _is_within(network, 0, 4 * whole + 1)
+
+
+@compiled
+def _log_width(sizes: ProgramSizes) -> int:
+    """Count the numbers of a `StepLog`."""
+    joints, rows, program, point, sides, pairs, frames = log_sizes(sizes)
+    return LOG + 9 * joints + rows + program + point + sides + pairs + TARGET_SIZE * frames
+
+
+@compiled
+def _parts_fit(plan: ArmPlan, collisions: int) -> bool:
+    """Test the parts that a shield writes into: its request and its scene."""
+    arrays = plan.step.arrays
+    parts = len(arrays.table)
+    if plan.width != _log_width(arrays.sizes) or plan.velocities.shape[1] != 3:
+        return False
+    if not _is_within(plan.request, 0, parts) or not _is_within(plan.scene, -1, parts):
+        return False
+    constants = block_constants(arrays, plan.request)
+    request = RequestConstants.of(constants)
+    if request.velocity.size != plan.sizes.request:
+        return False
+    if not _is_within(request.frame, 0, len(arrays.placements)):
+        return False
+    if plan.scene < 0:
+        return plan.sizes.obstacles == 0
+    scene = block_constants(arrays, plan.scene)
+    if arrays.table[plan.scene, Column.ADDRESS] != collisions:
+        return False
+    head = SceneHead.of(scene[: SceneHead.width()])
+    return plan.sizes.obstacles <= head.bodies

@@ -1,0 +1,327 @@
+"""Tables of a controller or a shield: all that the core has to know of an arm, as C and as JSON."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import struct
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from iiwa_dnn.compiling.expressions import Use
+from iiwa_dnn.compiling.library import Entry
+from iiwa_dnn.compiling.sources import Module, TranslationError, c_name
+from iiwa_dnn.compiling.translator import Function, Translator
+from iiwa_dnn.control.arms import ArmPlan, ArmState
+from iiwa_dnn.control.command import SINGULAR
+from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.fitting import controller_scratch, shield_scratch
+from iiwa_dnn.control.paths import by_frame
+from iiwa_dnn.control.plan import Paths
+from iiwa_dnn.control.requests import REASONS
+from iiwa_dnn.control.shield import Shield, called_parts
+from iiwa_dnn.control.tracking import TrackingPlan, TrackingSizes, TrackingState
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.export.core import (
+    PACKAGE,
+    RELEASE,
+    SECTIONS,
+    TEMPLATES,
+    core,
+    filled,
+    finished,
+    used_prelude,
+)
+from iiwa_dnn.export.flat import Flat
+from iiwa_dnn.export.nodes import Node, PartNumber, path_constants, program_constants, robot_labels
+from iiwa_dnn.naming import active_limits, describe, limit_kinds
+from iiwa_dnn.references import Reference
+from iiwa_dnn.robot.kinematics_kernel import model_tables
+from iiwa_dnn.schemes.collisions import avoidance_of
+from iiwa_dnn.schemes.layout import ProgramLayout
+from iiwa_dnn.schemes.names import LimitNames
+from iiwa_dnn.schemes.program import ProgramArrays
+
+STATE = 1
+"""Numbers of an arm's memory before its state: the mark of its tables."""
+
+_OFFSET, _PRIME, _BITS = 0xCBF29CE484222325, 0x100000001B3, (1 << 64) - 1
+
+
+class Tables:
+    """Tables of one arm.
+
+    Attributes:
+        kind: ``"shield"`` or ``"controller"``.
+        robot: The robot.
+        program: Layout of the program that a step answers.
+        kept: Names of the limits.
+        frames: Frame of a shield's twists, or the tracked frames of a controller.
+        obstacles: Names of the obstacles that can be placed.
+        limit_names: Names of reasons and limits by their codes.
+        first_row: Code of the first row.
+        memory: Numbers of an arm's memory.
+        scratch: Numbers that a call takes for itself.
+        periods: ``dt``, ``longest`` and ``delay`` [s].
+        own: Parts from outside of the package.
+        flat: All numbers and integers.
+    """
+
+    def __init__(self, made: Controller | Shield, frame: str | None) -> None:
+        """Take a shield, with twists of a frame, or a controller whose scheme is anchored.
+
+        Raises:
+            InvalidInputError: A part of the controller is no kernel, or has no translation; the
+                part is named.
+            NotFoundError: There is no such frame.
+        """
+        self.robot = made.robot
+        limits = made.limits if isinstance(made, Shield) else made.scheme.limits
+        self.kept = ", ".join(each.title for each in limits) or "none"
+        self.own = OwnParts()
+        if isinstance(made, Shield):
+            self._take_shield(made, frame or made.robot.tip)
+        else:
+            self._take_controller(made)
+
+    def _take_shield(self, shield: Shield, frame: str) -> None:
+        """Lay out the tables of a shield."""
+        layout = shield.layout(frame)
+        plan, step, memory = layout[:3]
+        if names := called_parts(shield, step.program):
+            problem = f"are in Python, which C cannot call: {', '.join(names)}"
+            raise InvalidInputError("limits", problem, names)
+        avoidance = avoidance_of(shield)
+        obstacles = avoidance.obstacles if avoidance else ()
+        self.kind = "shield"
+        self.program = step.program
+        self.frames: Sequence[str] = [frame]
+        self.obstacles = [f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)]
+        self._name_limits(REASONS)
+        self.memory = STATE + memory.size
+        self.scratch = shield_scratch(plan) + self.memory
+        longest = shield.longest_period or 0.0
+        self.periods = {"dt": shield.dt, "longest": longest, "delay": float(shield.delay)}
+        self.flat = self._flat([])
+        self.flat.add("plan", core().kinds[ArmPlan], plan)
+        self.flat.add_numbers("places", ArmState.of(memory, *plan.sizes).obstacles)
+
+    def _take_controller(self, controller: Controller) -> None:
+        """Lay out the tables of a controller."""
+        step = controller.control_layout
+        program = step.program
+        refused: list[object] = [program.parts[k] for k in program.refreshed]
+        if not step.has_network:
+            refused.append(controller.solver.network)
+        if refused:
+            name = type(refused[0]).__name__
+            raise InvalidInputError(
+                "controller", f"{name} answers in Python, as obstacles that move do", refused[0]
+            )
+        sizes = TrackingSizes(
+            step.log_layout.width,
+            step.width,
+            controller.solver.state_for(program.sizes).size,
+            step.plan.fallback.size,
+        )
+        given = step.given
+        if not step.plan.samples:
+            none = Paths(given.paths.table[:0], given.paths.constants[:0])
+            given = given._replace(paths=none)
+        model = model_tables(controller.robot, program.kinematics.frame_ids, program.needs_inertia)
+        plan = TrackingPlan(model, given, sizes)
+        self.kind = "controller"
+        self.program = program
+        self.frames = program.target_frames
+        self.obstacles = []
+        self._name_limits(("", SINGULAR))
+        self.memory = STATE + TrackingState.width(*sizes)
+        self.scratch = controller_scratch(plan) + self.memory
+        self.periods = {"dt": controller.dt, "longest": 0.0, "delay": 0.0}
+        self.flat = self._flat([*by_frame(controller.reference, controller.robot.tip).values()])
+        self.flat.add("plan", core().kinds[TrackingPlan], plan)
+
+    def _name_limits(self, reasons: Sequence[str]) -> None:
+        """Name the reasons and limits of a step."""
+        bounds, rows = limit_words(self.program)
+        self.limit_names = [*reasons, *bounds, *rows]
+        self.first_row = len(reasons) + len(bounds)
+
+    def _flat(self, paths: Sequence[Reference]) -> Flat:
+        """Begin the arrays of a plan, with names for its constants."""
+        labels = robot_labels(self.robot, self.program.kinematics.frame_ids)
+        nodes = {
+            (ProgramArrays, "constants"): program_constants(self.program, labels),
+            (Paths, "constants"): path_constants(paths, labels),
+        }
+        return Flat(self.own.part, nodes, labels)
+
+    @property
+    def has_reference(self) -> bool:
+        """Whether a controller samples its targets where none are given."""
+        return self.kind == "controller" and "paths" in self.flat.named["plan"].value["step"].value
+
+    @property
+    def limits(self) -> dict[str, np.ndarray[Any, Any]]:
+        """Limits of the robot's joints by their names."""
+        robot = self.robot
+        lower, upper = robot.limits[:2]
+        return {
+            "lower": lower,
+            "upper": upper,
+            "velocity": robot.dq_max,
+            "acceleration": robot.ddq_max,
+            "jerk": robot.dddq_max,
+        }
+
+    @cached_property
+    def digest(self) -> int:
+        """FNV-1a of 64 bits over the numbers, the integers, and the names of parts."""
+        digest = _OFFSET
+        for letter in b"".join(
+            [*map(_bytes_of_float, self.flat.numbers), *map(_bytes, self.flat.integers)]
+        ):
+            digest = ((digest ^ letter) * _PRIME) & _BITS
+        return digest
+
+    def json(self, name: str) -> str:
+        """Write the tables as JSON.
+
+        Raises:
+            InvalidInputError: A part is from outside of the package: it is no number.
+        """
+        if self.own.names:
+            problem = f"{self.own.names[0]} is none of the package's parts: take C"
+            raise InvalidInputError("made", problem)
+        limits = {k: Node.of(own, {}).plain for k, own in self.limits.items()}
+        return json.dumps(
+            {
+                "release": RELEASE,
+                "digest": f"{self.digest:016x}",
+                "kind": self.kind,
+                "name": name,
+                "joint_names": [*self.robot.joint_names],
+                "frame_names": [*self.frames],
+                "obstacle_names": self.obstacles,
+                "limit_names": self.limit_names,
+                "first_row": self.first_row,
+                "limits": limits,
+                **self.periods,
+                "memory": self.memory,
+                "scratch": self.scratch,
+                "numbers": Node(self.flat.named).plain,
+                "integers": Node(self.flat.worded).plain,
+            },
+            indent=1,
+        )
+
+
+def _bytes_of_float(own: float) -> bytes:
+    return struct.pack("<d", own)
+
+
+def _bytes(own: int) -> bytes:
+    """Return what a digest takes of an integer: 8 bytes, or 8 for each letter of a part's name."""
+    if isinstance(own, PartNumber):
+        return b"".join(struct.pack("<Q", letter) for letter in own.name.encode())
+    return struct.pack("<q", own)
+
+
+class OwnParts:
+    """Parts from outside of the package, translated to C.
+
+    Attributes:
+        names: Names of the parts, in the order of their numbers.
+        rows: Initializers of the parts in C.
+    """
+
+    def __init__(self) -> None:
+        """Begin without parts."""
+        self._translator = Translator(PACKAGE, Use.OWN)
+        self._known: dict[int, PartNumber] = {}
+        self.names: list[str] = []
+        self.rows: list[str] = []
+
+    def part(self, address: int) -> int:
+        """Return the part at an address; 0 for none.
+
+        Raises:
+            InvalidInputError: The function there has no translation.
+        """
+        if address == 0:
+            return 0
+        if address not in self._known:
+            function = Entry.functions[address]
+            name = c_name(getattr(function, "__module__", ""), getattr(function, "__name__", ""))
+            number = core().parts.get(name, 0) if address > 0 else 0
+            known = PartNumber.of(number, name, f"ARMSTEP_PART_{name}")
+            self._known[address] = known if number else self._translated(address, function)
+        return self._known[address]
+
+    def _translated(self, address: int, function: Any) -> PartNumber:
+        """Translate a function; without annotations it has the types of its entry."""
+        number = len(core().parts) + 1 + len(self.names)
+        try:
+            like = Function(self._translator, *self._found(Entry.prototypes[address]))
+            own = self._translator.function(*self._found(function), like)
+        except (
+            AttributeError,
+            KeyError,
+            OSError,
+            TypeError,
+            ValueError,
+            TranslationError,
+        ) as error:
+            problem = f"{function!r} cannot be exported: {error}"
+            raise InvalidInputError("controller", problem) from error
+        text = f"ARMSTEP_PARTS + {len(self.names)}"
+        self.names.append(own.name)
+        self.rows.append(f'    {{"{own.name}", {like.entry_name}, (void (*)(void)){own.name}}},')
+        return PartNumber.of(number, own.name, text)
+
+    def _found(self, function: Any) -> tuple[Module, Any]:
+        """Return the module that defines a function, and the syntax tree of the definition."""
+        own = function.__module__.startswith("iiwa_dnn.")
+        file = None if own else Path(inspect.getfile(function))
+        module = self._translator.package.module(function.__module__, file)
+        return module, module.names[function.__qualname__]
+
+    def text(self) -> str:
+        """Return the C of the parts and of all that they call."""
+        code = self._translator.text(SECTIONS)
+        arena = filled(TEMPLATES / "core" / "arena.c", {"instead": "NULL"})
+        return "\n\n".join([*used_prelude(code), arena, finished(code)])
+
+
+def limit_words(program: ProgramLayout) -> tuple[list[str], list[str]]:
+    """List the names of all limits of a program in the order of their codes.
+
+    Returns:
+        For each joint the lower and the upper bound of each of `limit_kinds`; and the rows, behind
+        which stand the pairs of rows that belong to others from step to step.
+    """
+    settings: dict[str, Any] = LimitNames(program).settings
+    rows = settings["rows"]
+    kinds = range(1, 1 + len(limit_kinds(settings)))
+    codes = [sign * kind for kind in kinds for sign in (-1, 1)]
+    n = program.robot.dof
+    bounds = [
+        limit
+        for joint in range(n)
+        for code in codes
+        for limit in active_limits(
+            settings, code * np.eye(n, dtype=int)[joint], np.zeros(len(rows))
+        )
+    ]
+    ones = np.eye(len(rows), dtype=int)[:1]
+    pairs = [
+        limit
+        for number in range(2, 2 + len(settings["pairs"]))
+        for one in ones
+        for limit in active_limits(settings, (), number * one)
+    ]
+    return [*map(describe, bounds)], [*map(describe, [*rows, *pairs])]

@@ -1,0 +1,561 @@
+/* The layout that tables describe. */
+struct layout {
+    control_arms_ArmPlan shield;
+    control_tracking_TrackingPlan controller;
+    const double *places;
+};
+
+typedef char layout_has_room[sizeof(struct layout) <= sizeof(((struct armstep *)NULL)->laid_out) ? 1 : -1];
+
+enum { STATE = 1 }; /* where an arm's state begins in its memory, behind the digest of the tables */
+
+static const struct layout *layout_of(const struct armstep *arm)
+{
+    return (const struct layout *)(const void *)arm->laid_out;
+}
+
+static bool is_shield(const struct armstep *arm)
+{
+    return arm->tables->kind == ARMSTEP_SHIELD;
+}
+
+/* View numbers for kernels, whose arrays have one type whether they are written or not. */
+static Vector view(const double *numbers, ptrdiff_t count)
+{
+    const Vector own = {(double *)numbers, count};
+    return own;
+}
+
+/* View numbers that may be left out: NULL. */
+static Vector view_if_any(const double *numbers, ptrdiff_t count)
+{
+    static const double nothing[1] = {0.0};
+    return numbers != NULL ? view(numbers, count) : view(nothing, 0);
+}
+
+static Vector state_of(const struct armstep *arm, const double *memory)
+{
+    return view(memory + STATE, arm->tables->memory - STATE);
+}
+
+static struct arena arena_of(const struct armstep *arm, double *scratch)
+{
+    char *const start = (char *)scratch;
+    const struct arena own = {start, start, (char *)(scratch + arm->tables->scratch), false, arm->tables};
+    return own;
+}
+
+static control_command_StepLog log_of_controller(const struct armstep *arm, const double *memory)
+{
+    const control_tracking_TrackingPlan *plan = &layout_of(arm)->controller;
+    const control_tracking_TrackingState state = @tracking_state@plan, state_of(arm, memory));
+    return @log_of@state.log, &plan->step.arrays.sizes);
+}
+
+static control_state_MotionState motion_state_of(const struct armstep *arm, const double *memory)
+{
+    const struct layout *own = layout_of(arm);
+    if (is_shield(arm)) {
+        const control_arms_ArmState state = @arm_state@&own->shield, state_of(arm, memory));
+        return @motion_of@&own->shield, &state);
+    }
+    return @tracking_motion@&own->controller, state_of(arm, memory));
+}
+
+/* FNV-1a of 64 bits. */
+static uint64_t digested(uint64_t digest, uint64_t number)
+{
+    for (int i = 0; i < 8; i++) {
+        digest = (digest ^ (number & 0xffu)) * UINT64_C(0x100000001b3);
+        number >>= 8;
+    }
+    return digest;
+}
+
+static uint64_t digested_numbers(uint64_t digest, const double *numbers, ptrdiff_t count)
+{
+    for (ptrdiff_t k = 0; k < count; k++) {
+        uint64_t bits;
+        memcpy(&bits, numbers + k, sizeof bits);
+        digest = digested(digest, bits);
+    }
+    return digest;
+}
+
+static const char *const part_names[ARMSTEP_PARTS] = {
+    "",
+@part_names@
+};
+
+const char *armstep_part_name(const struct armstep_tables *tables, ptrdiff_t number)
+{
+    if (number >= 0 && number < ARMSTEP_PARTS) {
+        return part_names[number];
+    }
+    const ptrdiff_t k = number - ARMSTEP_PARTS;
+    return k >= 0 && k < tables->own_count ? tables->own[k].name : "";
+}
+
+int armstep_part_number(const char *name)
+{
+    for (int k = 1; k < ARMSTEP_PARTS; k++) {
+        const char *own = part_names[k];
+        ptrdiff_t at = 0;
+        while (own[at] == name[at] && own[at] != '\0') {
+            at++;
+        }
+        if (own[at] == name[at]) {
+            return k;
+        }
+    }
+    return 0;
+}
+
+uint64_t armstep_digest(const struct armstep_tables *tables)
+{
+    ptrdiff_t next = 0; /* part, whose name counts in place of its number */
+    uint64_t digest = digested_numbers(UINT64_C(0xcbf29ce484222325), tables->numbers, tables->number_count);
+    for (ptrdiff_t k = 0; k < tables->integer_count; k++) {
+        if (next < tables->part_count && tables->parts[next] == k) {
+            const char *name = armstep_part_name(tables, tables->integers[k]);
+            for (; *name != '\0'; name++) {
+                digest = digested(digest, (unsigned char)*name);
+            }
+            next++;
+        } else {
+            digest = digested(digest, (uint64_t)tables->integers[k]);
+        }
+    }
+    return digest;
+}
+
+/* The digest as a number that copies of doubles keep: its first 52 bits. */
+static double mark_of(const struct armstep *arm)
+{
+    return (double)(arm->tables->digest >> 12);
+}
+
+static bool has_begun(const struct armstep *arm, const double *memory)
+{
+    return memory[0] == mark_of(arm);
+}
+
+/* Test what commands rely on: NaN and infinities, subnormal numbers, products that are rounded. */
+static bool computes_as_ieee(void)
+{
+    volatile double zero = 0.0;
+    volatile double least = DBL_MIN;
+    volatile double factor = 1.0 + 1.0 / 1073741824.0;
+    const double nothing = zero / zero;
+    const double a = factor;
+    const double rounded = 1.0 + 2.0 / 1073741824.0; /* a * a to 53 bits */
+    return !(nothing == nothing) && 1.0 / zero > DBL_MAX && least / 2.0 > 0.0 && a * a - rounded == 0.0;
+}
+
+static bool is_laid_out(const struct armstep *arm, struct reader *reader)
+{
+    const struct armstep_tables *tables = arm->tables;
+    const struct layout *own = layout_of(arm);
+    int64_t memory, scratch;
+    if (reader->is_bad || reader->number != reader->last_number || reader->integer != reader->last_integer) {
+        return false;
+    }
+    if (is_shield(arm)) {
+        if (!@shield_fits@&own->shield, ARMSTEP_PART_schemes_collisions_collision_rows) || own->shield.sizes.obstacles != tables->obstacles
+            || own->shield.sizes.n != tables->joints || tables->frames != 1) {
+            return false;
+        }
+        memory = @ArmState@;
+        scratch = @shield_scratch@&own->shield) + memory;
+    } else {
+        if (!@controller_fits@&own->controller, ARMSTEP_PART_schemes_collisions_collision_rows) || tables->obstacles != 0
+            || own->controller.step.arrays.sizes.joints != tables->joints
+            || own->controller.step.arrays.sizes.frames != tables->frames) {
+            return false;
+        }
+        memory = @TrackingState@;
+        scratch = @controller_scratch@&own->controller) + memory;
+    }
+    return tables->memory == STATE + memory && tables->scratch == STATE + scratch;
+}
+
+enum armstep_status armstep_load(struct armstep *arm, const struct armstep_tables *tables)
+{
+    struct layout *own = (struct layout *)(void *)arm->laid_out;
+    struct reader reader = {
+        tables->numbers, tables->numbers + tables->number_count,
+        tables->integers, tables->integers + tables->integer_count, false,
+    };
+    memset(arm, 0, sizeof *arm);
+    arm->tables = tables;
+    if (tables->release != ARMSTEP_RELEASE) {
+        return ARMSTEP_OTHER_RELEASE;
+    }
+    if (!computes_as_ieee()) {
+        return ARMSTEP_ARITHMETIC;
+    }
+    if (armstep_digest(tables) != tables->digest) {
+        return ARMSTEP_DAMAGED;
+    }
+    if (is_shield(arm)) {
+        own->shield = read_control_arms_ArmPlan(&reader);
+        own->places = read_doubles(&reader, 3 * own->shield.sizes.obstacles);
+    } else {
+        own->controller = read_control_tracking_TrackingPlan(&reader);
+    }
+    return is_laid_out(arm, &reader) ? ARMSTEP_OK : ARMSTEP_UNFIT;
+}
+
+static void clear(const struct armstep *arm, double *memory)
+{
+    memset(memory, 0, sizeof *memory * (size_t)arm->tables->memory);
+    memory[0] = mark_of(arm);
+}
+
+void armstep_begin(const struct armstep *arm, double *memory, double *scratch)
+{
+    clear(arm, memory);
+    if (is_shield(arm)) {
+        (void)armstep_place(arm, memory, layout_of(arm)->places);
+        (void)armstep_rest(arm, memory, scratch, NULL);
+    }
+}
+
+enum armstep_status armstep_rest(const struct armstep *arm, double *memory, double *scratch, const double *q)
+{
+    struct arena own_arena = arena_of(arm, scratch);
+    struct arena *const arena = &own_arena;
+    (void)arena;
+    if (!has_begun(arm, memory)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    const Vector joints = view_if_any(q, arm->tables->joints);
+    if (!@all_finite@joints, 0, joints.size0)) {
+        return ARMSTEP_NOT_FINITE;
+    }
+    if (is_shield(arm)) {
+        @rest_arm@&layout_of(arm)->shield, state_of(arm, memory), joints);
+    } else {
+        clear(arm, memory);
+    }
+    return ARMSTEP_OK;
+}
+
+enum armstep_status armstep_halt(const struct armstep *arm, double *memory)
+{
+    if (!has_begun(arm, memory)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    if (is_shield(arm)) {
+        @halt_arm@&layout_of(arm)->shield, state_of(arm, memory));
+    } else {
+        motion_state_of(arm, memory).at->halts = 1.0;
+    }
+    return ARMSTEP_OK;
+}
+
+enum armstep_status armstep_send(
+    const struct armstep *arm, double *memory, const double *dq, double period, double fraction
+)
+{
+    const Vector sent = view(dq, arm->tables->joints);
+    if (!has_begun(arm, memory)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    for (ptrdiff_t i = 0; i < sent.size0; i++) {
+        if (!(fabs(dq[i]) <= ARMSTEP_FASTEST)) {
+            return ARMSTEP_NOT_FINITE;
+        }
+    }
+    if (!(period > 0.0 && period < INFINITY) || !(fabs(fraction) < INFINITY)) {
+        return ARMSTEP_NOT_FINITE;
+    }
+    if (is_shield(arm)) {
+        @send_arm@&layout_of(arm)->shield, state_of(arm, memory), sent, period);
+    } else {
+        @send_tracking@&layout_of(arm)->controller, state_of(arm, memory), sent, period, fraction);
+    }
+    return ARMSTEP_OK;
+}
+
+enum armstep_status armstep_place(const struct armstep *arm, double *memory, const double *centers)
+{
+    const Vector numbers = view(centers, 3 * arm->tables->obstacles);
+    const Matrix places = {numbers.data, arm->tables->obstacles, 3};
+    if (!is_shield(arm)) {
+        return ARMSTEP_WRONG_KIND;
+    }
+    if (!has_begun(arm, memory)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    @place_arm@&layout_of(arm)->shield, state_of(arm, memory), places);
+    return @all_finite@numbers, 0, numbers.size0) ? ARMSTEP_OK : ARMSTEP_NOT_FINITE;
+}
+
+static int64_t step_shield(
+    const struct armstep *arm, struct arena *arena, double *memory, const struct armstep_input *input
+)
+{
+    const bool is_twist = input->kind == ARMSTEP_REQUEST_TWIST;
+    const control_arms_ArmInput own = {
+        view(input->q, arm->tables->joints),
+        input->request != NULL ? input->kind : ARMSTEP_REQUEST_NONE,
+        view_if_any(input->request, is_twist ? 6 : arm->tables->joints),
+        input->dt,
+        input->elapsed,
+    };
+    return @step_arm@&layout_of(arm)->shield, state_of(arm, memory), &own);
+}
+
+static int64_t step_controller(
+    const struct armstep *arm, struct arena *arena, double *memory, const struct armstep_input *input
+)
+{
+    const Vector joints = view(input->q, arm->tables->joints);
+    const Vector targets = view_if_any(input->request, ARMSTEP_TARGET * arm->tables->frames);
+    return @step_tracking@&layout_of(arm)->controller, state_of(arm, memory), joints, input->t, targets);
+}
+
+/* Take the next command of the motion to rest. */
+static void brake(const struct armstep *arm, struct arena *arena, double *memory)
+{
+    (void)arena;
+    if (is_shield(arm)) {
+        @brake_arm@&layout_of(arm)->shield, state_of(arm, memory));
+    } else {
+        @brake_tracking@&layout_of(arm)->controller, state_of(arm, memory));
+    }
+}
+
+int armstep_step(
+    const struct armstep *arm, double *memory, double *scratch, const struct armstep_input *input, double *dq
+)
+{
+    const size_t bytes = sizeof *memory * (size_t)arm->tables->memory;
+    const size_t width = sizeof *dq * (size_t)arm->tables->joints;
+    const bool may_fail = arm->tables->own_count > 0; /* where a user's own part takes too much */
+    struct arena arena = arena_of(arm, scratch);
+    int64_t result = ARMSTEP_INVALID;
+    if (!has_begun(arm, memory)) {
+        memset(dq, 0, width);
+        return ARMSTEP_INVALID;
+    }
+    if (may_fail) {
+        memcpy(scratch, memory, bytes);
+        arena.start += bytes;
+        arena.top = arena.start;
+    }
+    if (input->q != NULL) {
+        result = is_shield(arm) ? step_shield(arm, &arena, memory, input) : step_controller(arm, &arena, memory, input);
+    }
+    if (arena.full) {
+        memcpy(memory, scratch, bytes);
+        result = ARMSTEP_INVALID;
+    }
+    if (result == ARMSTEP_INVALID) {
+        arena = arena_of(arm, scratch);
+        brake(arm, &arena, memory);
+    }
+    memcpy(dq, motion_state_of(arm, memory).last.data, width);
+    return (int)result;
+}
+
+ptrdiff_t armstep_steps(
+    const struct armstep *arm, const struct armstep_batch *batch, double *scratch, ptrdiff_t first, ptrdiff_t last
+)
+{
+    const ptrdiff_t n = arm->tables->joints;
+    const ptrdiff_t width = batch->input.kind == ARMSTEP_REQUEST_TWIST ? 6 : n;
+    ptrdiff_t refused = 0;
+    for (ptrdiff_t k = first; k < last; k++) {
+        double *const memory = batch->memory + k * batch->stride;
+        struct armstep_input own = batch->input;
+        own.q += k * n;
+        own.request = own.request != NULL && (batch->given == NULL || batch->given[k]) ? own.request + k * width : NULL;
+        batch->reasons[k] = armstep_step(arm, memory, scratch, &own, batch->dq + k * n);
+        refused += batch->reasons[k] == ARMSTEP_INVALID;
+        memcpy(batch->next_q + k * n, armstep_next_q(arm, memory), sizeof(double) * (size_t)n);
+        batch->clipped[k] = armstep_is_clipped(arm, memory);
+    }
+    return refused;
+}
+
+enum armstep_status armstep_targets(
+    const struct armstep *arm, const double *memory, double *scratch, double t, double *targets
+)
+{
+    const Matrix own = {targets, arm->tables->frames, ARMSTEP_TARGET};
+    struct arena own_arena = arena_of(arm, scratch);
+    struct arena *const arena = &own_arena;
+    if (is_shield(arm) || layout_of(arm)->controller.step.paths.table.size0 == 0) {
+        return ARMSTEP_WRONG_KIND;
+    }
+    if (!has_begun(arm, memory)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    @sample_tracking@&layout_of(arm)->controller, state_of(arm, memory), t, own);
+    return ARMSTEP_OK;
+}
+
+enum armstep_status armstep_save(const struct armstep *arm, const double *memory, double *saved)
+{
+    const ptrdiff_t count = arm->tables->memory;
+    if (!has_begun(arm, memory)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    const uint64_t digest = digested_numbers(arm->tables->digest, memory, count);
+    memcpy(saved, memory, sizeof *saved * (size_t)count);
+    saved[count] = (double)(digest >> 32);
+    saved[count + 1] = (double)(digest & 0xffffffffu);
+    return ARMSTEP_OK;
+}
+
+enum armstep_status armstep_restore(const struct armstep *arm, double *memory, const double *saved)
+{
+    const ptrdiff_t count = arm->tables->memory;
+    const uint64_t digest = digested_numbers(arm->tables->digest, saved, count);
+    if (!has_begun(arm, saved)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    if (saved[count] != (double)(digest >> 32) || saved[count + 1] != (double)(digest & 0xffffffffu)) {
+        return ARMSTEP_DAMAGED;
+    }
+    memcpy(memory, saved, sizeof *memory * (size_t)count);
+    return ARMSTEP_OK;
+}
+
+const double *armstep_next_q(const struct armstep *arm, const double *memory)
+{
+    if (is_shield(arm)) {
+        return @arm_state@&layout_of(arm)->shield, state_of(arm, memory)).positions.data;
+    }
+    return log_of_controller(arm, memory).next_q.data;
+}
+
+bool armstep_is_clipped(const struct armstep *arm, const double *memory)
+{
+    if (is_shield(arm)) {
+        return @arm_state@&layout_of(arm)->shield, state_of(arm, memory)).at->is_clipped != 0.0;
+    }
+    return armstep_program_of(arm, memory) != ARMSTEP_PROGRAM_NOMINAL;
+}
+
+static bool is_among(int code, const int *codes, int count)
+{
+    for (int i = 0; i < count; i++) {
+        if (codes[i] == code) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Write the codes of limits: of each joint the lower and the upper bound of each kind, then the rows, which belong to
+ * one pair of bodies, or by their kind to another from step to step. Limits of rates, which most often follow from
+ * others, come last. */
+static int limit_codes(const struct armstep *arm, Vector limiting, int reasons, int *codes)
+{
+    const struct layout *own = layout_of(arm);
+    const schemes_program_ProgramSizes *sizes =
+        is_shield(arm) ? &own->shield.step.arrays.sizes : &own->controller.step.arrays.sizes;
+    const int first_row = (int)arm->tables->first_row;
+    const int joints = (int)arm->tables->joints;
+    const int sides = (first_row - reasons) / joints;
+    int count = 0;
+    for (int of_rates = 0; of_rates < 2; of_rates++) {
+        for (int k = 0; k < (int)limiting.size0; k++) {
+            const int kind = (int)limiting.data[k];
+            const int size = kind > 0 ? kind : -kind;
+            const int row = k - (int)sizes->n;
+            const bool is_rate = k < joints && (size == @acceleration@ || size == @jerk@);
+            int code = reasons + sides * k + 2 * size - 2 + (kind > 0);
+            if (kind == 0 || is_rate != (of_rates == 1) || (k >= joints && row < 0)) {
+                continue;
+            }
+            if (row >= 0) {
+                code = first_row + (kind > 1 ? (int)sizes->m + kind - 2 : row);
+            }
+            if (!is_among(code, codes, count)) {
+                codes[count++] = code;
+            }
+        }
+    }
+    return count;
+}
+
+int armstep_active_limits(const struct armstep *arm, const double *memory, int *codes)
+{
+    int count = 0;
+    if (!has_begun(arm, memory)) {
+        return 0;
+    }
+    if (!is_shield(arm)) {
+        count = limit_codes(arm, log_of_controller(arm, memory).limiting, ARMSTEP_SINGULAR + 1, codes);
+        if (count == 0 && armstep_program_of(arm, memory) == ARMSTEP_PROGRAM_RELAXED) {
+            codes[count++] = ARMSTEP_SINGULAR;
+        }
+        return count;
+    }
+    const control_arms_ArmState state = @arm_state@&layout_of(arm)->shield, state_of(arm, memory));
+    if (state.at->is_clipped == 0.0) {
+        return 0;
+    }
+    for (int k = 0; k < (int)state.reasons.size0; k++) {
+        if (state.reasons.data[k] != 0.0) {
+            codes[count++] = k;
+        }
+    }
+    return count + limit_codes(arm, state.limiting, (int)state.reasons.size0, codes + count);
+}
+
+enum armstep_status armstep_margin(
+    const struct armstep *arm, const double *memory, double *scratch, double *joint, double *distance
+)
+{
+    struct arena own_arena = arena_of(arm, scratch);
+    struct arena *const arena = &own_arena;
+    if (!is_shield(arm)) {
+        return ARMSTEP_WRONG_KIND;
+    }
+    if (!has_begun(arm, memory)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    const double_2 found = @margin_of@&layout_of(arm)->shield, state_of(arm, memory));
+    *joint = found.at[0];
+    *distance = found.at[1];
+    return ARMSTEP_OK;
+}
+
+double armstep_stopping_time(const struct armstep *arm, const double *memory, double *scratch)
+{
+    struct arena own_arena = arena_of(arm, scratch);
+    struct arena *const arena = &own_arena;
+    (void)arena;
+    return is_shield(arm) ? @stopping_time_of@&layout_of(arm)->shield, state_of(arm, memory)) : NAN;
+}
+
+enum armstep_program armstep_program_of(const struct armstep *arm, const double *memory)
+{
+    return is_shield(arm) ? ARMSTEP_PROGRAM_NOMINAL : (enum armstep_program)log_of_controller(arm, memory).at->kind;
+}
+
+double armstep_fraction(const struct armstep *arm, const double *memory)
+{
+    return is_shield(arm) ? 1.0 : log_of_controller(arm, memory).at->fraction;
+}
+
+double armstep_path_lag(const struct armstep *arm, const double *memory)
+{
+    return motion_state_of(arm, memory).at->path_lag;
+}
+
+const char *armstep_limit_name(const struct armstep_tables *tables, int code)
+{
+    return code >= 0 && code < tables->limits ? tables->limit_names[code] : "";
+}
+
+const char *armstep_action_name(int action)
+{
+    static const char *const names[] = {@action_names@};
+    return action >= 0 && action < @action_count@ ? names[action] : "invalid";
+}
