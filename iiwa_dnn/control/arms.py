@@ -46,7 +46,8 @@ from iiwa_dnn.schemes.viability import joint_bounds
 TURN = 2.0 * math.pi
 """Turn after which a joint without position limits is at the same place [rad]."""
 
-SHORTEST, LONGEST = 1e-9, 1e3
+SHORTEST = 1e-9
+LONGEST = 1e3
 """Periods below and above which a stated one is refused [s]: quotients by them overflow."""
 
 FOLLOWING = 1e-12

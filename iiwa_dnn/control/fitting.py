@@ -240,15 +240,19 @@ def _scene_fits(constants: Vector, arrays: ProgramArrays) -> bool:
         body = Body.of(scene.bodies[k])
         if not _is_within(body.frame, 0, len(arrays.placements)):
             return False
+    fit = True
     for k in range(head.pairs):
         pair = Pair.of(scene.pairs[k])
-        if pair.radii.size != n:
-            return False
-        if not _is_within(pair.first, 0, head.bodies) or not _is_within(
-            pair.second, 0, head.bodies
-        ):
-            return False
-    return True
+        fit = fit and _pair_fits(pair, n, head.bodies)
+    return fit
+
+
+@compiled
+def _pair_fits(pair: Pair, joints: int, bodies: int) -> bool:
+    """Test a pair of bodies by the numbers of joints and of bodies."""
+    if pair.radii.size != joints or not _is_within(pair.first, 0, bodies):
+        return False
+    return _is_within(pair.second, 0, bodies)
 
 
 @compiled

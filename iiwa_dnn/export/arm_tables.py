@@ -40,6 +40,7 @@ from iiwa_dnn.export.flat import Flat
 from iiwa_dnn.export.nodes import Node, PartNumber, path_constants, program_constants, robot_labels
 from iiwa_dnn.naming import active_limits, describe, limit_kinds
 from iiwa_dnn.references import Reference
+from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics_kernel import model_tables
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.layout import ProgramLayout
@@ -49,7 +50,9 @@ from iiwa_dnn.schemes.program import ProgramArrays
 STATE = 1
 """Numbers of an arm's memory before its state: the mark of its tables."""
 
-_OFFSET, _PRIME, _BITS = 0xCBF29CE484222325, 0x100000001B3, (1 << 64) - 1
+_OFFSET = 0xCBF29CE484222325
+_PRIME = 0x100000001B3
+_BITS = (1 << 64) - 1
 
 
 class Tables:
@@ -57,7 +60,6 @@ class Tables:
 
     Attributes:
         kind: ``"shield"`` or ``"controller"``.
-        robot: The robot.
         program: Layout of the program that a step answers.
         kept: Names of the limits.
         frames: Frame of a shield's twists, or the tracked frames of a controller.
@@ -79,7 +81,6 @@ class Tables:
                 part is named.
             NotFoundError: There is no such frame.
         """
-        self.robot = made.robot
         limits = made.limits if isinstance(made, Shield) else made.scheme.limits
         self.kept = ", ".join(each.title for each in limits) or "none"
         self.own = OwnParts()
@@ -87,6 +88,11 @@ class Tables:
             self._take_shield(made, frame or made.robot.tip)
         else:
             self._take_controller(made)
+
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+        return self.program.robot
 
     def _take_shield(self, shield: Shield, frame: str) -> None:
         """Lay out the tables of a shield."""

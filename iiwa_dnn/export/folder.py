@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.sources import c_word
 from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.paths import by_frame
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.requests import TWIST, Reason, Request
 from iiwa_dnn.control.shield import Shield
@@ -374,10 +375,12 @@ class _Export:
         """Return the texts of a controller, whose recorded steps are known."""
         n = controller.robot.dof
         resting = rows[0, 3 + n : -1 - n].reshape(-1, TARGET_SIZE) * _POSE
+        paths = by_frame(controller.reference, controller.robot.tip)
         return {
             "tolerance": f"{10.0 * controller.solver.tol:g}",
             "target": _numbers(resting.ravel()),
             "request_of_step": "NULL" if self.tables.has_reference else "target",
+            "references": ", ".join(each.name for each in paths.values()) or "none",
         }
 
 

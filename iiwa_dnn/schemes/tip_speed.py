@@ -61,7 +61,7 @@ class TipSpeedConstants(Record):
     frame: int
     limit: float
     gain: float
-    reach: Vector = part()
+    reach: Vector = part("reach")
 
 
 @compiled

