@@ -376,11 +376,12 @@ class _Export:
         n = controller.robot.dof
         resting = rows[0, 3 + n : -1 - n].reshape(-1, TARGET_SIZE) * _POSE
         paths = by_frame(controller.reference, controller.robot.tip)
+        names = ", ".join(each.name for each in paths.values())
         return {
             "tolerance": f"{10.0 * controller.solver.tol:g}",
             "target": _numbers(resting.ravel()),
             "request_of_step": "NULL" if self.tables.has_reference else "target",
-            "references": ", ".join(each.name for each in paths.values()) or "none",
+            "references": names if self.tables.has_reference else "none",
         }
 
 

@@ -363,7 +363,7 @@ class _Plain(iiwa_dnn.Heart):
 def test_a_reference_without_compiled_form_leaves_the_targets_to_the_caller(tmp_path: Path) -> None:
     controller, q0 = drawing(path=_Plain())
     folder = c99(controller, tmp_path, q0)
-    assert "| a reference | False |" in (folder / "README.md").read_text(encoding="utf-8")
+    assert "| references | none |" in (folder / "README.md").read_text(encoding="utf-8")
     run("gcc", *WARNINGS, "-fsyntax-only", folder / "example.c")
     exported = loaded(folder)
     assert stepped(exported, (np.asarray(q0).ctypes.data, 0, None), np.empty(7)) == -1

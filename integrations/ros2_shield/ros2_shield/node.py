@@ -9,8 +9,7 @@ import importlib
 import signal
 import sys
 import time
-from collections import deque
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -22,7 +21,7 @@ from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
 from rclpy.exceptions import ParameterException
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
@@ -31,13 +30,7 @@ from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 NEWEST = QoSProfile(depth=1)
-"""Reliable and volatile; the last message alone counts."""
-
-MEASURED = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""Joint states of reliable and of best-effort publishers: a lost one is not waited for."""
-
-TURN = 2.0 * np.pi
-"""Turn after which a joint without position limits is at the same place [rad]."""
+"""Reliable and volatile, as joint_state_broadcaster publishes; the last message alone counts."""
 
 REST = 1e-9
 """Velocity of a joint at rest [rad/s]: at a position limit it may back off by rounding."""
@@ -73,13 +66,13 @@ class Newest:
 
     kind: str  # words for it
     problem: str  # reason why the message does not count, or nothing
-    value: dict[str, Any] = field(default_factory=dict)  # its numbers (k,) by their name
-    time: float = 0.0  # of its stamp, or of its arrival, by the clock of the periods [s]
-    stamp: int = 0  # [ns]; 0: none
+    value: dict[str, Any] = field(default_factory=dict)  # its numbers (1, k) by their name
+    time: float = 0.0  # of its arrival, by the clock of the periods [s]
+    age: float = 0.0  # that it had then by its stamp [s]
 
     def fault(self, now: float, timeout: float) -> str:
         """Return why the message does not count at a time [s], or nothing."""
-        is_recent = 0.0 <= now - self.time <= timeout
+        is_recent = 0.0 <= now - self.time <= timeout - self.age
         return self.problem or ("" if is_recent else f"{self.kind} timed out")
 
 
@@ -108,11 +101,10 @@ class ShieldNode(Node):
         name = self._set["shield"]
         try:
             self._package = package = importlib.import_module(name)
-            self._shield = package.Shield()
-            lower, upper = package.LIMITS["lower"], package.LIMITS["upper"]
+            # Of one arm: it brakes at joint positions that are not finite, where `Shield` raises.
+            self._shields = package.Shields(1)
         except (AttributeError, ImportError, TypeError, ValueError) as error:
             raise RefusedError(f"parameter shield: {name!r} is no such package: {error}") from error
-        self._is_endless = np.isinf(lower) & np.isinf(upper)
         self._takes_velocity = self._set["command"] == "velocity"
         if self._takes_velocity and package.LONGEST_PERIOD is None:
             raise RefusedError("parameter command: velocity needs a shield with a longest_period")
@@ -130,12 +122,12 @@ class ShieldNode(Node):
         self._worst = 0.0  # longest period since the last report [s]
         self._restart()
         for topic, message, *taker in (
+            ("/joint_states", JointState, self._states, "q", self._joints),
             ("~/delta_twist_cmds", TwistStamped, self._request, "twist", self._twist),
             ("~/velocity_cmds", Float64MultiArray, self._request, "dq", self._velocities),
             ("~/position_cmds", JointTrajectory, self._request, "position", self._positions),
         ):
             self.create_subscription(message, topic, partial(self._take, *taker), NEWEST)
-        self.create_subscription(JointState, "/joint_states", self._on_joint_states, MEASURED)
         is_trajectory = self._set["command"] == "trajectory"
         sent = JointTrajectory if is_trajectory else Float64MultiArray
         self._commands = self.create_publisher(sent, "~/commands", NEWEST)
@@ -149,30 +141,20 @@ class ShieldNode(Node):
 
     def _restart(self) -> None:
         """Forget commands, the request and why the arm is held."""
-        self._shield.reset()
+        self._shields.reset()
         self._request.problem = "no request"
         self._held = ""  # why the arm brakes until ~/reset
         self._command: Any = None  # the last one
-        self._sent: deque[tuple[float, Any]] = deque()  # times [s] and velocities [rad/s] of late
-        self._before: Newest | None = None  # joint states before the last ones
-        self._seen: Any = None  # joint positions of the last period (n,) [rad]
-        self._due: Any = None  # those to which the commands lead (n,) [rad]
+        self._seen: Any = None  # joint positions of the last period (1, n) [rad]
+        self._due: Any = None  # those to which the commands lead (1, n) [rad]
 
     # ---- Messages
 
     def _take(self, newest: Newest, name: str, numbers: Any, message: Any) -> None:
-        """Keep the numbers of a message, or the reason why it does not count.
-
-        One that has been overtaken, or comes again, is left out.
-        """
-        stamp = Time.from_msg(message.header.stamp) if hasattr(message, "header") else Time()
-        now = self._now()
-        is_stale = bool(newest.fault(now, self._set["timeout"]))
-        if 0 < stamp.nanoseconds <= newest.stamp and not is_stale:
-            return
+        """Keep the numbers of a message, or the reason why it does not count."""
         try:
-            age = self._age(stamp)
-            value = np.array(numbers(message), dtype=float)
+            age = self._age(message)
+            value = np.array([numbers(message)], dtype=float)
             if not np.isfinite(value).all():
                 raise RefusedError("not finite")
         except RefusedError as error:
@@ -180,28 +162,14 @@ class ShieldNode(Node):
             return
         newest.problem = ""
         newest.value = {name: value}
-        newest.time, newest.stamp = now - age, stamp.nanoseconds
-
-    def _on_joint_states(self, message: JointState) -> None:
-        """Keep joint states, unless they are of other joints alone, as a gripper's."""
-        names = self._package.JOINT_NAMES
-        if set(names).isdisjoint(message.name):
-            return
-        before = replace(self._states)
-        self._take(self._states, "q", self._joints, message)
-        if self._states.value is before.value:
-            return
-        self._before = before if before.value else None
-        velocity = dict(zip(message.name, message.velocity, strict=False))
-        speeds = np.array([velocity.get(name, np.nan) for name in names])
-        if np.isfinite(speeds).all():
-            self._states.value["dq"] = speeds
+        newest.time, newest.age = self._now(), age
 
     def _now(self) -> float:
         return float(self._pace.now().nanoseconds * 1e-9)
 
-    def _age(self, stamp: Time) -> float:
+    def _age(self, message: Any) -> float:
         """Return the age of a message by its stamp [s], 0 without one."""
+        stamp = Time.from_msg(message.header.stamp) if hasattr(message, "header") else Time()
         if stamp.nanoseconds == 0:
             return 0.0
         age = float((self.get_clock().now() - stamp).nanoseconds * 1e-9)
@@ -271,89 +239,44 @@ class ShieldNode(Node):
             elapsed = self._package.DT
         self._worst = max(self._worst, elapsed)
         blind = self._states.fault(now, timeout)
-        if is_first and not blind:
-            blind = self._begin()
         q = self._told(now, elapsed, blind)
         before = self._fault
         self._fault = self._held or fault or blind or self._request.fault(now, timeout)
         if not (is_first and blind):
-            still = {"dq": np.zeros(len(self._package.JOINT_NAMES))}
-            request = still if self._fault else self._request.value
+            request = {"dq": np.zeros_like(q)} if self._fault else self._request.value
             period = {"elapsed": elapsed} if self._takes_velocity else {"dt": self._package.DT}
-            self._command = self._shield.step(q, **request, **period)
-            self._sent.append((now, self._command.dq))
+            self._command = self._shields.step(q, **request, **period)
             self._send(self._command)
         if self._fault != before:
             self._report()
 
-    def _begin(self) -> str:
-        """Begin with the velocities that the arm has; return why that is not possible, or nothing.
-
-        They are those of the joint states or, if these have none, between the last two of them.
-        """
-        now, before = self._states, self._before
-        speeds = now.value.get("dq")
-        if speeds is None and before is not None and now.time > before.time:
-            q = self._near(now.value["q"], before.value["q"])
-            speeds = (q - before.value["q"]) / (now.time - before.time)
-        if speeds is None:
-            return "joint states without velocities, and but once"
-        for _ in range(2):  # no acceleration
-            self._shield.send(speeds)
-        self._sent.append((now.time - self._package.DELAY, speeds))
-        return ""
-
-    def _near(self, q: Any, others: Any) -> Any:
-        """Return positions (n,) [rad], those of endless joints by whole turns nearest to others."""
-        return q - TURN * np.round((q - others) / TURN) * self._is_endless
-
-    def _moved(self, since: float, until: float) -> Any:
-        """Return how far the joints move by the commands of a time [s], (n,) [rad]."""
-        moved = np.zeros(len(self._package.JOINT_NAMES))
-        end = until
-        for time_sent, dq in reversed(self._sent):
-            begin = max(time_sent, since)
-            if end > begin:
-                moved += (end - begin) * dq
-                end = begin
-        return moved
-
     def _told(self, now: float, elapsed: float, blind: str) -> Any:
-        """Return the joint positions (n,) [rad] for the shield; hold an arm that does not follow.
+        """Return the joint positions (1, n) [rad] for the shield; hold an arm that does not follow.
 
-        Measured positions are led on from the time of their stamp by the commands since. Commanded
-        positions never jump, so they are told as measured ones: the shield is then never
+        Commanded positions never jump, so they are told as measured ones: the shield is then never
         resynchronised.
         """
         measured = self._states.value.get("q")
-        if measured is None:
-            return None
-        delay = self._package.DELAY
-        q = measured + self._moved(self._states.time - delay, now - delay)
         command = self._command
         if command is None:
-            self._seen = measured
-            self._due = q
-            return q
-        longest = self._set["timeout"] + delay + self._longest
-        while self._sent and not 0.0 <= now - self._sent[0][0] <= longest:
-            self._sent.popleft()
+            self._seen = self._due = measured
+            return measured
+        q = measured + (now - self._states.time) * command.dq
         self._due = self._due + elapsed * command.dq if self._takes_velocity else command.next_q
-        q = self._near(q, self._due)
         if not blind and measured is not self._seen:
             self._seen = measured
-            error = np.abs(self._due - q)
+            error = np.abs(self._due - q)[0]
             self._due = self._due + min(elapsed / FORGOTTEN, 1.0) * (q - self._due)
             if error.max() > self._set["following_error"]:
                 name = self._package.JOINT_NAMES[error.argmax()]
                 self._held = self._held or f"joint {name!r} does not follow its commands"
         if not self._takes_velocity:
             return command.next_q
-        return None if blind else q
+        return np.nan * q if blind else q
 
     def _send(self, command: Any) -> None:
         """Publish a command in the form of the parameter."""
-        numbers = (command.dq if self._takes_velocity else command.next_q).tolist()
+        numbers = (command.dq if self._takes_velocity else command.next_q)[0].tolist()
         if self._set["command"] != "trajectory":
             self._commands.publish(Float64MultiArray(data=numbers))
             return
@@ -385,8 +308,7 @@ class ShieldNode(Node):
     def come_to_rest(self, executor: Any) -> str:
         """Brake within the limits; return why that was not possible, or nothing."""
         self._held = "the node ends"
-        stopping = self._command.stopping_time if self._command is not None else 0.0
-        duration = 1.0 + self._set["timeout"] + 2.0 * stopping
+        duration = 1.0 + self._set["timeout"] + 2.0 * self._shields.stopping_time(0)
         end = time.monotonic() + duration
         while not self._is_at_rest() and time.monotonic() < end:
             executor.spin_once(timeout_sec=0.01)
@@ -398,8 +320,8 @@ class ShieldNode(Node):
         status.level = DiagnosticStatus.STALE
         status.message = self._fault
         if self._command is not None:
-            limits = self._command.active_limits
-            margin = self._command.margin
+            limits = self._shields.active_limits(0)
+            margin = self._shields.margin(0)
             status.level = DiagnosticStatus.WARN if limits else DiagnosticStatus.OK
             status.level = DiagnosticStatus.ERROR if self._fault else status.level
             status.message = self._fault or (limits[0] if limits else "follows the request")
@@ -407,7 +329,7 @@ class ShieldNode(Node):
                 "active limits": "; ".join(limits),
                 "margin of joints [rad]": f"{margin.joint:.6g}",
                 "margin of distances [m]": f"{margin.distance:.6g}",
-                "stopping time [s]": f"{self._command.stopping_time:.6g}",
+                "stopping time [s]": f"{self._shields.stopping_time(0):.6g}",
                 "longest period [s]": f"{self._worst:.6g}",
             }
             status.values = [KeyValue(key=key, value=value) for key, value in values.items()]

@@ -2,9 +2,8 @@
 
 It runs in the environment of the node. ``simulated``: /clock waits for the node's commands,
 velocities, so that a judge's verdict does not depend on the machine; a period lasts one control
-period, or several. The arm moves before the node begins; joint states come late by their stamps,
-reordered, doubled, and a gripper's between them. ``timed``: both go by the machine's clock, and the
-arm takes positions and shows them late. FILE gets the start, and periods and velocities.
+period, or several. ``timed``: both go by the machine's clock, and the arm takes positions and shows
+them late. FILE gets the start, and periods and velocities.
 """
 
 import importlib
@@ -17,7 +16,6 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import TwistStamped
 from rclpy.node import Node
-from rclpy.qos import qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
@@ -28,8 +26,6 @@ PATIENCE = 20.0  # for an answer of the node [s]
 START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
 GOOD = ("velocities", "positions", "twist")
 LATE = 10  # periods by which a timed arm shows its positions late
-OLDEST = 80_000_000  # age of the positions that a simulated arm shows [ns]
-BEGINS = 0.05  # velocity of the joints of a simulated arm before the first command [rad/s]
 TOPICS = {
     Clock: "/clock",
     JointState: "/joint_states",
@@ -53,17 +49,13 @@ class Arm(Node):
         self.limits = package.LIMITS
         self.is_timed = is_timed
         self.path = [START]
-        self.dq = np.full(len(START), 0.0 if is_timed else BEGINS)
+        self.dq = np.zeros(len(START))
         self.t = 1000.0
-        self.stamps = [self.now()]  # of the path [ns]
         self.speed = 0.2  # that is requested for checks [rad/s]
         self.log = []  # periods [s] and velocities [rad/s]
         self.times = []  # of the commands [s]
         self.said = [""]  # by the diagnostics
         self.publishers_of = {kind: self.create_publisher(kind, TOPICS[kind], 1) for kind in TOPICS}
-        if not is_timed:  # as some drivers do
-            topic, quality = TOPICS[JointState], qos_profile_sensor_data
-            self.publishers_of[JointState] = self.create_publisher(JointState, topic, quality)
         self.create_subscription(DiagnosticArray, "/diagnostics", self.on_state, 10)
         kind = JointTrajectory if is_timed else Float64MultiArray
         self.create_subscription(kind, "/shield/commands", self.on_command, 1000)
@@ -101,42 +93,23 @@ class Arm(Node):
         message.header.stamp = stamp(self.now() if at is None else at)
         self.publish(message)
 
-    def show_late(self, random):
-        """Publish joint states of any age up to `OLDEST`, some twice, or a gripper's alone."""
-        recent = sum(each >= self.now() - OLDEST for each in self.stamps[-30:])
-        back = 1 + int(random.integers(recent))
-        for _ in range(random.integers(1, 3)):
-            self.show(q=self.path[-back], at=self.stamps[-back])
-        if random.random() < 0.2:
-            finger = JointState(name=["finger"], position=[0.1])
-            finger.header.stamp = stamp(self.now())
-            self.publish(finger)
-
     def wait(self, until, patience=PATIENCE):
         end = time.perf_counter() + patience
         while not until() and time.perf_counter() < end:
             rclpy.spin_once(self, timeout_sec=0.01)
         return until()
 
-    def turn(self, request=None, periods=1, patience=PATIENCE, is_silent=False, late=None, **shown):
-        """Hold the last command for some periods, publish, wait for the next command.
-
-        With random numbers, `late`, joint states are old and in another order.
-        """
+    def turn(self, request=None, periods=1, patience=PATIENCE, is_silent=False, **shown):
+        """Hold the last command for some periods, publish, wait for the next command."""
         self.t = round(self.t + periods * self.dt, 9)  # /clock has nanoseconds
         if request is not None:
             self.publish(request)
         if not self.is_timed:
             self.path.append(self.path[-1] + periods * self.dt * self.dq)
-            self.stamps.append(self.now())
-            if not self.times:  # no command yet
-                self.log.append([0.0, *self.dq])
             for row in self.log[-1:]:
                 row[0] += periods * self.dt
             self.publish(Clock(clock=stamp(self.now())))
-        if late is not None and not shown:
-            self.show_late(late)
-        elif not is_silent:
+        if not is_silent:
             self.show(**shown)
         before = len(self.times)
         return self.wait(lambda: len(self.times) > before, patience)
@@ -203,8 +176,7 @@ def drive(arm, seconds):
             name = random.choice([*6 * GOOD, *cases(random, arm)])
             request, shown = cases(random, arm)[name]
             held = arm.t + (0.6 if "timed out" in name else random.choice([0.03, 0.1]))
-        late = None if arm.is_timed or shown else random
-        assert arm.turn(request, periods, late=late, **shown), f"no command at {arm.t} s"
+        assert arm.turn(request, periods, **shown), f"no command at {arm.t} s"
         moving += not arm.rests()
     assert moving > 0.3 * len(arm.times), "does not go on after a fault"
     assert arm.is_timed or any("period not within" in words for words in arm.said)
