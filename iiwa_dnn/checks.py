@@ -131,6 +131,13 @@ def instance(argument: str, value: T, kind: type[Any]) -> T:
     return value
 
 
+def instances(argument: str, value: Iterable[T], kind: type[Any]) -> tuple[T, ...]:
+    """Return a list of objects of a class or of subclasses; refuse any other value."""
+    if not isinstance(value, Iterable):
+        raise InvalidInputError(argument, f"must be a list of parts, not {value!r:.80}", value)
+    return tuple(instance(argument, each, kind) for each in value)
+
+
 def offers(argument: str, value: T, *names: str) -> T:
     """Return an object, no class, that has all of these members; refuse any other value."""
     if isinstance(value, type) or not all(hasattr(value, name) for name in names):

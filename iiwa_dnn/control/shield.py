@@ -398,7 +398,7 @@ class Shield:
                 raise InvalidInputError("limits", "are set at rest: halt the arm first", limits)
             halted = self._halted
             before = self._limits
-            self._limits = tuple(checks.instance("limits", limit, Limit) for limit in limits)
+            self._limits = checks.instances("limits", limits, Limit)
             self._layouts.clear()
             try:
                 self.reset()

@@ -218,9 +218,8 @@ def _soft_limits(
 ) -> tuple[float, float]:
     """Return the position limits [rad] within which a joint's ``<safety_controller>`` keeps it.
 
-    They are `lower` and `upper`, or its soft limits where these are inside. Soft limits of which
-    the lower one is not below the other are not given; of those that leave nothing of the range, a
-    warning tells.
+    They are `lower` and `upper`, or its soft limits where these are inside. Two equal soft limits
+    are not given; of others that leave nothing of the range, a warning tells.
     """
     controller = joint.find("safety_controller")
     if controller is None:
@@ -229,7 +228,7 @@ def _soft_limits(
     inside = (max(lower, soft[0]), min(upper, soft[1]))
     if inside[0] < inside[1]:
         return inside
-    if soft[0] < soft[1]:
+    if soft[0] != soft[1]:
         warn_caller(
             f"{path}: the soft limits of joint {joint.get('name')!r}, {soft[0]:g} to {soft[1]:g}, "
             f"leave nothing of {lower:g} to {upper:g}, which hold"

@@ -1,7 +1,7 @@
 """Schemes: costs, tasks and limits, composed into the quadratic program of a control step."""
 
 import copy
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, TypeVar
 
 import numpy as np
@@ -63,9 +63,7 @@ class Scheme:
     ) -> None:
         kinds = (Cost, Task, Limit)
         for name, parts, kind in zip(_LISTS, (costs, tasks, limits), kinds, strict=True):
-            if not isinstance(parts, Iterable):
-                raise InvalidInputError(name, f"must be a list of parts, not {parts!r}", parts)
-            checked = tuple(checks.instance(name, part, kind) for part in parts)
+            checked = checks.instances(name, parts, kind)
             object.__setattr__(self, name, checked)  # a scheme may be a frozen dataclass
 
     def anchored(self: SchemeT, conf: Configuration) -> SchemeT:

@@ -244,6 +244,7 @@ REFUSED: dict[str, Any] = {
         d.JointLimits(), d.CollisionAvoidance([BALL]), d.CollisionAvoidance([])
     ),
     "limits: must be an iiwa_dnn.Limit": lambda: with_limits(d.JointLimits(), d.PoseTask()),
+    "limits: must be a list": lambda: setattr(d.Shield(ACCELERATED, DT), "limits", 3),
     "acceleration: must have shape": lambda: with_limits(
         d.JointLimits(), d.AccelerationLimits([1.0, 2.0])
     ),

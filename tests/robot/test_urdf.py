@@ -226,9 +226,12 @@ def test_soft_limits_are_position_limits_where_they_are_inside(written, given, h
     assert (robot.q_lower[0], robot.q_upper[0]) == (-2.0, 2.0)
 
 
-def test_soft_limits_beside_the_range_are_said(written) -> None:
-    soft = f'{LIMIT}<safety_controller k_velocity="1" soft_lower_limit="3" soft_upper_limit="4"/>'
-    with pytest.warns(UserWarning, match="joint 'elbow', 3 to 4, leave nothing of -2 to 2, which"):
+@pytest.mark.parametrize(("lower", "upper"), [(3, 4), (1, -1)])
+def test_soft_limits_that_leave_nothing_of_the_range_are_said(written, lower, upper) -> None:
+    given = f'soft_lower_limit="{lower}" soft_upper_limit="{upper}"'
+    soft = f'{LIMIT}<safety_controller k_velocity="1" {given}/>'
+    said = f"joint 'elbow', {lower} to {upper}, leave nothing of -2 to 2, which"
+    with pytest.warns(UserWarning, match=said):
         robot = d.load_robot(written(elbow(LIMIT, soft)))
     assert (robot.q_lower[1], robot.q_upper[1]) == (-2.0, 2.0)
 
