@@ -2,6 +2,7 @@
 
 import atexit
 import importlib
+import os
 import shutil
 import subprocess
 import sys
@@ -51,6 +52,13 @@ def compiled_core(flags: tuple[str, ...]) -> Path:
     made = folder / f"armstep.{'so' if '-shared' in flags else 'o'}"
     kind = [] if "-shared" in flags else ["-c"]
     run("gcc", *flags, *kind, folder / "armstep.c", "-o", made)
+    return made
+
+
+def use_armstep(*flags: str) -> Path:
+    """Let armstep, and the programs that tests run, use the library of these kernels."""
+    made = compiled_core(("-std=c99", "-O1", "-fPIC", "-shared", *flags))
+    os.environ["ARMSTEP_LIBRARY"] = str(made)
     return made
 
 

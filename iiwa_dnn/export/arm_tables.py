@@ -7,6 +7,7 @@ import json
 import struct
 from collections.abc import Sequence
 from functools import cached_property
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,7 @@ from iiwa_dnn.export.core import (
 from iiwa_dnn.export.flat import Flat
 from iiwa_dnn.export.nodes import Node, PartNumber, path_constants, program_constants, robot_labels
 from iiwa_dnn.naming import active_limits, describe, limit_kinds
+from iiwa_dnn.qp import Matrix
 from iiwa_dnn.references import Reference
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics_kernel import model_tables
@@ -46,6 +48,9 @@ from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
 from iiwa_dnn.schemes.program import ProgramArrays
+
+STEPS = 200
+"""Recorded steps that tables in JSON hold."""
 
 STATE = 1
 """Numbers of an arm's memory before its state: the mark of its tables."""
@@ -194,36 +199,38 @@ class Tables:
             digest = ((digest ^ letter) * _PRIME) & _BITS
         return digest
 
-    def json(self, name: str) -> str:
-        """Write the tables as JSON.
+    def json(self, name: str, rows: Matrix, tolerance: float) -> str:
+        """Write the tables as JSON, with recorded steps.
 
-        Raises:
-            InvalidInputError: A part is from outside of the package: it is no number.
+        Args:
+            name: Name of the tables.
+            rows: Recorded steps, of which those up to `STEPS` are written.
+            tolerance: Largest difference of a command in units of the velocity limits.
         """
-        if self.own.names:
-            problem = f"{self.own.names[0]} is none of the package's parts: take C"
-            raise InvalidInputError("made", problem)
-        limits = {k: Node.of(own, {}).plain for k, own in self.limits.items()}
-        return json.dumps(
-            {
-                "release": RELEASE,
-                "digest": f"{self.digest:016x}",
-                "kind": self.kind,
-                "name": name,
-                "joint_names": [*self.robot.joint_names],
-                "frame_names": [*self.frames],
-                "obstacle_names": self.obstacles,
-                "limit_names": self.limit_names,
-                "first_row": self.first_row,
-                "limits": limits,
-                **self.periods,
-                "memory": self.memory,
-                "scratch": self.scratch,
-                "numbers": Node(self.flat.named).plain,
-                "integers": Node(self.flat.worded).plain,
-            },
-            indent=1,
-        )
+        own = {
+            "release": RELEASE,
+            "digest": f"{self.digest:016x}",
+            "kind": self.kind,
+            "name": name,
+            "joint_names": [*self.robot.joint_names],
+            "frame_names": [*self.frames],
+            "obstacle_names": self.obstacles,
+            "limit_names": self.limit_names,
+            "first_row": self.first_row,
+            "has_reference": self.has_reference,
+            "limits": {k: Node.of(own, {}).plain for k, own in self.limits.items()},
+            **self.periods,
+            "memory": self.memory,
+            "scratch": self.scratch,
+            "own": self.own.names,
+            "numbers": Node(self.flat.named).plain,
+            "integers": Node(self.flat.worded).plain,
+        }
+        own["checksum"] = sha256(json.dumps(own).encode()).hexdigest()[:16]
+        steps = [json.dumps(Node.of(row, {}).plain) for row in rows[:STEPS]]
+        lines = ",\n  ".join(steps)
+        vectors = f'{{"tolerance": {tolerance!r}, "rows": [\n  {lines}\n ]}}'
+        return f'{json.dumps(own, indent=1)[:-2]},\n "vectors": {vectors}\n}}\n'
 
 
 def _bytes_of_float(own: float) -> bytes:

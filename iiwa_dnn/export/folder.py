@@ -86,7 +86,7 @@ def c99(
             is named; or the name is none.
         FileError: The folder holds other files, or cannot be written.
     """
-    export = _Export(made, None, q0, name)
+    export = _Export(made, None, q0, _checked_name(name) if name else None)
     folder = _claimed(folder, VECTORS, overwrite)
     export.write_code(folder)
     for path in _templates("c", f"c_{export.tables.kind}"):
@@ -100,9 +100,11 @@ def tables(
     frame: str | None = None,
     q0: ArrayLike | None = None,
 ) -> Path:
-    """Write the tables of a controller or a shield as JSON.
+    """Write the tables of a controller or a shield as JSON, which the package armstep loads.
 
-    Each number has its name, parts are named; a digest and the sizes stand at the beginning.
+    Each number has its name, parts are named; a digest, a checksum and the sizes stand beside them,
+    and recorded steps, which ``python -m armstep check`` compares. If parts are from outside of the
+    package, their C is written beside the file, as ``NAME_own.c``, with a header.
 
     Args:
         made: The controller or shield, which is not changed.
@@ -114,13 +116,18 @@ def tables(
         The file.
 
     Raises:
-        InvalidInputError: A part is not compiled, or is none of the package's; the part is named.
+        InvalidInputError: A part is not compiled, or has no translation, the part is named; or
+            the file's name is none for C, and parts from outside of the package need one.
         NotFoundError: There is no such frame.
         FileError: The file cannot be written.
     """
     file = Path(path)
-    twin, _ = _begun(made, q0)
-    write_text(file, Tables(twin, frame).json(file.stem))
+    export = _Export(made, frame, q0, file.stem)
+    if own := export.code.get(f"{file.stem}_own.c"):
+        _checked_name(file.stem)
+        write_text(file.with_name(f"{file.stem}_own.c"), own)
+        write_text(file.with_name("armstep.h"), core().header)
+    write_text(file, export.tables.json(file.stem, export.vectors[1], export.tolerance))
     return file
 
 
@@ -255,6 +262,7 @@ class _Export:
 
     Attributes:
         tables: Tables of the arm.
+        tolerance: Largest difference of a command in units of the velocity limits.
         texts: Texts by their names in the templates.
         code: Texts of the tables' files by their names.
         vectors: Names of the columns of recorded steps, and their rows.
@@ -263,15 +271,15 @@ class _Export:
     def __init__(
         self, made: Controller | Shield, frame: str | None, q0: ArrayLike | None, name: str | None
     ) -> None:
-        """Take what is exported, as for `python`; None for the name stands for the robot's."""
+        """Take what is exported; None for the name stands for the robot's."""
         twin, q = _begun(made, q0)
         self.tables = Tables(twin, frame)
         own = re.sub(r"\W", "_", twin.robot.name.lower()).strip("_")
-        self._name = _checked_name(name or f"{'arm_' * (not own[:1].isalpha())}{own}")
+        self._name = name or _checked_name(f"{'arm_' * (not own[:1].isalpha())}{own}")
+        self.tolerance = 0.0 if isinstance(twin, Shield) else 10.0 * twin.solver.tol
         self.texts = self._common()
         if isinstance(twin, Shield):
             rows = _shield_run(twin, self.tables.frames[0], q, max(q.size, TWIST))
-            self.texts |= {"tolerance": "0.0"}
         else:
             rows = run(twin, q, STEPS)
             self.texts |= self._of_controller(twin, rows)
@@ -325,6 +333,7 @@ class _Export:
             **{word: repr(float(value)) for word, value in tables.periods.items()},
             "name": name,
             "NAME": name.upper(),
+            "tolerance": f"{self.tolerance:g}" if self.tolerance else "0.0",
             "kind": tables.kind,
             "KIND": tables.kind.upper(),
             "Kind": tables.kind.capitalize(),
@@ -366,7 +375,7 @@ class _Export:
         return {
             "own": name if count else "NULL",
             "own_count": count,
-            "own_declaration": f"extern const struct armstep_own {name}[{count}];\n" * bool(count),
+            "own_declaration": f"extern const struct armstep_own {name}[];\n" * bool(count),
             "own_code": own.text() if count else "",
             "own_rows": "\n".join(own.rows),
         }
@@ -378,7 +387,6 @@ class _Export:
         paths = by_frame(controller.reference, controller.robot.tip)
         names = ", ".join(each.name for each in paths.values())
         return {
-            "tolerance": f"{10.0 * controller.solver.tol:g}",
             "target": _numbers(resting.ravel()),
             "request_of_step": "NULL" if self.tables.has_reference else "target",
             "references": names if self.tables.has_reference else "none",
@@ -423,7 +431,7 @@ def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
             request = random.standard_normal(width)
             if kind == Request.POSITION:
                 request[: q.size] = q + 0.2 * request[: q.size]
-            request[0] = np.inf if k == 200 else request[0]
+            request[0] = np.inf if k == 100 else request[0]
         period = 0.5 * shield.dt if k % 10 == 7 and shield.longest_period is None else 0.0
         asked = request[np.newaxis]
         command = arms.step(
@@ -437,7 +445,7 @@ def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:
         result = [float(command.reason[0])]
         rows.append(np.concatenate([[k * shield.dt], q, said, request, command.dq[0], result]))
         path.append(command.next_q[0])
-        q = path[1 + k] + (0.05 if k == 300 else 0.0)
+        q = path[1 + k] + (0.05 if k == 130 else 0.0)
     return np.array(rows)
 
 

@@ -80,8 +80,11 @@ class Arm:
         own = json.loads(text)
         integers = [*flat(own["integers"])]
         parts = [k for k, each in enumerate(integers) if isinstance(each, str)]
+        self.tables = Tables()
         for k in parts:
-            integers[k] = library.armstep_part_number(integers[k].encode())
+            integers[k] = library.armstep_part_number(
+                ctypes.byref(self.tables), integers[k].encode()
+            )
         self.kept = (
             np.array([*map(float, flat(own["numbers"]))]),
             np.array(integers, np.intp),
@@ -305,8 +308,8 @@ def test_an_own_kernel_beyond_the_scratch_is_refused_within_memory(tmp_path: Pat
     controller, q0 = drawing(with_limits(Big(), AccelerationLimits(1.0)))
     controller.anchor(Configuration(controller.robot, q0))
     export.c99(controller, tmp_path, q0, name="big")
-    with pytest.raises(InvalidInputError, match="big is none of the package's parts: take C"):
-        export.tables(controller, tmp_path / "big.json")
+    with pytest.raises(InvalidInputError, match="name: must be small letters"):
+        export.tables(controller, tmp_path / "Big one.json")
     (tmp_path / "compare.c").unlink()
     run("make", "example", f"CFLAGS={' '.join(SANITIZED)}", f"LDFLAGS={SANITIZED[1]}", cwd=tmp_path)
     said = run(tmp_path / "example")

@@ -170,15 +170,15 @@ ARMSTEP_API int armstep_step(
     const struct armstep *arm, double *memory, double *scratch, const struct armstep_input *input, double *dq
 );
 
-/* Steps of many shields: arrays with a row for each arm. */
+/* Steps of many arms: arrays with a row for each. */
 struct armstep_batch {
     double *memory; /* of the first arm */
     ptrdiff_t stride; /* from one arm's to the next */
-    struct armstep_input input; /* of the first arm; requests have 6 numbers for twists, else (joints) */
-    const bool *given; /* which arms have a new request; NULL: all */
+    struct armstep_input input; /* of the first arm; requests have 6 numbers for twists, else (joints); targets (frames, 18) */
+    const bool *given; /* which arms have a new request, or targets; NULL: all */
     double *dq, *next_q; /* (joints) */
     bool *clipped;
-    int *reasons;
+    int *reasons; /* results of armstep_step */
 };
 
 /* Take the steps of the arms `first` to `last` - 1 of a batch; threads take ranges and scratch of their own.
@@ -227,7 +227,7 @@ ARMSTEP_API double armstep_path_lag(const struct armstep *arm, const double *mem
 ARMSTEP_API const char *armstep_limit_name(const struct armstep_tables *tables, int code);
 ARMSTEP_API const char *armstep_action_name(int action);
 ARMSTEP_API const char *armstep_part_name(const struct armstep_tables *tables, ptrdiff_t number);
-ARMSTEP_API int armstep_part_number(const char *name);
+ARMSTEP_API int armstep_part_number(const struct armstep_tables *tables, const char *name);
 
 /* Digest of numbers, integers and names of parts, FNV-1a of 64 bits. */
 ARMSTEP_API uint64_t armstep_digest(const struct armstep_tables *tables);

@@ -96,10 +96,11 @@ const char *armstep_part_name(const struct armstep_tables *tables, ptrdiff_t num
     return k >= 0 && k < tables->own_count ? tables->own[k].name : "";
 }
 
-int armstep_part_number(const char *name)
+int armstep_part_number(const struct armstep_tables *tables, const char *name)
 {
-    for (int k = 1; k < ARMSTEP_PARTS; k++) {
-        const char *own = part_names[k];
+    const int count = ARMSTEP_PARTS + (int)tables->own_count;
+    for (int k = 1; k < count; k++) {
+        const char *own = armstep_part_name(tables, k);
         ptrdiff_t at = 0;
         while (own[at] == name[at] && own[at] != '\0') {
             at++;
@@ -365,7 +366,8 @@ ptrdiff_t armstep_steps(
 )
 {
     const ptrdiff_t n = arm->tables->joints;
-    const ptrdiff_t width = batch->input.kind == ARMSTEP_REQUEST_TWIST ? 6 : n;
+    const ptrdiff_t width = is_shield(arm) ? batch->input.kind == ARMSTEP_REQUEST_TWIST ? 6 : n
+                                           : ARMSTEP_TARGET * arm->tables->frames;
     ptrdiff_t refused = 0;
     for (ptrdiff_t k = first; k < last; k++) {
         double *const memory = batch->memory + k * batch->stride;
@@ -475,7 +477,7 @@ static int limit_codes(const struct armstep *arm, Vector limiting, int reasons, 
             if (row >= 0) {
                 code = first_row + (kind > 1 ? (int)sizes->m + kind - 2 : row);
             }
-            if (!is_among(code, codes, count)) {
+            if (code >= reasons && code < arm->tables->limits && !is_among(code, codes, count)) {
                 codes[count++] = code;
             }
         }

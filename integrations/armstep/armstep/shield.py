@@ -1,0 +1,232 @@
+"""Shields: any request for a motion in, the command closest to it that keeps every limit out."""
+
+from __future__ import annotations
+
+import os
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from armstep._library import ONE
+from armstep.arms import FARTHEST, TWIST, Arms, Decision, Decisions, numbers
+from armstep.errors import InputError
+from armstep.tables import Path, Tables
+
+KINDS = ("dq", "twist", "position")
+"""Arguments that are requests, in the order of their codes from 1 on."""
+
+
+Reason = IntEnum(
+    "Reason",
+    [
+        "NONE",
+        "NO_REQUEST",
+        "TIMED_OUT",
+        "NOT_FINITE",
+        "HALTED",
+        "Q_NOT_FINITE",
+        "RESYNCHRONISED",
+        "CUT",
+        "PERIOD_EXCEEDED",
+        "SINGULAR",
+        "UNKNOWN_KIND",
+        "PERIOD_REFUSED",
+        "PLACE_NOT_FINITE",
+    ],
+    start=0,
+)
+"""Reasons, other than limits, for a command that differs from the request."""
+
+
+class Margin(NamedTuple):
+    """Distances to what the shield keeps away from.
+
+    Attributes:
+        joint: Least distance of a joint from its position limits [rad].
+        distance: Distance of the nearest pair less the least one [m]; inf if none is watched.
+    """
+
+    joint: Any
+    distance: Any
+
+
+class ShieldCommand(Decision):
+    """Command of one step of a shield."""
+
+    @property
+    def reason(self) -> Reason:
+        """The first reason beside limits for another command than the request."""
+        return Reason(self.result)
+
+    @property
+    def margin(self) -> Margin:
+        """Distances at the joint positions that the command starts from."""
+        scratch = np.empty(self.tables.scratch)
+        joint, distance = np.empty((2, 1))
+        given = (self.memory.ctypes, scratch.ctypes, joint.ctypes, distance.ctypes)
+        ONE.armstep_margin(self.tables.arm, *given)
+        return Margin(joint.item(), distance.item())
+
+    @property
+    def stopping_time(self) -> float:
+        """Time of the motion to rest from the command [s]."""
+        scratch = np.empty(self.tables.scratch).ctypes
+        return float(ONE.armstep_stopping_time(self.tables.arm, self.memory.ctypes, scratch))
+
+
+class _Requests(Arms[ShieldCommand]):
+    """What a shield and many have in common."""
+
+    _kind = "shield"
+    _decision = ShieldCommand
+
+    def _request(self, *values: Any, read: Any = numbers) -> tuple[int, Any]:
+        """Return code and numbers of the one request that is given, or 0 and None."""
+        given = [k for k, value in enumerate(values) if value is not None]
+        if not given:
+            return 0, None
+        if len(given) > 1:
+            raise InputError(f"pass exactly one of {', '.join(KINDS)}")
+        name = KINDS[given[0]]
+        shape = (*self._many, TWIST) if name == "twist" else self._shape
+        return 1 + given[0], read(name, values[given[0]], shape)
+
+
+class Shield(_Requests):
+    """Shield of one arm."""
+
+    def __init__(self, tables: Path | Tables, own: Path | None = None) -> None:
+        """Begin, with the arm at rest where it is measured first.
+
+        Args:
+            tables: File that ``iiwa_dnn.export.tables`` wrote, or what `load_tables` read.
+            own: Library of the parts of a user's own, if the arm has such.
+
+        Raises:
+            TablesError: The tables cannot be read, or are those of a controller.
+        """
+        super().__init__(tables, None, 1, own)
+
+    def step(
+        self,
+        q: ArrayLike | None,
+        dq: ArrayLike | None = None,
+        *,
+        twist: ArrayLike | None = None,
+        position: ArrayLike | None = None,
+        obstacles: ArrayLike | None = None,
+        dt: float | None = None,
+        elapsed: float | None = None,
+    ) -> ShieldCommand:
+        """Compute the command that is closest to a request.
+
+        Without a request the last one counts, until it is too old.
+
+        Args:
+            q: Measured joint positions [rad], (n,); None: they could not be read; the arm brakes.
+            dq: Joint velocity that is requested [rad/s], (n,).
+            twist: Or linear [m/s] and angular [rad/s] velocity of the frame along the base's axes.
+            position: Or joint positions to reach [rad], (n,).
+            obstacles: Where the centres of the obstacles are [m], (k, 3); None: where they were.
+            dt: Period for which this command will be held [s].
+            elapsed: Time since the last step [s].
+
+        Raises:
+            InputError: An argument has a wrong shape, `q` is not finite, there are several
+                requests, or a period is wrong; nothing is changed.
+        """
+        joints = np.nan if q is None else numbers("q", q, self._shape, FARTHEST)
+        request = self._request(dq, twist, position)
+        periods = self._periods(dt, elapsed)
+        with self._lock:
+            if obstacles is not None:
+                self.place(obstacles)
+            self._take(joints, *request, periods)
+            return self._last()
+
+    def reset(self, q: ArrayLike | None = None) -> None:  # type: ignore[override]
+        """Stand at joint positions q (n,) [rad]; None: where the arm is measured next."""
+        super().reset(None, q)
+
+    def send(self, dq: ArrayLike, dt: float | None = None) -> None:
+        """Count a velocity dq (n,) [rad/s] as sent for a period [s], in place of a command."""
+        self._send(dq, self._periods(self.dt if dt is None else dt, None)[0], 1.0)
+
+
+class Shields(_Requests):
+    """Shields of N arms, whose steps are one call; each is answered as by a `Shield`."""
+
+    def __init__(
+        self,
+        tables: Path | Tables,
+        count: int,
+        threads: int | None = None,
+        own: Path | None = None,
+    ) -> None:
+        """Begin, with all arms at rest where they are measured first.
+
+        Args:
+            tables: File that ``iiwa_dnn.export.tables`` wrote, or what `load_tables` read.
+            count: Number of arms, N.
+            threads: Threads of a step; None: as many as there are processors.
+            own: Library of the parts of a user's own, if the arm has such.
+
+        Raises:
+            TablesError: The tables cannot be read, or are those of a controller.
+        """
+        super().__init__(tables, count, int(threads or os.cpu_count() or 1), own)
+
+    def step(
+        self,
+        q: ArrayLike,
+        dq: ArrayLike | None = None,
+        *,
+        twist: ArrayLike | None = None,
+        position: ArrayLike | None = None,
+        given: ArrayLike | None = None,
+        obstacles: ArrayLike | None = None,
+        dt: float | None = None,
+        elapsed: float | None = None,
+    ) -> Decisions:
+        """Compute the commands that are closest to requests, arrays (N, n) or (N, 6).
+
+        An arm whose request is not finite, or whose joint positions are not, brakes.
+
+        Args:
+            q: Measured joint positions [rad], (N, n).
+            dq: Joint velocities that are requested [rad/s], (N, n).
+            twist: Or twists of the frame, (N, 6).
+            position: Or joint positions to reach [rad], (N, n).
+            given: Whether each arm has a new request, (N,); None: all have.
+            obstacles: Where the obstacles' centres are [m], (k, 3) or (N, k, 3).
+            dt: Period for which the commands will be held [s].
+            elapsed: Time since the last step [s].
+
+        Raises:
+            InputError: An array has a wrong shape, or a period is wrong; no arm has taken a step.
+        """
+        joints = numbers("q", q, self._shape)
+        request = self._request(dq, twist, position)
+        periods = self._periods(dt, elapsed)
+        mask = self._mask("given", given)
+        with self._lock:
+            if obstacles is not None:
+                self.place(obstacles)
+            self._buffers.given[...] = mask
+            self._take(joints, *request, periods)
+            return self._all()
+
+    def margin(self, i: int | None = None) -> Margin:
+        """Return the distances of arm i at the positions that its last command starts from.
+
+        If i is None, those of all arms, as arrays (N,).
+        """
+        if i is not None:
+            return self._last(i).margin
+        return Margin(*np.array([self.margin(k) for k in range(self.count)]).T)
+
+    def stopping_time(self, i: int) -> float:
+        """Return the time of arm i's motion to rest from its last command [s]."""
+        return self._last(i).stopping_time

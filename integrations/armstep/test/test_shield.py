@@ -1,0 +1,223 @@
+"""A shield of armstep: the commands of `Shields`, from a file of tables."""
+
+import copy
+import functools
+import multiprocessing
+import pickle
+import threading
+from types import SimpleNamespace
+from typing import Any
+
+import armstep
+import numpy as np
+import pytest
+
+from iiwa_dnn import Shield, Shields, Sphere, export, load_robot
+
+DT = 1e-3
+LONGEST = 3e-3
+SMOOTH = load_robot("iiwa7").with_limits(acceleration=10.0, jerk=500.0)
+START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
+BALL = Sphere([0.36, 0.16, 0.64], 0.05)
+SETTINGS: dict[str, Any] = {
+    "dt": DT,
+    "obstacles": [BALL],
+    "timeout": 0.02,
+    "longest_period": LONGEST,
+    "delay": 4.3e-3,
+}
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """Classes that begin with the tables of one shield."""
+    path = tmp_path_factory.mktemp("tables") / "a_shield.json"
+    export.tables(Shield(SMOOTH, **SETTINGS), path, q0=START)
+    kinds = {
+        kind.__name__: functools.partial(kind, path) for kind in (armstep.Shield, armstep.Shields)
+    }
+    return SimpleNamespace(**kinds)
+
+
+def tiled(own: dict[str, np.ndarray], count: int) -> dict[str, np.ndarray]:
+    return {name: np.tile(value, (count, 1)) for name, value in own.items()}
+
+
+def test_each_kind_of_request_has_the_bits_of_shields(package: Any) -> None:
+    random = np.random.default_rng(0)
+    here = Shields(SMOOTH, 1, **SETTINGS)
+    there = package.Shield()
+    many = package.Shields(65, threads=2)
+    q = START.copy()
+    seen = set()
+    for k in range(1200):
+        if k % 30 == 0:
+            kind = ["dq", "twist", "position"][k // 30 % 3]
+            own = {kind: random.standard_normal(6 if kind == "twist" else 7)}
+            if kind == "position":
+                own = {kind: q + 0.3 * own[kind]}
+        told: dict[str, float] = [{}, {"dt": 2.0 * DT}, {"elapsed": 0.7 * DT}][k % 3]
+        given = own if k % 120 < 60 else {}
+        expected = here.step(q[np.newaxis], **tiled(given, 1), **told)
+        found = there.step(q, **given, **told)
+        batch = many.step(np.tile(q, (65, 1)), **tiled(given, 65), **told)
+        assert found.dq.tobytes() == expected.dq[0].tobytes()
+        assert found.next_q.tobytes() == expected.next_q[0].tobytes()
+        assert (found.clipped, found.reason) == (expected.clipped[0], expected.reason[0])
+        assert batch.dq.tobytes() == 65 * found.dq.tobytes()
+        assert found.active_limits == expected.active_limits(0)
+        assert found.margin == here.margin(0)
+        assert found.stopping_time == here.stopping_time(0)
+        seen.update(found.active_limits)
+        q = found.next_q + (0.05 if k == 500 else 0.0)
+    assert len(seen) > 15
+
+
+def test_halt_reset_and_send(package: Any) -> None:
+    shield = package.Shield()
+    first = [shield.step(START, dq=np.full(7, 0.2)).dq for _ in range(50)]
+    shield.halt()
+    for _ in range(300):
+        command = shield.step(START, dq=np.full(7, 0.2))
+    assert not command.dq.any()
+    assert command.active_limits[0] == "halted"
+    shield.reset()
+    again = [shield.step(START, dq=np.full(7, 0.2)).dq for _ in range(50)]
+    np.testing.assert_array_equal(first, again)
+    shield.reset(START)
+    assert shield.step(START + 0.01, dq=np.zeros(7), dt=DT).next_q == pytest.approx(START)
+    # Somebody else sends what the shield would have: the next command is the same.
+    other = package.Shield()
+    shield.reset()
+    shield.step(START, dq=np.full(7, 0.2))
+    other.step(START, dq=np.full(7, 0.2))
+    sent = shield.step(START).dq
+    other.send(sent)
+    assert shield.step(START).dq.tobytes() == other.step(START).dq.tobytes()
+
+
+def test_obstacles_are_where_they_are_said_to_be(package: Any) -> None:
+    far = package.Shield().step(START, obstacles=[[3.0, 3.0, 3.0]])
+    beside = [[0.36, 0.18, 0.64]]  # nearer than the links of the wrist are to each other
+    near = package.Shield().step(START, obstacles=beside)
+    assert far.margin.distance > near.margin.distance
+    places = np.array([[[3.0, 3.0, 3.0]], beside])
+    shields = package.Shields(2)
+    shields.step(np.tile(START, (2, 1)), obstacles=places)
+    assert [shields.margin(i) for i in range(2)] == [far.margin, near.margin]
+
+
+def test_other_types_of_numbers_are_computed_in_float64(package: Any) -> None:
+    wide = np.zeros((7, 3), np.float32)
+    wide[:, 1] = START
+    command = package.Shield().step(wide[:, 1], [0] * 7)
+    same = package.Shield().step(START.astype(np.float32).astype(float), np.zeros(7))
+    assert command.dq.dtype == np.float64
+    assert command.next_q.tobytes() == same.next_q.tobytes()
+
+
+@pytest.mark.parametrize(
+    "own",
+    [
+        {"q": START[:6]},
+        {"q": np.full(7, np.nan)},
+        {"q": np.full(7, 1e300)},
+        {"dq": np.zeros((1, 7))},
+        {"dq": ["a"] * 7},
+        {"dq": START, "twist": np.zeros(6)},
+        {"dt": 0.0},
+        {"dt": DT, "elapsed": DT},
+        {"obstacles": [[0.0, 0.0, np.inf]]},
+        {"obstacles": np.zeros((2, 3))},
+    ],
+)
+def test_wrong_input_is_an_error_and_changes_nothing(package: Any, own: dict[str, Any]) -> None:
+    shield = package.Shield()
+    shield.step(START, dq=np.ones(7))
+    before = shield.save().tobytes()
+    with pytest.raises(armstep.InputError, match=r"must|pass"):
+        shield.step(**{"q": START, **own})
+    assert shield.save().tobytes() == before
+
+
+def _run(shield: Any) -> bytes:
+    q = START
+    for _ in range(30):
+        command = shield.step(q, twist=np.array([0.0, 0.1, 0.1, 0.0, 0.2, 0.0]))
+        q = command.next_q
+    return bytes(command.dq.tobytes())
+
+
+def test_copies_pickles_forks_and_threads_carry_the_state(package: Any) -> None:
+    shield = package.Shield()
+    _run(shield)
+    others = [copy.copy(shield), copy.deepcopy(shield), pickle.loads(pickle.dumps(shield))]
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        forked = pool.apply(_run, [shield])
+    expected = _run(shield)
+    assert [*map(_run, others), forked] == [expected] * 4
+    errors: list[bool] = []
+
+    def ask() -> None:
+        errors.extend(bool(np.abs(shield.step(START).dq).max() > 10.0) for _ in range(200))
+
+    threads = [threading.Thread(target=ask) for _ in range(4)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert len(errors) == 800
+    assert not any(errors)
+
+
+def test_it_says_what_it_is(package: Any) -> None:
+    shield = package.Shield()
+    own = shield.tables
+    assert own.joint_names == tuple(SMOOTH.joint_names)
+    assert own.frame_names == (SMOOTH.tip,)
+    np.testing.assert_array_equal(own.limits["jerk"], SMOOTH.dddq_max)
+    assert (shield.dt, own.longest_period, own.delay) == (DT, LONGEST, SETTINGS["delay"])
+    assert (own.name, own.kind, own.obstacle_names) == ("a_shield", "shield", ("Sphere 1",))
+    command = shield.step(START, dq=np.ones(7))
+    assert command.active_limits
+    assert command.active_limits[0] in repr(command)
+    assert command.reason is armstep.Reason.NONE
+    with pytest.raises(armstep.InputError, match="dt: is fixed"):
+        shield.dt = 0.1
+    with pytest.raises(ValueError, match="read-only"):
+        own.limits["upper"][0] = 9.0
+
+
+def test_a_saved_state_goes_on_as_if_nothing_was(package: Any) -> None:
+    shield, shields = package.Shield(), package.Shields(3)
+    _run(shield)
+    saved = shield.save()
+    expected = _run(shield)
+    shield.load(saved)
+    assert _run(shield) == expected
+    many = np.repeat(saved, 3, axis=0)
+    shields.load(many)
+    np.testing.assert_array_equal(shields.save(), many)
+    bent = many.copy()
+    bent[2, 40] = np.nextafter(bent[2, 40], 1.0)
+    with pytest.raises(armstep.TablesError, match="saved: is damaged, or of other tables"):
+        shields.load(bent)
+    np.testing.assert_array_equal(shields.save(), many)
+
+
+def test_rows_of_masks_are_those_of_their_arms(package: Any) -> None:
+    shields, alone = package.Shields(4), package.Shield()
+    mask = np.array([False, False, True, False])
+    q = START + np.arange(4)[:, np.newaxis] * 1e-3
+    dq = np.full((4, 7), 0.2)
+    shields.step(START + 0.0 * q, dq)
+    shields.halt(mask)
+    assert (shields.step(START + 0.0 * q, dq).reason == mask * armstep.Reason.HALTED).all()
+    shields.reset(mask, q)
+    alone.reset(q[2])
+    expected = alone.step(q[2], dq[2]).next_q
+    assert shields.step(q, dq).next_q[2].tobytes() == expected.tobytes()
+    with pytest.raises(armstep.InputError, match=r"mask: must be booleans of shape \(4,\)"):
+        shields.halt(mask[:3])
+    with pytest.raises(armstep.InputError, match="count: must be at least 1"):
+        package.Shields(0)
