@@ -144,9 +144,9 @@ def make_scene() -> dict[str, Any]:
     moving = [c for c in collision_model(paper_robot()).capsules if not c.link.endswith("_0")]
     return {
         "links": [capsule.link for capsule in moving],
-        "a": [capsule.a for capsule in moving],
-        "b": [capsule.b for capsule in moving],
-        "radii": [capsule.radius for capsule in moving],
+        "a": [capsule.shape.a for capsule in moving],
+        "b": [capsule.shape.b for capsule in moving],
+        "radii": [capsule.shape.radius for capsule in moving],
         "balls": BALLS,
         "ball_radii": RADII,
         "distance": DISTANCE,

@@ -108,7 +108,7 @@ def scene_of(case: hostile.Case) -> dict[str, Any]:
     model = case.robot.model
     capsules = collision_model(case.robot).capsules
     frames = [model.frames[case.robot.frame_id(each.link)] for each in capsules]
-    moved = [(c, f) for c, f in zip(capsules, frames, strict=True) if f.parentJoint]
+    moved = [(c.shape, f) for c, f in zip(capsules, frames, strict=True) if f.parentJoint]
     axes = [np.eye(3)["XYZ".index(joint.shortname()[-1])] for joint in model.joints[1:]]
     scene: dict[str, Any] = {
         "places": [place.translation for place in model.jointPlacements[1:]],

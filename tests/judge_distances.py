@@ -41,8 +41,8 @@ class Judge:
             shape, place = _coal(obstacle)
             self._rest.append(place)
             geometry.addGeometryObject(pin.GeometryObject(str(number), 0, place, shape))
-            for k in range(len(model.capsules)):
-                if geometry.geometryObjects[k].parentJoint:
+            for k, body in enumerate(model.bodies):
+                if body in model.capsules and geometry.geometryObjects[k].parentJoint:
                     geometry.addCollisionPair(pin.CollisionPair(self._first + number, k))
         self._data = robot.model.createData()
         self._found = pin.GeometryData(geometry)

@@ -175,8 +175,8 @@ def shapes(robot: iiwa_dnn.Robot) -> list[dict[str, Any]]:
 def capsules(robot: iiwa_dnn.Robot) -> list[dict[str, Any]]:
     """List the capsules that the limits know, in the frames of their joints."""
     listed = []
-    for each in collision_model(robot).capsules:
-        frame = robot.model.frames[robot.frame_id(each.link)]
+    for link, each in collision_model(robot).capsules:
+        frame = robot.model.frames[robot.frame_id(link)]
         ends = [frame.placement.act(np.array(end)).round(6).tolist() for end in (each.a, each.b)]
         listed.append({"joint": frame.parentJoint, "ends": ends, "radius": each.radius})
     return listed

@@ -132,7 +132,7 @@ def _body_warnings(robot: Robot, limits: Sequence[Limit]) -> Iterator[str]:
         yield from (tool.assumption for tool in robot.tools if tool.assumption)
         unwatched_pairs: Sequence[tuple[str, str, str]] = ()
         with suppress(IiwaDnnError):  # a step raises it, with its reason
-            unwatched_pairs = collision_model(robot).unwatched
+            unwatched_pairs = collision_model(robot).left_out
             if pairs := part.unguarded(robot):
                 yield unguarded(pairs)
         for first, second, reason in unwatched_pairs:

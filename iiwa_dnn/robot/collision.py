@@ -11,14 +11,14 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field, replace
-from functools import lru_cache
-from itertools import chain, combinations, product
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+from itertools import chain, combinations, compress, product
 from pathlib import Path
 from time import process_time
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 from xml.etree import ElementTree
 
 import coal
@@ -30,8 +30,8 @@ from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError
 from iiwa_dnn.files import one_line, read_toml, write_text
 from iiwa_dnn.robot.arms import ARMS, robots_folder
 from iiwa_dnn.robot.fitting import Body, fit_bodies
-from iiwa_dnn.robot.meetings import CLEARANCE, MEETS, SAMPLES, Meetings, Watched, geometry_of
-from iiwa_dnn.robot.obstacles import PlacedBox, box_around, extents, turned
+from iiwa_dnn.robot.meetings import CLEARANCE, MEETS, SAMPLES, Meetings, Space, Watched, geometry_of
+from iiwa_dnn.robot.obstacles import Box, Capsule
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.shapes import read_shapes, source_of, tool_shapes
 
@@ -52,78 +52,43 @@ TOO_NEAR = "near in every posture"
 _STILL = 1e-6
 """Change of a distance over those postures up to which no joint moves a pair [m]."""
 
-
-@dataclass(frozen=True)
-class LinkCapsule(checks.Checked):
-    """A capsule fixed to a link; a sphere where both ends are equal.
-
-    Attributes:
-        link: Name of the link's frame.
-        a: One end of its axis in that frame [m], (3,).
-        b: The other end [m], (3,).
-        radius: Radius [m], above 0.
-    """
-
-    _checks: ClassVar[checks.Checks] = {
-        "a": checks.vector3,
-        "b": checks.vector3,
-        "radius": checks.positive,
-    }
-    link: str
-    a: Sequence[float]
-    b: Sequence[float]
-    radius: float
-
-    @property
-    def box(self) -> PlacedBox:
-        """Its segment as a box."""
-        return box_around(self.a, self.b)
+_made: dict[tuple[object, ...], CollisionModel] = {}
+"""Models that were made, by all that they depend on."""
 
 
-@dataclass(frozen=True)
-class LinkBox(checks.Checked):
-    """A box fixed to a link.
+class LinkBody(NamedTuple):
+    """A capsule or a box fixed to a link.
 
     Attributes:
         link: Name of the link's frame.
-        center: Its middle in that frame [m], (3,).
-        half_extents: Halves of its edges [m], (3,), above 0.
-        rotation: Its axes in that frame as columns, (3, 3).
+        shape: The shape in that frame; a capsule is a sphere where both ends are equal.
     """
 
-    _checks: ClassVar[checks.Checks] = {
-        "center": checks.vector3,
-        "half_extents": extents,
-        "rotation": turned,
-    }
     link: str
-    center: Sequence[float]
-    half_extents: Sequence[float]
-    rotation: Sequence[Sequence[float]]
-    radius: ClassVar[float] = 0.0
-
-    @property
-    def box(self) -> PlacedBox:
-        """The box itself."""
-        return PlacedBox(*map(np.array, (self.center, self.rotation, self.half_extents)))
+    shape: Capsule | Box
 
 
-def _reasons(argument: str, value: Iterable[Any]) -> tuple[tuple[str, str, str], ...]:
-    """Return pairs of links with their reasons as tuples; refuse any other value."""
+def _body_of(kind: type[Capsule | Box], *, link: str, **parameters: Any) -> LinkBody:
+    """Return a body out of its table in a file."""
+    return LinkBody(link, kind(**parameters))
+
+
+def _entries(
+    argument: str, value: Iterable[Any], make: Callable[..., tuple[Any, ...]], words: str
+) -> tuple[Any, ...]:
+    """Make a tuple of the entries of a list; refuse any other value in words for an entry."""
     try:
-        return tuple((str(a), str(b), str(why)) for a, b, why in value)
+        return tuple(make(*entry) for entry in value)
     except (TypeError, ValueError) as error:
-        problem = "must have two links and a reason in each entry"
-        raise InvalidInputError(argument, problem, value) from error
+        raise InvalidInputError(argument, f"must have {words} in each entry", value) from error
 
 
-def _watched(argument: str, value: Iterable[Any]) -> tuple[Watched, ...]:
-    """Return numbers of bodies, with overlaps, as pairs; refuse any other value."""
-    try:
-        return tuple(Watched(int(i), int(k), float(overlap)) for i, k, overlap in value)
-    except (TypeError, ValueError) as error:
-        problem = "must have two numbers of bodies and an overlap in each entry"
-        raise InvalidInputError(argument, problem, value) from error
+def _left_out(a: object, b: object, reason: object) -> tuple[str, str, str]:
+    return str(a), str(b), str(reason)
+
+
+def _watched(first: Any, second: Any, overlap: Any) -> Watched:
+    return Watched(int(first), int(second), float(overlap))
 
 
 @dataclass(frozen=True)
@@ -131,36 +96,27 @@ class CollisionModel(checks.Checked):
     """Bodies of a robot's links, and the pairs that are kept apart.
 
     Attributes:
-        capsules: The capsules.
-        left_out: Pairs of links that are left out, or not watched in whole, each with the reason:
-            ``"adjacent"``, ``"never"``, ``"always"``, one that begins with `MEETS`, or a text of
-            one's own.
-        boxes: Boxes that stand for a link as the first body of a pair.
-        watched: The pairs that are kept apart, by the numbers of their bodies: capsules first, then
-            boxes. None: all pairs of capsules but those that are left out.
-        too_near: Pairs of a tool's capsule and a link's, by their indices, that are within
-            `CLEARANCE` in every posture, as at the wrist, and are not kept apart; each with the
-            reason: ``"no joint moves it"`` or `TOO_NEAR`.
+        bodies: Capsules of the links, then boxes that stand for a link as the first body of a pair,
+            then capsules of tools.
+        left_out: Pairs of links or tools that are left out, or not watched in whole, each with the
+            reason: ``"adjacent"``, ``"never"``, ``"always"``, one that begins with `MEETS`,
+            `TOO_NEAR` or ``"no joint moves it"`` of a tool, or a text of one's own.
+        watched: The pairs that are kept apart, by the numbers of their bodies. None: all pairs of
+            capsules but those that are left out.
     """
 
-    _checks: ClassVar[checks.Checks] = {"left_out": _reasons, "watched": _watched}
-    capsules: tuple[LinkCapsule, ...]
+    _checks: ClassVar[checks.Checks] = {
+        "left_out": partial(_entries, make=_left_out, words="two links and a reason"),
+        "watched": partial(_entries, make=_watched, words="two numbers of bodies and an overlap"),
+    }
+    bodies: tuple[LinkBody, ...]
     left_out: tuple[tuple[str, str, str], ...]
-    boxes: tuple[LinkBox, ...] = ()
     watched: tuple[Watched, ...] | None = None
-    too_near: tuple[tuple[int, int, str], ...] = ()
 
     @property
-    def unwatched(self) -> tuple[tuple[str, str, str], ...]:
-        """Pairs of links and tools that are not kept apart, each with the reason."""
-        names = [capsule.link for capsule in self.capsules]
-        near = ((names[i], names[k], reason) for i, k, reason in self.too_near)
-        return (*self.left_out, *near)
-
-    @property
-    def bodies(self) -> tuple[LinkCapsule | LinkBox, ...]:
-        """The capsules, then the boxes."""
-        return (*self.capsules, *self.boxes)
+    def capsules(self) -> tuple[LinkBody, ...]:
+        """The capsules."""
+        return tuple(each for each in self.bodies if isinstance(each.shape, Capsule))
 
     @property
     def unguarded(self) -> list[tuple[str, str]]:
@@ -178,10 +134,10 @@ class CollisionModel(checks.Checked):
         left_out = {frozenset(pair[:2]) for pair in self.left_out}
         for link in chain.from_iterable(left_out):
             robot.frame_id(link)
-        outward = sorted(range(len(self.capsules)), key=joints.__getitem__)
+        capsules = [k for k, each in enumerate(self.bodies) if isinstance(each.shape, Capsule)]
         every = [
             Watched(i, k)
-            for i, k in combinations(outward, 2)
+            for i, k in combinations(sorted(capsules, key=joints.__getitem__), 2)
             if frozenset((links[i], links[k])) not in left_out
         ]
         pairs = every if self.watched is None else self.watched
@@ -193,9 +149,11 @@ class CollisionModel(checks.Checked):
         for name, entries in (("left_out", self.left_out), ("watched", self.watched)):
             if entries is not None:
                 lines += [f"{name} = [", *(f"  {json.dumps(each)}," for each in entries), "]"]
-        for body in self.bodies:
-            lines += ["", "[[capsule]]" if isinstance(body, LinkCapsule) else "[[box]]"]
-            lines += [f"{key} = {json.dumps(value)}" for key, value in asdict(body).items()]
+        for link, shape in self.bodies:
+            values = {"link": link} | shape.settings()
+            lines += ["", f"[[{values.pop('shape').lower()}]]"]
+            values.pop("velocity")
+            lines += [f"{key} = {json.dumps(value)}" for key, value in values.items()]
         write_text(path, "\n".join([*lines, ""]))
 
     @classmethod
@@ -207,12 +165,11 @@ class CollisionModel(checks.Checked):
         """
         tables = read_toml(path)
         try:
-            capsules = tuple(LinkCapsule(**entry) for entry in tables["capsule"])
-            boxes = tuple(LinkBox(**entry) for entry in tables.get("box", ()))
-            watched = tables.get("watched")
-            return cls(capsules, tables["left_out"], boxes=boxes, watched=watched)
+            bodies = [_body_of(Capsule, **entry) for entry in tables["capsule"]]
+            bodies += [_body_of(Box, **entry) for entry in tables.get("box", ())]
+            return cls(tuple(bodies), tables["left_out"], tables.get("watched"))
         except (KeyError, ValueError, TypeError) as error:
-            problem = one_line(error).rpartition("__init__() ")[2]  # of Python's own message
+            problem = one_line(error).rpartition("() ")[2]  # of Python's own message
             raise FileError(path, f"no collision geometry: {problem}") from error
 
 
@@ -237,36 +194,23 @@ def collision_model(robot: Robot) -> CollisionModel:
         InvalidInputError, FileError: As of `link_model`.
     """
     links = link_model(robot)
-    tools = [_capsule(*part) for shape in tool_shapes(robot) for part in _bodies(robot, [shape])[0]]
-    if not tools:
+    parts = [part for shape in tool_shapes(robot) for part in _fitted(robot, [shape])]
+    if not parts:
         return links
-    first = len(links.capsules)
-    model = replace(links, capsules=(*links.capsules, *tools), watched=None)
-    of_tools = [pair for pair in model.pairs(robot) if max(pair[:2]) >= first]
-    near = _too_near(robot, coal_geometry(robot, model, of_tools))
-    barred = {pair[:2] for pair in near}
-    watched = [
-        # The tools come before the boxes.
-        each._replace(first=each.first + len(tools) * (each.first >= first))
-        for each in links.pairs(robot)
+    bodies = (*links.bodies, *(_body(*part) for part in parts if part[1].radius))
+    model = replace(links, bodies=bodies, watched=None)
+    pairs = [pair for pair in model.pairs(robot) if max(pair[:2]) >= len(links.bodies)]
+    space = Space(robot, coal_geometry(robot, model, pairs))
+    draws = robot.draw(np.random.default_rng(0), TOOL_SAMPLES)
+    apart = np.array([space.distances(range(len(pairs)), q) for q in draws])
+    is_near = apart.max(axis=0) <= CLEARANCE
+    reasons = np.where(np.ptp(apart, axis=0) > _STILL, TOO_NEAR, "no joint moves it").tolist()
+    near = [
+        (bodies[pairs[at].first].link, bodies[pairs[at].second].link, reasons[at])
+        for at in np.flatnonzero(is_near)
     ]
-    watched += [pair for pair in of_tools if pair[:2] not in barred]
-    return replace(model, watched=tuple(watched), too_near=near)
-
-
-def _too_near(robot: Robot, geometry: pin.GeometryModel) -> tuple[tuple[int, int, str], ...]:
-    """List the pairs of a geometry that are within `CLEARANCE` in every posture, with reasons."""
-    data = robot.model.createData()
-    scratch = pin.GeometryData(geometry)
-    distances = []
-    for q in robot.draw(np.random.default_rng(0), TOOL_SAMPLES):
-        pin.computeDistances(robot.model, data, geometry, scratch, q)
-        distances.append([found.min_distance for found in scratch.distanceResults])
-    apart = np.max(distances, axis=0)
-    moved = apart - np.min(distances, axis=0) > _STILL
-    reasons = np.where(moved, TOO_NEAR, "no joint moves it").tolist()
-    pairs = [(pair.first, pair.second) for pair in geometry.collisionPairs]
-    return tuple((*pairs[k], reasons[k]) for k in np.flatnonzero(apart <= CLEARANCE))
+    watched = (*links.pairs(robot), *compress(pairs, ~is_near))
+    return replace(model, left_out=(*links.left_out, *near), watched=watched)
 
 
 @lru_cache(maxsize=32)
@@ -284,46 +228,17 @@ def link_model(robot: Robot) -> CollisionModel:
     if file.exists():
         return CollisionModel.load(file)
     flange = robot.tools[0].flange if robot.tools else robot.tip
-    bare = replace(robot, tip=flange, tools=())
     ranges = robot.limits[:2].tobytes()
-    return _made(_Arm(robot.path, robot.urdf, robot.locked, robot.q_locked, ranges, flange, bare))
-
-
-@dataclass(frozen=True)
-class _Arm:
-    """A robot without tools, equal to any other for which the same geometry is made.
-
-    Attributes:
-        path: The URDF file.
-        text: Its text.
-        locked: Names of the joints that are locked.
-        q_locked: Their positions [rad].
-        ranges: Bytes of the position limits.
-        tip: Name of the tip.
-        robot: The robot.
-    """
-
-    path: Path | None
-    text: str | None
-    locked: tuple[str, ...]
-    q_locked: tuple[float, ...]
-    ranges: bytes
-    tip: str
-    robot: Robot = field(compare=False)
-
-
-@lru_cache(maxsize=32)
-def _made(arm: _Arm) -> CollisionModel:
-    """Make the collision geometry of an arm, and warn if that takes long."""
-    robot = arm.robot
-    began = process_time()
-    model = make_collision_model(robot)
-    if (taken := process_time() - began) > LONG:
-        warn_caller(
-            f"capsules and pairs of {robot.name} took {taken:.1f} s; "
-            f"`iiwa-dnn collisions` keeps them beside {robot.path}"
-        )
-    return model
+    arm = (robot.path, robot.urdf, robot.locked, robot.q_locked, ranges, flange)
+    if arm not in _made:
+        began = process_time()
+        _made[arm] = make_collision_model(replace(robot, tip=flange, tools=()))
+        if (taken := process_time() - began) > LONG:
+            warn_caller(
+                f"capsules and pairs of {robot.name} took {taken:.1f} s; "
+                f"`iiwa-dnn collisions` keeps them beside {robot.path}"
+            )
+    return _made[arm]
 
 
 @lru_cache(maxsize=32)
@@ -374,40 +289,18 @@ def make_collision_model(
     """
     beside = source_of(robot)[0].with_suffix(".srdf")
     file = srdf or (beside if beside.exists() else None)
-    shapes = read_shapes(robot, pin.GeometryType.COLLISION).geometryObjects
-    return watch(robot, *_bodies(robot, shapes), samples, read_srdf(file) if file else {})
-
-
-def watch(
-    robot: Robot,
-    capsules: Sequence[Part],
-    boxes: Sequence[Part],
-    samples: int,
-    disabled: Mapping[frozenset[str], str],
-) -> CollisionModel:
-    """Search for the pairs of bodies that may meet.
-
-    Args:
-        robot: The robot.
-        capsules: Capsules around all links.
-        boxes: Boxes around some of them.
-        samples: Number of random postures.
-        disabled: Pairs of links that are not watched, with the reasons.
-    """
-    parts = [*capsules, *boxes]
+    parts = _fitted(robot, read_shapes(robot, pin.GeometryType.COLLISION).geometryObjects)
     left_out, pairs = _candidates(robot, parts)
     meetings = Meetings(robot, parts, pairs, samples)
-    watched, other = meetings.sort(meetings.near(), disabled)
+    watched, other = meetings.sort(read_srdf(file) if file else {})
     for each in watched:
         left_out.pop((parts[each.first][0], parts[each.second][0]), None)
-    reasons = tuple((*links, why) for links, why in {**left_out, **other}.items())
-    used = sorted({each.first for each in watched} - {*range(len(capsules))})
-    number = {old: len(capsules) + new for new, old in enumerate(used)}
+    first_ones = {each.first for each in watched}
+    used = [k for k, (_, body) in enumerate(parts) if body.radius or k in first_ones]
     return CollisionModel(
-        tuple(_capsule(*part) for part in capsules),
-        reasons,
-        boxes=tuple(_box(*parts[i]) for i in used),
-        watched=tuple(each._replace(first=number.get(each.first, each.first)) for each in watched),
+        tuple(_body(*parts[k]) for k in used),
+        tuple((*links, why) for links, why in {**left_out, **other}.items()),
+        tuple(each._replace(first=used.index(each.first)) for each in watched),
     )
 
 
@@ -434,44 +327,31 @@ def _candidates(
     return left_out, pairs
 
 
-def _bodies(robot: Robot, shapes: Iterable[pin.GeometryObject]) -> tuple[list[Part], list[Part]]:
-    """Fit capsules to the shapes of links and tools, and boxes where they are much smaller."""
+def _fitted(robot: Robot, shapes: Iterable[pin.GeometryObject]) -> list[Part]:
+    """Fit capsules to the shapes of links and tools; and boxes, the last ones, that pay."""
     of_links: dict[str, list[tuple[coal.CollisionGeometry, pin.SE3]]] = {}
     for shape in shapes:
         frame = robot.model.frames[shape.parentFrame]
         pose = frame.placement.actInv(shape.placement)
         of_links.setdefault(frame.name, []).append((shape.geometry, pose))
-    capsules: list[Part] = []
-    boxes: list[Part] = []
-    for link, own in of_links.items():
-        round_ones, flat_ones = fit_bodies(own)
-        boxes += [(link, each) for each in flat_ones]
-        capsules += [(link, each) for each in round_ones]
-    return capsules, boxes
+    parts = [(link, body) for link, own in of_links.items() for body in fit_bodies(own)]
+    return sorted(parts, key=lambda part: not part[1].radius)
 
 
-def _capsule(link: str, body: Body) -> LinkCapsule:
-    """Return the capsule of a part, with rounded lengths."""
-    a, b = np.round(body.ends, DIGITS).tolist()
-    return LinkCapsule(link, a, b, max(round(body.radius, DIGITS), 10.0**-DIGITS))
-
-
-def _box(link: str, body: Body) -> LinkBox:
-    """Return the box of a part, with rounded lengths."""
-    center, half = np.round([body.center, body.half_extents], DIGITS).tolist()
-    return LinkBox(link, center, half, body.rotation.tolist())
+def _body(link: str, body: Body) -> LinkBody:
+    """Return the body of a part, with rounded lengths."""
+    if body.radius:
+        a, b = np.round(body.ends, DIGITS).tolist()
+        return LinkBody(link, Capsule(a, b, max(round(body.radius, DIGITS), 10.0**-DIGITS)))
+    center, half = np.round([body.box.center, body.box.half_extents], DIGITS).tolist()
+    return LinkBody(link, Box(center, half, body.box.rotation.tolist()))
 
 
 def coal_geometry(
     robot: Robot, model: CollisionModel, pairs: Iterable[tuple[int, int, float]]
 ) -> pin.GeometryModel:
     """Make Pinocchio's geometry model of the bodies and of pairs of their indices."""
-    placed = []
-    for body in model.bodies:
-        center, rotation, half = body.box
-        long = 2.0 * half[2]
-        shape = coal.Capsule(body.radius, long) if body.radius else coal.Box(*2.0 * half)
-        placed.append((body.link, (shape, pin.SE3(rotation, center))))
+    placed = [(link, shape.box.grown(shape.thickness)) for link, shape in model.bodies]
     return geometry_of(robot, placed, [pair[:2] for pair in pairs])
 
 

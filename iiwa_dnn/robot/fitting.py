@@ -16,7 +16,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from iiwa_dnn.checks import Array
-from iiwa_dnn.robot.obstacles import box_around
+from iiwa_dnn.robot.obstacles import PlacedBox, box_around
 
 CUTS = 2
 """Times that a part is cut in two at most, one after another."""
@@ -44,7 +44,7 @@ _BALL = np.concatenate([_RIM * [y, y, 0.0] + [0.0, 0.0, x] for x, y, _ in _RIM[:
 """Corners of polygons and polyhedra around the unit circle and the unit ball."""
 
 
-class _Surface(NamedTuple):
+class Surface(NamedTuple):
     """Triangles.
 
     Attributes:
@@ -53,7 +53,7 @@ class _Surface(NamedTuple):
     """
 
     points: Array
-    faces: NDArray[np.int64]
+    faces: NDArray[np.int32]
 
     @property
     def used(self) -> Array:
@@ -62,7 +62,7 @@ class _Surface(NamedTuple):
         used[self.faces] = True
         return np.asarray(self.points[used])
 
-    def cut(self, axis: Array, at: Array) -> list[_Surface]:
+    def cut(self, axis: Array, at: Array) -> list[Surface]:
         """Cut the triangles by a plane through a point across an axis; return both sides."""
         heights = (self.points - at) @ axis
         high = heights[self.faces] > 0.0
@@ -85,51 +85,45 @@ class _Surface(NamedTuple):
             np.concatenate([self.faces[above == whole], tips[tip], rests[np.tile(~tip, 2)]])
             for whole, tip in ((3, single), (0, ~single))
         ]
-        return [_Surface(points, side) for side in sides if len(side)]
+        return [Surface(points, side) for side in sides if len(side)]
 
 
 class Body(NamedTuple):
     """A box grown by a radius around a part of a shape.
 
     Attributes:
-        center: Its middle [m], (3,).
-        rotation: Its axes as columns, (3, 3).
-        half_extents: Half of its edges [m], (3,); a capsule lies along the third axis.
+        box: The box; a capsule lies along its third axis.
         radius: Radius by which it is grown [m]; 0 of a box.
         corners: Corners of the convex hull of the part, or what is left of it without the radius
             of a ball or a capsule [m], (k, 3).
     """
 
-    center: Array
-    rotation: Array
-    half_extents: Array
+    box: PlacedBox
     radius: float
     corners: Array
 
     @property
     def volume(self) -> float:
         """Volume of a box or a capsule [m^3]."""
-        across = np.pi * self.radius**2 * (2.0 * self.half_extents[2] + 4.0 / 3.0 * self.radius)
-        return float(8.0 * self.half_extents.prod() + across)
+        half = self.box.half_extents
+        across = np.pi * self.radius**2 * (2.0 * half[2] + 4.0 / 3.0 * self.radius)
+        return float(8.0 * half.prod() + across)
 
     @property
     def size(self) -> float:
         """Radius of a capsule, or half of the second largest edge of a box [m]."""
-        return self.radius + float(np.sort(self.half_extents)[1])
+        return self.radius + float(np.sort(self.box.half_extents)[1])
 
     @property
     def ends(self) -> Array:
         """The ends of the segment of a capsule [m], (2, 3)."""
-        half = self.half_extents[2] * self.rotation[:, 2]
-        return np.array([self.center - half, self.center + half])
+        half = self.box.half_extents[2] * self.box.rotation[:, 2]
+        return np.array([self.box.center - half, self.box.center + half])
 
     @property
     def placed(self) -> tuple[coal.CollisionGeometry, pin.SE3]:
         """The body as a shape of coal's, and its pose."""
-        pose = pin.SE3(self.rotation, self.center)
-        if self.radius:
-            return coal.Capsule(self.radius, 2.0 * self.half_extents[2]), pose
-        return coal.Box(*2.0 * self.half_extents), pose
+        return self.box.grown(self.radius)
 
     @property
     def hull(self) -> tuple[coal.CollisionGeometry, pin.SE3]:
@@ -147,18 +141,18 @@ class Body(NamedTuple):
 
 def fit_bodies(
     shapes: Sequence[tuple[coal.CollisionGeometry, pin.SE3]],
-) -> tuple[list[Body], list[Body]]:
+) -> list[Body]:
     """Fit bodies around the shapes of a link, with their poses.
 
     One body holds all of them, unless several have much less volume.
 
     Returns:
-        Capsules that hold the link, and boxes that do with much less volume, if there are any.
+        Capsules that hold the link, then boxes that do with much less volume, if there are any.
     """
     capsules: list[Body] = []
     boxes: list[Body] = []
     for shape, pose in sorted(shapes, key=lambda each: isinstance(each[0], coal.Sphere)):
-        surface = _surface(shape, pose)
+        surface = surface_of(shape, pose)
         exact = _exact_capsule(shape, pose)
         if exact:
             _add(capsules, exact)
@@ -170,7 +164,8 @@ def fit_bodies(
         capsules = _fewer(capsules, _smallest(_capsule(corners)))
         boxes = _fewer(boxes, _box(corners))
     is_thin = max(each.radius for each in capsules) < FINE
-    return capsules, [] if is_thin or _volume(boxes) > WORTH * _volume(capsules) else boxes
+    pays = not is_thin and _volume(boxes) <= WORTH * _volume(capsules)
+    return capsules + boxes * pays
 
 
 def _fewer(bodies: list[Body], whole: Body) -> list[Body]:
@@ -200,17 +195,18 @@ def _exact_capsule(shape: coal.CollisionGeometry, pose: pin.SE3) -> Body | None:
     is_long = isinstance(shape, coal.Cylinder) and half[2] >= shape.radius
     if not is_long and not isinstance(shape, coal.Sphere | coal.Capsule):
         return None
-    corners = _surface(shape, pose).points
-    return Body(pose.translation, pose.rotation, half, float(shape.radius), corners)
+    corners = surface_of(shape, pose).points
+    box = PlacedBox(pose.translation, pose.rotation, half)
+    return Body(box, float(shape.radius), corners)
 
 
 def _holds(capsule: Body, ball: Body) -> bool:
     """Test whether a round end of a capsule encloses a ball, to 0.03 mm."""
-    away = np.linalg.norm(capsule.ends - ball.center, axis=1).min()
-    return not ball.half_extents.any() and bool(away + ball.radius <= capsule.radius + 3e-5)
+    away = np.linalg.norm(capsule.ends - ball.box.center, axis=1).min()
+    return not ball.box.half_extents.any() and bool(away + ball.radius <= capsule.radius + 3e-5)
 
 
-def _surface(shape: coal.CollisionGeometry, pose: pin.SE3) -> _Surface:
+def surface_of(shape: coal.CollisionGeometry, pose: pin.SE3) -> Surface:
     """Return the triangles of a mesh, or the lines between all corners of a solid.
 
     A line is a triangle with an end twice. A polyhedron around it stands for a round solid.
@@ -221,7 +217,8 @@ def _surface(shape: coal.CollisionGeometry, pose: pin.SE3) -> _Surface:
     else:
         points = _corners(_solid_corners(shape))
         faces = [(i, k, k) for i, k in combinations(range(len(points)), 2)]
-    return _Surface(points @ pose.rotation.T + pose.translation, np.array(faces))
+    points = points @ pose.rotation.T + pose.translation
+    return Surface(points, np.array(faces, dtype=np.int32))
 
 
 def _solid_corners(shape: coal.CollisionGeometry) -> Array:
@@ -236,7 +233,7 @@ def _solid_corners(shape: coal.CollisionGeometry) -> Array:
     return np.concatenate([shape.radius * _RIM - half, shape.radius * _RIM + half])
 
 
-def _cover(surface: _Surface, cuts: int, fit: Callable[[Array], Body]) -> list[Body]:
+def _cover(surface: Surface, cuts: int, fit: Callable[[Array], Body]) -> list[Body]:
     """Cover triangles with bodies, each of which may be cut so many times."""
     whole = fit(surface.used)
     found = [whole._replace(corners=_corners(whole.corners))]
@@ -269,7 +266,8 @@ def _box(points: Array) -> Body:
         low = along.min(axis=0)
         high = along.max(axis=0)
         half = np.maximum(0.5 * (high - low), GRID)
-        boxes.append(Body(axes.T @ (0.5 * (low + high)), axes.T, half, 0.0, points))
+        box = PlacedBox(axes.T @ (0.5 * (low + high)), axes.T, half)
+        boxes.append(Body(box, 0.0, points))
     return min(boxes, key=lambda each: each.volume)
 
 
@@ -307,12 +305,12 @@ def _along(points: Array, axis: Array, middle: Array) -> Body:
     high = float((along - cap).max())
     if low > high:  # any point between them is the middle of a ball that holds all
         low = high = 0.5 * (low + high)
-    return Body(*box_around(middle + low * axis, middle + high * axis), radius, points)
+    return Body(box_around(middle + low * axis, middle + high * axis), radius, points)
 
 
 def _smallest(body: Body) -> Body:
     """Turn and shift the axis of a capsule until its volume falls no more, from three axes on."""
-    turns = (np.roll(body.rotation, k, axis=1) for k in range(3))
+    turns = (np.roll(body.box.rotation, k, axis=1) for k in range(3))
     return min([body, *(_refined(body, turn) for turn in turns)], key=lambda each: each.volume)
 
 
@@ -320,11 +318,11 @@ def _refined(body: Body, turn: Array) -> Body:
     """Fit a smaller capsule than a body by turning and shifting an axis, the third column."""
     from scipy.optimize import minimize  # slow to import
 
-    reach = body.radius + float(body.half_extents[2])
+    reach = body.radius + float(body.box.half_extents[2])
 
     def turned(x: Array) -> Body:
         axis = turn @ [x[0], x[1], 1.0]
-        middle = body.center + reach * (turn[:, :2] @ x[2:])
+        middle = body.box.center + reach * (turn[:, :2] @ x[2:])
         return _along(body.corners, axis / np.linalg.norm(axis), middle)
 
     start = np.vstack([np.zeros(4), _TURNED * np.eye(4)])

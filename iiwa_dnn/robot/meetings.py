@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import partial
-from itertools import product
+from itertools import permutations
 from typing import NamedTuple
 
 import coal
@@ -101,17 +101,17 @@ class Space:
     """
 
     def __init__(self, robot: Robot, geometry: pin.GeometryModel, margin: float = 0.0) -> None:
-        self._margin = margin
         self._model = robot.model
         self._data = robot.model.createData()
         self._geometry = geometry
-        self._fresh(margin)
+        self._found = self._scratch(margin)
 
-    def _fresh(self, margin: float) -> None:
-        """Make all pairs active, and in contact within a margin [m]."""
-        self._found = pin.GeometryData(self._geometry)
-        for request in self._found.collisionRequests:
+    def _scratch(self, margin: float) -> pin.GeometryData:
+        """Make room for results, where pairs are in contact within a margin [m]."""
+        found = pin.GeometryData(self._geometry)
+        for request in found.collisionRequests:
             request.security_margin = margin
+        return found
 
     def distances(self, pairs: Sequence[int], q: Array) -> list[float]:
         """Compute the distances of pairs at q (n,) [m], negative where convex shapes overlap."""
@@ -131,19 +131,17 @@ class Space:
         self, pairs: Collection[int], postures: Array, margin: float, most: int
     ) -> dict[int, list[Array]]:
         """Find postures out of (k, n) in which pairs are within a margin [m], the first ones."""
-        self._fresh(margin)
-        for pair in {*range(len(self._found.collisionRequests))}.difference(pairs):
-            self._found.deactivateCollisionPair(pair)
+        scratch = self._scratch(margin)
+        for pair in {*range(len(scratch.collisionRequests))}.difference(pairs):
+            scratch.deactivateCollisionPair(pair)
         found: dict[int, list[Array]] = {}
         for q in postures:
-            scene = self._geometry, self._found
-            if pin.computeCollisions(self._model, self._data, *scene, q):
-                for pair, result in enumerate(self._found.collisionResults):
-                    if self._found.activeCollisionPairs[pair] and result.isCollision():
+            if pin.computeCollisions(self._model, self._data, self._geometry, scratch, q):
+                for pair, result in enumerate(scratch.collisionResults):
+                    if scratch.activeCollisionPairs[pair] and result.isCollision():
                         found.setdefault(pair, []).append(q)
                         if len(found[pair]) == most:
-                            self._found.deactivateCollisionPair(pair)
-        self._fresh(self._margin)
+                            scratch.deactivateCollisionPair(pair)
         return found
 
 
@@ -193,14 +191,12 @@ class Meetings:
         self._bodies = Space(robot, geometry_of(robot, placed, pairs))
         self._hulls = Space(robot, geometry_of(robot, hulls, pairs), 2.0 * GRID)
         shapes = read_shapes(robot, pin.GeometryType.COLLISION)
-        of_links: dict[str, list[int]] = {}
-        for number, shape in enumerate(shapes.geometryObjects):
-            link = robot.model.frames[shape.parentFrame].name
-            of_links.setdefault(link, []).append(number)
+        on = [robot.model.frames[each.parentFrame].name for each in shapes.geometryObjects]
         self._own: dict[tuple[str, str], list[int]] = {}
-        for first, second in dict.fromkeys(self._links(pair) for pair in range(len(pairs))):
-            for i, k in product(of_links[first], of_links[second]):
-                self._own.setdefault((first, second), []).append(len(shapes.collisionPairs))
+        searched = {*map(self._links, range(len(pairs)))}
+        for i, k in permutations(range(len(on)), 2):
+            if (on[i], on[k]) in searched:
+                self._own.setdefault((on[i], on[k]), []).append(len(shapes.collisionPairs))
                 shapes.addCollisionPair(pin.CollisionPair(i, k))
         self._shapes = Space(robot, shapes)
 
@@ -208,7 +204,7 @@ class Meetings:
         i, k = self._pairs[pair]
         return self._parts[i][0], self._parts[k][0]
 
-    def near(self) -> list[int]:
+    def _near(self) -> list[int]:
         """Number the pairs whose parts of links come within `CLEARANCE`."""
         nearby = self._bodies.near(range(len(self._pairs)), self._draws, _NEARBY, 1)
         found = set(self._hulls.near(nearby, self._draws, CLEARANCE, 1))
@@ -220,18 +216,18 @@ class Meetings:
         return sorted(found)
 
     def sort(
-        self, near: Sequence[int], disabled: Mapping[frozenset[str], str]
+        self, disabled: Mapping[frozenset[str], str]
     ) -> tuple[list[Watched], dict[tuple[str, str], str]]:
         """Sort pairs that come near into those that are watched, and links that are not.
 
         Args:
-            near: Numbers of the pairs.
             disabled: Pairs of links that are not watched whatever is found, with the reasons.
 
         Returns:
             The watched pairs; pairs of links that are not watched, or not in whole, with the
             reasons.
         """
+        near = self._near()
         places = [self._robot.start_posture(), *self._draws[:_PLACES]]
         apart = np.array([self._bodies.distances(near, q) for q in places])
         is_close = (apart[0] < CLEARANCE) | ((apart < CLEARANCE).mean(axis=0) > _OFTEN)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, NamedTuple
 
+import coal
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
@@ -29,6 +30,12 @@ class PlacedBox(NamedTuple):
     center: checks.Array
     rotation: checks.Array
     half_extents: checks.Array
+
+    def grown(self, radius: float) -> tuple[coal.CollisionGeometry, pin.SE3]:
+        """Return as a shape of coal's, with its pose, the box, or the capsule of a radius [m]."""
+        sides = 2.0 * self.half_extents
+        shape = coal.Capsule(radius, sides[2]) if radius else coal.Box(*sides)
+        return shape, pin.SE3(self.rotation, self.center)
 
 
 def box_around(a: ArrayLike, b: ArrayLike) -> PlacedBox:
@@ -207,7 +214,7 @@ def make_obstacles(tables: Any) -> list[Obstacle]:
         except (ValueError, TypeError) as error:
             raise InvalidInputError(
                 f"obstacle {number}",
-                one_line(error).rpartition("__init__() ")[2],  # of Python's own message
+                one_line(error).rpartition("() ")[2],  # of Python's own message
                 table,
             ) from error
     return found

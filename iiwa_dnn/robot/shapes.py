@@ -4,13 +4,12 @@ import warnings
 from functools import lru_cache
 from pathlib import Path
 
-import coal
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.robot.obstacles import Box
+from iiwa_dnn.robot.fitting import surface_of
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.urdf import read_geometry
 
@@ -43,11 +42,8 @@ def tool_shapes(robot: Robot) -> list[pin.GeometryObject]:
         index = robot.frame_id(tool.name)
         flange = robot.model.frames[robot.frame_id(tool.flange)]
         for number, shape in enumerate(tool.shapes):
-            center, rotation, half = shape.box
-            sides = 2.0 * half
-            is_box = isinstance(shape, Box)
-            body = coal.Box(*sides) if is_box else coal.Capsule(shape.thickness, sides[2])
-            place = flange.placement * pin.SE3(rotation, center)
+            body, pose = shape.box.grown(shape.thickness)
+            place = flange.placement * pose
             name = f"{tool.name}_{number}"
             found.append(pin.GeometryObject(name, flange.parentJoint, index, place, body))
     return found
@@ -71,11 +67,6 @@ def visual_meshes(robot: Robot) -> tuple[Mesh, ...]:
     """List the meshes of `visual_shapes`."""
     meshes = []
     for shape in visual_shapes(robot).geometryObjects:
-        body = shape.geometry
-        if hasattr(body, "num_tris"):
-            turn = shape.placement.rotation
-            corners = np.array(body.vertices()) @ turn.T + shape.placement.translation
-            triangles = map(body.tri_indices, range(body.num_tris))
-            faces = np.array([(at[0], at[1], at[2]) for at in triangles], dtype=np.int32)
-            meshes.append((shape, corners, faces))
+        if hasattr(shape.geometry, "num_tris"):
+            meshes.append((shape, *surface_of(shape.geometry, shape.placement)))
     return tuple(meshes)

@@ -180,8 +180,8 @@ def _without_mesh(text: str, file: str) -> tuple[str, list[str]]:
     root = ET.fromstring(text)
     links = []
     for link in root.findall("link"):
-        for shape in (*link.findall("collision"), *link.findall("visual")):
-            mesh = shape.find("geometry/mesh")
+        for shape in link.findall("*/geometry/mesh/../.."):
+            mesh = shape.find("geometry/mesh[@filename]")
             name = "" if mesh is None else mesh.get("filename", "").rpartition("://")[2]
             tail = posixpath.normpath(name).lstrip("./")
             if name and f"/{file}".endswith(f"/{tail}"):

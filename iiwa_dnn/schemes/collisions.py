@@ -392,7 +392,7 @@ class CollisionAvoidance(Limit):
         `CollisionModel`, ``"may touch"``, or ``"no joint moves it"``.
         """
         scene = self.scene(robot)
-        of_links = collision_model(robot).unwatched if self.self_collision else ()
+        of_links = collision_model(robot).left_out if self.self_collision else ()
         return {
             "distance": self.distance,
             "obstacles": self.settings()["obstacles"],

@@ -242,7 +242,7 @@ def make_scene(
     names = links + [f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)]
     bodies = _bodies(robot, obstacles)
     numbered = model.pairs(robot) if self_collision else []
-    numbered += _obstacle_pairs(robot, bodies, len(model.capsules), len(links))
+    numbered += _obstacle_pairs(robot, bodies, len(links))
     rows = [make_pair(robot, bodies, each, distances[0]) for each in numbered]
     pairs = np.reshape(rows, (-1, Pair.width(robot.dof)))
     frames = tuple(dict.fromkeys(links))
@@ -277,22 +277,22 @@ def _are_given(
 def _bodies(robot: Robot, obstacles: Sequence[Obstacle]) -> list[Body]:
     """Return the bodies of a robot's links, then those of the obstacles."""
     bodies = [
-        _body(robot.frame_id(each.link), each.box, each.radius, 0.0)
-        for each in collision_model(robot).bodies
+        _body(robot.frame_id(link), shape.box, shape.thickness, 0.0)
+        for link, shape in collision_model(robot).bodies
     ]
     return bodies + [_body(0, each.box, each.thickness, each.speed) for each in obstacles]
 
 
-def _obstacle_pairs(robot: Robot, bodies: list[Body], capsules: int, links: int) -> list[Watched]:
+def _obstacle_pairs(robot: Robot, bodies: list[Body], links: int) -> list[Watched]:
     """Pair each obstacle with each capsule that a joint moves.
 
     Args:
         robot: The robot.
-        bodies: All bodies: capsules, boxes, obstacles.
-        capsules: Number of capsules.
-        links: Number of capsules and boxes.
+        bodies: All bodies, the obstacles last.
+        links: Number of those before.
     """
-    carried = [k for k in range(capsules) if robot.support[bodies[k].frame].any()]
+    capsules = [k for k in range(links) if bodies[k].radius]
+    carried = [k for k in capsules if robot.support[bodies[k].frame].any()]
     return [Watched(*each) for each in itertools.product(range(links, len(bodies)), carried)]
 
 

@@ -159,10 +159,9 @@ def test_a_command_that_was_computed_counts_as_the_start_of_what_is_sent() -> No
 
 def test_a_link_that_a_ball_sits_in_is_stopped_and_says_why() -> None:
     """The ball's middle on a link's axis: no direction separates them."""
-    capsule = next(
-        c for c in d.robot.collision.collision_model(ROBOT).capsules if "link_7" in c.link
-    )
-    frame = START.frame(capsule.link)
+    capsules = d.robot.collision.collision_model(ROBOT).capsules
+    link, capsule = next(each for each in capsules if "link_7" in each.link)
+    frame = START.frame(link)
     middle = frame.position + frame.rotation @ np.mean([capsule.a, capsule.b], axis=0)
     avoidance = d.CollisionAvoidance([d.Sphere(middle, 0.05)], self_collision=False)
     limits = (d.AccelerationLimits(), avoidance)

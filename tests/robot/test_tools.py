@@ -53,7 +53,7 @@ def distances(
     for capsule in link_model(robot).capsules:
         frame = robot.model.frames[robot.frame_id(capsule.link)]
         if frame.parentJoint < links:
-            shape, place = _coal(capsule_of(capsule))
+            shape, place = _coal(capsule.shape)
             bodies.append((frame.parentJoint, frame.placement * place, shape))
     for number, (joint, place, shape) in enumerate(bodies):
         geometry.addGeometryObject(pin.GeometryObject(str(number), joint, place, shape))
@@ -66,10 +66,6 @@ def distances(
         pin.computeDistances(robot.model, data, geometry, scratch, q)
         found.append([each.min_distance for each in scratch.distanceResults])
     return np.array(found)
-
-
-def capsule_of(link: Any) -> d.Capsule:
-    return d.Capsule(link.a, link.b, link.radius)
 
 
 def driven(shield: d.Shield, q: Any, steps: int, **request: Any) -> Matrix:
@@ -212,7 +208,7 @@ def test_named_pairs_may_touch_and_all_others_are_watched() -> None:
     shield = d.Shield(robot, obstacles=touching)
     path = driven(shield, robot.start_posture(), 3000, twist=[0, 0, -0.2, 0, 0, 0])
     assert distances(FR3, [PEN], [TABLE], path[-1:]).min() < 0.0
-    hand = [capsule_of(c) for c in link_model(FR3).capsules if c.link == "link7"]
+    hand = [c.shape for c in link_model(FR3).capsules if c.link == "link7"]
     frame = FR3.model.frames[FR3.tip_id].placement.inverse()
     hand = [d.Capsule(frame.act(np.array(c.a)), frame.act(np.array(c.b)), c.radius) for c in hand]
     assert LEAST - SLACK < distances(FR3, hand, [TABLE], path).min() < LEAST + 1e-3
@@ -257,7 +253,7 @@ def test_each_robot_has_the_bodies_of_its_own_tools() -> None:
             assert names == ["tool", "cup", "cup"][:count]
             assert unwatched_links(each) == ()
     # In the frame of its flange each: the cup's body is 5 cm behind its own tip.
-    last = collision_model(two).capsules[-1]
+    last = collision_model(two).capsules[-1].shape
     np.testing.assert_allclose(last.a, np.array(PEN.a) - [0, 0, 0.05], atol=1e-12)
 
 
