@@ -4,14 +4,17 @@ import importlib.util
 import tempfile
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from benchmarks.report import show
-from helpers_export import packaged
+from helpers_export import use_armstep
 from hostile_arms import DT, ROBOT, START, compare, hostile_steps, make_shield
+from iiwa_dnn.export import tables
+from iiwa_dnn.export.cuda import cuda_code
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.schemes.collisions import avoidance_of
 from judge_distances import Judge
@@ -56,7 +59,7 @@ def timed(package: Any, count: int, alike: bool) -> Iterator[tuple[float, float]
     """Time hostile steps on the GPU and on all cores [ms]; `alike`: all arms do the same."""
     import cupy
 
-    cpu, gpu = package.Shields(count), package.Shields(count, device="cuda")
+    cpu, gpu = package(count), package(count, device="cuda")
     start, end = cupy.cuda.Event(), cupy.cuda.Event()
     q = np.tile(START, (count, 1))
     for own in hostile_steps(q, STEPS, 1):
@@ -105,17 +108,20 @@ def report() -> None:
 
     packages = {}
     with tempfile.TemporaryDirectory() as folder:
+        armstep = use_armstep()
+        source = Path(armstep.__file__).with_name("shields.cu")
+        source.write_text(cuda_code(), encoding="utf-8")
         for watched in (True, False):
             name = "watching" if watched else "unwatching"
-            made = make_shield(watched)
-            packages[name] = packaged(made, Path(folder) / name, name, flags=["-O2"], cuda=True)
+            path = tables(make_shield(watched), Path(folder) / f"{name}.json")
+            packages[name] = partial(armstep.Shields, path)
         first = packages["watching"]
         count, steps = EQUAL
         began = time.perf_counter()
-        gpu = first.Shields(count, device="cuda")
+        gpu = first(count, device="cuda")
         about = cupy.cuda.runtime.getDeviceProperties(0)
         print(f"{about['name'].decode()}, kernels in {time.perf_counter() - began:.0f} s")
-        both = first.Shields(count), gpu
+        both = first(count), gpu
         differing, path = compare(*both, steps, cupy.asarray, cupy.asnumpy)
         print(f"{count} arms, {steps} hostile steps: {differing} commands differ; {judge(path)}")
         rows = compared({"a ball, itself": first, "nothing": packages["unwatching"]})

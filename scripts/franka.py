@@ -9,7 +9,6 @@ docs/real_arm.md before the first day.
 
 import dataclasses
 import gc
-import importlib
 import json
 import signal
 import socket
@@ -111,7 +110,7 @@ def main(
     radius: float = 0.02,
     period: float = 5.0,
     requests: str = "",
-    shield: str = "fr3_shield",
+    shield: str = "fr3_shield.json",
 ):
     """Draw a circle, or follow requests, and come to rest.
 
@@ -121,7 +120,7 @@ def main(
         radius: radius of the circle [m]
         period: time of one round [s]
         requests: address and port of requests by UDP, in place of a circle
-        shield: name of the exported package that requests pass
+        shield: tables of the shield that requests pass
     """
     import pylibfranka as franka
 
@@ -129,7 +128,9 @@ def main(
     q = np.array(arm.read_once().q)
     source = Requests(requests) if requests else None
     if source:
-        driver = importlib.import_module(shield).Shield()
+        import armstep
+
+        driver = armstep.Shield(shield)
     else:
         driver = make_controller(q, radius, period)
     ended = []

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
 import ctypes
+import importlib
 import sys
-from collections.abc import Iterator
+from functools import cache, partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from helpers_export import packaged, run
+from helpers_export import run, use_armstep
 from iiwa_dnn import Shield
+from iiwa_dnn.export import tables
+from iiwa_dnn.export.cuda import cuda_code
 
 FREE = 10**11
 """Bytes that are free on the stand-in."""
@@ -80,18 +82,21 @@ class Kernel:
         self._run(ctypes.c_uint(grid[0]), ctypes.c_uint(block[0]), pointers)
 
 
-def stand_in(library: ctypes.CDLL, streams: list[int]) -> Any:
-    """Return what the package takes from cupy; the streams that it works on are noted."""
+def stand_in(folder: Path, flags: tuple[str, ...]) -> Any:
+    """Return what armstep takes from cupy; kernels are compiled in a folder."""
 
-    @contextlib.contextmanager
-    def from_external(stream: Any) -> Iterator[None]:
-        streams.append(stream.__cuda_stream__()[1])
-        yield
+    def compiled(code: str, options: tuple[str, ...], backend: str) -> Any:
+        own = folder / f"grid{len([*folder.glob('grid*.so')])}.so"
+        (folder / "shields.cu").write_text(code, encoding="utf-8")
+        source = Path(__file__).with_name("cuda_grid.cpp")
+        words = ["-std=c++20", "-O1", "-fno-math-errno", "-w", "-shared", "-fPIC", *flags]
+        macros = [each for each in options if each.startswith("-D")]
+        run("g++", *words, *macros, "-I", folder, source, "-o", own)
+        library = ctypes.CDLL(str(own))
+        return SimpleNamespace(get_function=lambda name: Kernel(library, name))
 
-    module = SimpleNamespace(get_function=lambda name: Kernel(library, name))
-    cuda = SimpleNamespace(Device=Device, Stream=SimpleNamespace(from_external=from_external))
     return SimpleNamespace(
-        RawModule=lambda code, options, backend: module,
+        RawModule=cache(compiled),
         ndarray=type("ndarray", (), {}),  # those of the tests are somebody else's
         from_dlpack=lambda value: value,
         asarray=to_device,
@@ -99,21 +104,18 @@ def stand_in(library: ctypes.CDLL, streams: list[int]) -> Any:
         asnumpy=np.array,
         empty=lambda shape, dtype: np.empty(shape, dtype).view(DeviceArray),
         get_default_memory_pool=lambda: SimpleNamespace(free_bytes=lambda: 0),
-        cuda=cuda,
+        cuda=SimpleNamespace(Device=Device),
     )
 
 
-def packaged_with_grid(shield: Shield, folder: Path, name: str, *flags: str) -> tuple[Any, Any]:
-    """Export a shield as a package with CUDA; return it, and the streams of the stand-in."""
-    package = packaged(shield, folder, name, flags=flags, cuda=True)
-    library = folder / "grid.so"
-    own = ["-std=c++20", "-O1", "-fno-math-errno", "-w", "-shared", "-fPIC"]
-    source = Path(__file__).with_name("cuda_grid.cpp")
-    run("g++", *own, *flags, "-I", folder / name, source, "-o", library)
-    streams: list[int] = []
-    sys.modules["cupy"] = stand_in(ctypes.CDLL(str(library)), streams)
+def on_grid(shield: Shield, folder: Path, *flags: str) -> Any:
+    """Return a function that makes `armstep.Shields` of a shield, on the CPU or the stand-in."""
+    armstep = use_armstep()
+    sys.modules["cupy"] = stand_in(folder, flags)
     try:
-        package.Shields(1, device="cuda")
+        cuda = importlib.import_module("armstep.cuda")
     finally:
         del sys.modules["cupy"]
-    return package, streams
+    cuda.SOURCE = folder / "armstep.cu"
+    cuda.SOURCE.write_text(cuda_code(), encoding="utf-8")
+    return partial(armstep.Shields, tables(shield, folder / "arm.json"))

@@ -7,7 +7,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -15,8 +14,11 @@ from typing import Any
 import pytest
 
 from iiwa_dnn import Controller, Shield
-from iiwa_dnn.export import load, python
+from iiwa_dnn.export import tables
 from iiwa_dnn.export.core import core
+
+ARMSTEP = str(Path(__file__).parents[1] / "integrations" / "armstep")
+"""Where the Python of armstep is."""
 
 QUICK = ("-std=c99", "-O0")
 """Flags with which compiling takes a third of the time."""
@@ -28,11 +30,6 @@ def needs(*programs: str) -> Any:
     """Mark of a test that calls programs, which `.ci/run` installs."""
     missing = [name for name in programs if shutil.which(name) is None]
     return pytest.mark.skipif(bool(missing), reason=f"no {', '.join(missing)}")
-
-
-def compile_quickly(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the package compile what it exports without optimization."""
-    monkeypatch.setattr(load, "__defaults__", (QUICK,))
 
 
 def run(*words: str | Path, cwd: Path | None = None) -> str:
@@ -55,32 +52,22 @@ def compiled_core(flags: tuple[str, ...]) -> Path:
     return made
 
 
-def use_armstep(*flags: str) -> Path:
-    """Let armstep, and the programs that tests run, use the library of these kernels."""
-    made = compiled_core(("-std=c99", "-O1", "-fPIC", "-shared", *flags))
-    os.environ["ARMSTEP_LIBRARY"] = str(made)
-    return made
+def use_armstep() -> Any:
+    """Import armstep with the library of these kernels, which programs of tests use too."""
+    if "ARMSTEP_LIBRARY" not in os.environ:
+        made = compiled_core(("-std=c99", "-O1", "-fPIC", "-shared"))
+        os.environ["ARMSTEP_LIBRARY"] = str(made)
+    if ARMSTEP not in sys.path:
+        sys.path.append(ARMSTEP)  # of a script: pytest has it
+    return importlib.import_module("armstep")
 
 
-def packaged(
-    made: Controller | Shield,
-    folder: Path,
-    name: str,
-    q0: Any = None,
-    flags: Sequence[str] = (),
-    cuda: bool = False,
-) -> Any:
-    """Export a controller or a shield as a package of Python, compile and import it."""
-    project = python(made, folder, name, q0=q0, cuda=cuda)
-    package = project / name
-    own = ["-std=c99", "-O1", "-shared", "-fPIC", *flags]
-    core = compiled_core(tuple(each for each in own if each != "-shared"))
-    sources = [each for each in package.glob("*.c") if each.name != "armstep.c"]
-    run("gcc", *own, core, *sources, "-o", package / "_library.bin", "-lm")
-    for inner in [each for each in sys.modules if each.partition(".")[0] == name]:
-        del sys.modules[inner]  # of an earlier export by this name
-    sys.path.insert(0, str(project))
-    try:
-        return importlib.import_module(name)
-    finally:
-        sys.path.remove(str(project))
+def in_armstep(made: Controller | Shield, folder: Path, q0: Any = None) -> Any:
+    """Export the tables of a controller or a shield, and let armstep load them."""
+    armstep = use_armstep()
+    path = tables(made, folder / "arm.json", q0=q0)
+    own = folder / "arm_own.so"
+    if (source := own.with_suffix(".c")).exists():
+        run("gcc", *WARNINGS, *QUICK, "-shared", "-fPIC", source, "-o", own)
+    kind = armstep.Shield if isinstance(made, Shield) else armstep.Controller
+    return kind(path, own=own)

@@ -9,8 +9,8 @@ that is not back in time is led back along its own path: if it comes to its star
 trap, and its own way ended in a local minimum. An obstacle that has moved may bar that path; then a
 state is a trap if no posture nearby can be had.
 
-With ``--exported`` C that `iiwa_dnn.export` wrote drives the arms, two hundred times as long,
-among obstacles that stand still.
+With ``--exported`` armstep drives the arms, by tables that `iiwa_dnn.export` wrote, two hundred
+times as long, among obstacles that stand still.
 """
 
 import argparse
@@ -26,9 +26,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import iiwa_dnn
-from helpers_export import packaged
+from helpers_export import in_armstep
 from iiwa_dnn import Configuration, Target
-from iiwa_dnn.export import ExportedController, c99, load
 from iiwa_dnn.qp import Matrix, Vector
 from judge_distances import Judge, swinging
 from judge_limits import Breach, breaches
@@ -277,21 +276,21 @@ def scheme_of(case: Case) -> iiwa_dnn.Scheme:
     return iiwa_dnn.DoubleIndicator(orientation=case.orientation, extra_limits=limits)
 
 
-def in_c(made: Any) -> ExportedController:
-    """Compile the exported C of a controller."""
+def exported_of(made: Any) -> Any:
+    """Let armstep load the tables of a controller or a shield."""
     with tempfile.TemporaryDirectory() as folder:
-        return load(c99(made, folder))
+        return in_armstep(made, Path(folder))
 
 
 def controller(case: Case, seed: int, exported: bool = False) -> Driver:
     """Return a controller among hostile targets."""
     start = case.start
     made = iiwa_dnn.Controller(case.robot, scheme_of(case), dt=case.dt, policy=case.policy)
-    compiled = in_c(made) if exported else None
+    there = exported_of(made) if exported else None
 
     def step(q: Vector, t: float, request: Target) -> tuple[Vector, bool]:
-        if compiled:
-            return compiled.step(q, request.data).dq, False
+        if there:
+            return there.step(q, t, request.data).dq, False
         command = made.step(q, t, request)
         return command.dq, command.ok
 
@@ -302,12 +301,11 @@ def controller(case: Case, seed: int, exported: bool = False) -> Driver:
 
 
 def shield(case: Case, seed: int, exported: bool = False) -> Driver:
-    """Return a shield among hostile requests, or its package."""
+    """Return a shield among hostile requests, or armstep's of its tables."""
     start = case.start.q
-    made = iiwa_dnn.Shield(case.robot, case.dt, case.avoidance.obstacles, DISTANCE)
+    made: Any = iiwa_dnn.Shield(case.robot, case.dt, case.avoidance.obstacles, DISTANCE)
     if exported:
-        with tempfile.TemporaryDirectory() as folder:
-            made = packaged(made, Path(folder), "hostile_shield").Shield()
+        made = exported_of(made)
 
     def step(q: Vector, t: float, request: dict[str, Any]) -> tuple[Vector, bool]:
         return made.step(q, **request).dq, False

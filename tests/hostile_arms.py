@@ -83,12 +83,12 @@ def compare(
 
 def main() -> int:
     """Compare arms of a grid on the CPU with single shields."""
-    from helpers_cuda import packaged_with_grid, to_device
+    from helpers_cuda import on_grid, to_device
 
     count, steps = map(int, sys.argv[1:3])
     with tempfile.TemporaryDirectory() as folder:
-        package, _ = packaged_with_grid(make_shield(), Path(folder), "grid_shield", "-O2")
-        shields = package.Shields(count), package.Shields(count, device="cuda")
+        shields_of = on_grid(make_shield(), Path(folder), "-O2")
+        shields = shields_of(count), shields_of(count, device="cuda")
         differing, path = compare(*shields, steps, to_device, np.array)
     print(f"{count} arms, {steps} steps: {differing} commands differ")
     return differing + (np.ptp(path) == 0.0)

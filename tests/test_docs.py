@@ -21,7 +21,6 @@ import pytest
 import tyro
 
 import iiwa_dnn
-from helpers_export import compile_quickly
 from iiwa_dnn.app.main import CONFIG
 from iiwa_dnn.app.words import ExportWords, RunWords
 from iiwa_dnn.compiling.library import source_of
@@ -56,7 +55,7 @@ def test_the_code_in_the_documents_runs(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)  # whatever it writes, it does not write here
-    compile_quickly(monkeypatch)
+    monkeypatch.setenv("CFLAGS", "-O0")  # of the Makefile that an export has
     text = path.read_text(encoding="utf-8")
     module = types.ModuleType("__docs__")  # dataclasses ask for the one of their class
     monkeypatch.setitem(sys.modules, "__docs__", module)

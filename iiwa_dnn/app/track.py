@@ -144,21 +144,21 @@ def _warn_of_range(robot: Robot) -> None:
 def export(options: ExportWords) -> int:
     """Write the controller of a run as C99: one file without dependencies, and its tests.
 
-    With ``--python NAME`` a shield of its robot, among its obstacles, as a package of Python; with
-    ``--controller`` the controller as one.
+    With ``--tables FILE`` the tables of a shield of its robot, among its obstacles, which armstep
+    loads; with ``--controller`` those of the controller.
     """
     tables, arguments = _read(options)
-    is_shield = options.python is not None and not options.controller
+    is_shield = options.tables is not None and not options.controller
     made = _shield(arguments) if is_shield else _controller(arguments)
-    folder = options.out or Path(options.python or "controller")
-    check_folder(folder, tables, options.overwrite)
-    q0 = arguments.q0
-    if options.python is None:
-        exports.c99(made, folder, q0, overwrite=True)
+    if options.tables is None:
+        folder = options.out or Path("controller")
+        check_folder(folder, tables, options.overwrite)
+        exports.c99(made, folder, arguments.q0, overwrite=True)
+        write_settings(folder, tables)
+        said = f"{folder}; to test it: make -C {folder}"
     else:
-        further: Any = {"platforms": options.platforms, "cuda": options.cuda}
-        exports.python(made, folder, options.python, q0=q0, overwrite=True, **further)
-    write_settings(folder, tables)
+        exports.tables(made, options.tables, q0=arguments.q0)
+        said = f"{options.tables}; to test it: python -m armstep check {options.tables}"
     unlimited = tables["limits"].get("acceleration") == "none"
     if is_shield:
         unlimited = not np.isfinite(made.robot.ddq_max).all()
@@ -168,7 +168,5 @@ def export(options: ExportWords) -> int:
         line = "accelerations are not limited; for a real arm take --acceleration-limit robot"
         print(line, file=sys.stderr)
     if not options.quiet:
-        place = folder if folder.is_absolute() else f"./{folder}"
-        ways = (f"install it: pip install {place}", f"test it: make -C {folder}")
-        print(f"written to {folder}; to {ways[options.python is None]}")
+        print(f"written to {said}")
     return 0

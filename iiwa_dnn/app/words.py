@@ -191,14 +191,10 @@ class OfRuns(Common):
 class OfExports(Common):
     """Options of an export that are no settings."""
 
-    python: Annotated[str | None, shown("NAME")] = None
-    """write a shield of the robot as a package of Python, in the folder NAME"""
+    tables: Annotated[Path | None, shown("FILE")] = None
+    """write a shield of the robot as tables, a file of JSON that armstep loads"""
     controller: Flag = False
-    """write the run's controller as that package, in place of a shield"""
-    platforms: Annotated[tuple[str, ...], shown("NAME ...")] = ()
-    """machines that the package is compiled for here, by ziglang: linux_aarch64, ... or all"""
-    cuda: Flag = False
-    """write Shields(count, device="cuda") of the package too"""
+    """write the run's controller as those tables, in place of a shield"""
 
 
 def _options(name: str, base: type[Common], without: frozenset[str] = frozenset()) -> Any:

@@ -1,6 +1,5 @@
-"""Export a controller or a shield: as C99, as tables in JSON, or as a Python package."""
+"""Export a controller or a shield: as C99, or as tables in JSON."""
 
-from iiwa_dnn.export.folder import c99, python, tables
-from iiwa_dnn.export.load import ExportedCommand, ExportedController, load
+from iiwa_dnn.export.folder import c99, tables
 
-__all__ = ["ExportedCommand", "ExportedController", "c99", "load", "python", "tables"]
+__all__ = ["c99", "tables"]

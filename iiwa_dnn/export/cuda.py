@@ -1,12 +1,8 @@
-"""Write a shield in CUDA C++: its C as a GPU kernel over a grid, one thread for each arm."""
+"""Write armstep in CUDA C++: as GPU kernels over a grid, one thread for each shield."""
 
 import re
-from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
 
-from iiwa_dnn.export.core import TEMPLATES, filled
-from iiwa_dnn.files import write_text
+from iiwa_dnn.export.core import TEMPLATES, core, filled
 
 OUT_OF_LINE = 8
 """Lines from which on a function is called, not inlined: it compiles in 17 s in place of 138."""
@@ -21,17 +17,9 @@ _REWRITTEN = {
 """What of C is written in another way in CUDA C++, as regular expressions."""
 
 
-def write_cuda(package: Path, texts: dict[str, Any], sources: Sequence[str]) -> None:
-    """Write the sources for a GPU into the package of a shield.
-
-    Args:
-        package: Folder of the package.
-        texts: Texts by their names in the templates.
-        sources: Texts of the core and of the tables.
-    """
-    code = "\n".join(sources)
+def cuda_code() -> str:
+    """Return armstep with its kernels over a grid, `shields.cu` of the Python package."""
+    code = f"{core().header}\n{core().code}"
     for pattern, text in _REWRITTEN.items():
         code = re.sub(pattern, text, code)
-    for path in sorted((TEMPLATES / "cuda").iterdir()):
-        text = filled(path, texts | {"sources": code})
-        write_text(package / path.name.removesuffix(".in"), text)
+    return filled(TEMPLATES / "cuda" / "shields.cu", {"sources": code})

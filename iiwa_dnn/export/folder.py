@@ -6,12 +6,8 @@ import keyword
 import math
 import os
 import re
-import subprocess
-import sys
 from collections.abc import Sequence
-from enum import IntEnum
 from importlib.metadata import version
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -22,14 +18,12 @@ from iiwa_dnn import checks
 from iiwa_dnn.compiling.sources import c_word
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import by_frame
-from iiwa_dnn.control.policies import Action, ProgramKind
-from iiwa_dnn.control.requests import TWIST, Reason, Request
+from iiwa_dnn.control.requests import TWIST, Request
 from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.control.shields import Shields
-from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
+from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.export.arm_tables import Tables
 from iiwa_dnn.export.core import LAID_OUT, RELEASE, TEMPLATES, core, filled
-from iiwa_dnn.export.cuda import write_cuda
 from iiwa_dnn.export.nodes import Node, braced, constant
 from iiwa_dnn.files import prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
@@ -43,16 +37,6 @@ STEPS = 500
 
 VECTORS = "vectors.csv"
 """File that every export holds: steps of a run."""
-
-PLATFORMS = {
-    "linux_x86_64": "x86_64-linux-gnu.2.17",
-    "linux_aarch64": "aarch64-linux-gnu.2.17",
-    "windows_x86_64": "x86_64-windows-gnu",
-    "windows_aarch64": "aarch64-windows-gnu",
-    "macos_x86_64": "x86_64-macos.10.13",
-    "macos_aarch64": "aarch64-macos.11.0",
-}
-"""Targets of zig by the machines that a wheel may be for."""
 
 _POSE = np.repeat([1.0, 0.0], [12, 6])
 """1 for the numbers of a target's pose, 0 for those of its velocities."""
@@ -150,60 +134,6 @@ def _templates(*folders: str) -> list[Path]:
     return [path for folder in folders for path in sorted((TEMPLATES / folder).iterdir())]
 
 
-def python(
-    made: Controller | Shield,
-    folder: str | os.PathLike[str],
-    name: str,
-    frame: str | None = None,
-    q0: ArrayLike | None = None,
-    platforms: Sequence[str] = (),
-    cuda: bool = False,
-    overwrite: bool = False,
-) -> Path:
-    """Write a controller or a shield as a package of Python that needs numpy alone.
-
-    ``pip install folder`` compiles the package on the machine where it runs. With `platforms` it is
-    compiled here by zig (``pip install ziglang``), and one wheel serves all of them.
-
-    Args:
-        made: The controller or shield, which is not changed.
-        folder: The folder of the project, as for `c99`.
-        name: Name by which the package is imported.
-        frame: Frame of a shield's twists; None stands for the tip.
-        q0: As for `c99`.
-        platforms: Machines of `PLATFORMS`, or ``"all"``.
-        cuda: Write a shield's ``Shields(count, device="cuda")`` too, compiled where it is used.
-        overwrite: As for `c99`.
-
-    Returns:
-        The folder.
-
-    Raises:
-        InvalidInputError: The name is no package's, or a part has no C; the part is named.
-        NotFoundError: There is no such frame or platform.
-        MissingDependencyError: `platforms` are given, and ziglang is not installed.
-        FileError: The folder holds other files, or cannot be written.
-    """
-    if cuda and not isinstance(made, Shield):
-        raise InvalidInputError("cuda", "is for a shield", made)
-    export = _Export(made, frame, q0, _checked_name(name))
-    texts = export.texts | {
-        "package_version": "0.1.0",
-        "extras": (TEMPLATES / "parts" / "cuda.toml").read_text(encoding="utf-8") * cuda,
-    }
-    package = prepare_folder(_claimed(folder, f"*/{VECTORS}", overwrite) / name)
-    export.write_code(package)
-    for path in _templates("python", f"python_{export.tables.kind}"):
-        is_outer = path.name in ("README.md", "hatch_build.py.in", "pyproject.toml.in")
-        place = package.parent if is_outer else package
-        write_text(place / path.name.removesuffix(".in"), filled(path, texts))
-    if cuda:
-        write_cuda(package, texts, [core().header, core().code, *export.code.values()])
-    for platform in PLATFORMS if "all" in platforms else platforms:
-        _compile_for(package, platform)
-    return package.parent
-
-
 def _checked_name(name: str) -> str:
     """Return a name that Python and C take; refuse others."""
     if not re.fullmatch("[a-z][a-z0-9_]*", name):
@@ -214,28 +144,6 @@ def _checked_name(name: str) -> str:
     if c_word(name) != name:
         raise InvalidInputError("name", f"must be no word of C, as {name!r} is", name)
     return name
-
-
-def _compile_for(package: Path, platform: str) -> None:
-    """Compile the library of a package for a platform, by zig."""
-    if platform not in PLATFORMS:
-        raise NotFoundError("platform", platform, PLATFORMS)
-    if not find_spec("ziglang"):
-        raise MissingDependencyError("ziglang", "pip install ziglang")
-    flags = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC", "-s")
-    output = package / f"_library_{platform}.bin"
-    words = [sys.executable, "-m", "ziglang", "cc", "-target", PLATFORMS[platform], *flags]
-    done = subprocess.run(
-        [*words, *map(str, sorted(package.glob("*.c"))), "-o", str(output), "-lm"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    if done.returncode:
-        raise FileError(output, done.stderr[:500])
-    for other in package.glob(f"_library_{platform}.*"):  # what a linker leaves beside it
-        if other != output:
-            other.unlink()
 
 
 def _begun(made: Controller | Shield, q0: ArrayLike | None) -> tuple[Any, Vector]:
@@ -324,7 +232,6 @@ class _Export:
             word: braced([*map(constant, own.tolist())], robot.joint_names)
             for word, own in tables.limits.items()
         }
-        plain = {word: values.tolist() for word, values in tables.limits.items()}
         return {
             **both,
             **arrays,
@@ -357,14 +264,6 @@ class _Export:
             "part_count": len(flat.parts),
             **self._own_texts(),
             "steps": STEPS,
-            "joint_tuple": repr(tuple(robot.joint_names)),
-            "frame_tuple": repr(tuple(tables.frames)),
-            "joint_limits": re.sub(r"\binf\b", "np.inf", repr(plain)),
-            "longest_or_none": repr(tables.periods["longest"] or None),
-            "reason_members": _members(Reason),
-            "action_members": _members(Action),
-            "program_members": _members(ProgramKind),
-            "has_reference": tables.has_reference,
         }
 
     def _own_texts(self) -> dict[str, Any]:
@@ -401,11 +300,6 @@ def _quoted(words: Sequence[str]) -> str:
 def _names(**counts: int) -> list[str]:
     """Return names of columns: each name with the numbers from 1 to its count."""
     return [f"{name}{i + 1}" for name, count in counts.items() for i in range(count)]
-
-
-def _members(kind: type[IntEnum]) -> str:
-    """Write the members of an enumeration in Python."""
-    return "\n".join(f"    {each.name} = {each.value}" for each in kind)
 
 
 def _shield_run(shield: Shield, frame: str, q: Vector, width: int) -> Matrix:

@@ -4,13 +4,13 @@ LeRobot finds it by its name, so that its commands take ``--robot.type=shielded`
 docs/integrations.md has the lines to type.
 """
 
-import importlib
 import logging
 import re
 import time
 from dataclasses import dataclass, field
 from typing import Any
 
+import armstep
 import draccus
 import numpy as np
 from lerobot.robots import Robot, RobotConfig, make_robot_from_config
@@ -29,7 +29,7 @@ class ShieldedConfig(RobotConfig):
 
     Attributes:
         robot: Settings of the robot that is wrapped, with its type.
-        shield: Name of the exported package, whose period is 1 / fps.
+        shield: File of the shield's tables, whose period is 1 / fps.
         joints: Names of the robot's motors in the order of the shield's joints; none: its own.
         following_error: Distance of a motor from its goal [rad] beyond which the goal waits.
     """
@@ -67,18 +67,18 @@ class Shielded(Robot):
         self.config = config
         self.robot = make_robot_from_config(draccus.decode(RobotConfig, config.robot))
         try:
-            package = importlib.import_module(config.shield)
             # Of one arm: it brakes at positions that are not finite, where `Shield` raises.
-            self._shields = package.Shields(1)
-        except (AttributeError, ImportError, TypeError, ValueError) as error:
-            raise ValueError(f"shield: {config.shield!r} is no such package: {error}") from error
-        if package.DELAY:
+            self._shields = armstep.Shields(config.shield, 1)
+        except armstep.ArmstepError as error:
+            raise ValueError(f"shield: {error}") from error
+        tables = self._shields.tables
+        if tables.delay:
             raise ValueError("shield: goal positions need one without a delay")
-        self._dt = package.DT
-        self._motors = config.joints or list(package.JOINT_NAMES)
+        self._dt = tables.dt
+        self._motors = config.joints or list(tables.joint_names)
         self._keys = [f"{each}.pos" for each in self._motors]
         known = self.robot.action_features
-        count = len(package.JOINT_NAMES)
+        count = len(tables.joint_names)
         if len(self._keys) != count or len({*self._keys} & {*known}) != count:
             raise ValueError(f"joints: {self._keys} are not {count} different ones of {[*known]}")
         self._restart()

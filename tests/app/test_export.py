@@ -1,13 +1,11 @@
 """The command ``export``: from a run's settings to a folder of C."""
 
 from helpers_commands import call, track
-from helpers_export import compile_quickly, needs
-from iiwa_dnn.export import load
+from helpers_export import needs, run, use_armstep
 
 
 @needs("gcc")
-def test_the_settings_of_a_run_become_c(tmp_path, capsys, monkeypatch) -> None:
-    compile_quickly(monkeypatch)
+def test_the_settings_of_a_run_become_c(tmp_path, capsys) -> None:
     track(tmp_path / "run", "circle", "--check", "none", "--motion", "rk4")
     capsys.readouterr()
     folder = tmp_path / "controller"
@@ -17,8 +15,8 @@ def test_the_settings_of_a_run_become_c(tmp_path, capsys, monkeypatch) -> None:
     captured = capsys.readouterr()
     assert f"written to {folder}; to test it: " in captured.out
     assert captured.err == ""
-    exported = load(folder)
-    assert (exported.dof, exported.frames, exported.dt) == (7, 1, 2e-3)
+    assert ".dt = 0.002,\n" in (folder / "iiwa7.c").read_text(encoding="utf-8")
+    assert "0 commands differ" in run("make", "-C", folder, "CFLAGS=-O0")
     assert "circle" in (folder / "README.md").read_text(encoding="utf-8")
     assert call(*words, "--set", "run.filter_window=5") == 2
     assert "is no part of a controller" in capsys.readouterr().err
@@ -34,36 +32,33 @@ def test_the_settings_of_a_run_become_c(tmp_path, capsys, monkeypatch) -> None:
     assert "--acceleration-limit robot" in capsys.readouterr().err
 
 
-def test_a_shield_of_the_settings_becomes_a_package(tmp_path, capsys, monkeypatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    words = ("export", "--python", "my_shield", "--robot", "panda", "--dt", "2e-3")
+@needs("gcc")
+def test_a_shield_of_the_settings_becomes_tables(tmp_path, capsys) -> None:
+    path = tmp_path / "my_shield.json"
+    words = ("export", "--tables", path, "--robot", "panda", "--dt", "2e-3")
     assert call(*words) == 0
-    assert "pip install ./my_shield" in capsys.readouterr().out
-    text = (tmp_path / "my_shield" / "my_shield" / "__init__.py").read_text(encoding="utf-8")
-    assert 'ROBOT = "panda"' in text
-    assert "DT = 0.002" in text
-    assert call(*words, "--overwrite", "--acceleration-limit", "2", "--jerk-limit", "300") == 0
-    package = (tmp_path / "my_shield" / "my_shield" / "__init__.py").read_text(encoding="utf-8")
-    assert f"'acceleration': {[2.0] * 7}, 'jerk': {[300.0] * 7}" in package
-    assert capsys.readouterr().err == ""
-    assert call(*words, "--overwrite", "--acceleration-limit", "none") == 0
-    assert "accelerations are not limited" in capsys.readouterr().err
-    assert call(*words[:2], "my-shield", "--overwrite") == 2
-    assert "name: must be" in capsys.readouterr().err
-    assert call(*words[:2], "class", "--overwrite") == 2
-    assert "no keyword of Python, as 'class' is" in capsys.readouterr().err
-    assert not (tmp_path / "class").exists()
-    assert call(*words, "--overwrite", "--platforms", "amiga") == 2
-    assert "amiga" in capsys.readouterr().err
-
-
-def test_a_controller_of_the_settings_becomes_a_package(tmp_path, capsys, monkeypatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    words = ("export", "--python", "drawing", "--controller", "--reference", "circle")
-    assert call(*words, "--dt", "2e-3", "--acceleration-limit", "none") == 0
     captured = capsys.readouterr()
-    assert "pip install ./drawing" in captured.out
+    assert f"written to {path}; to test it: python -m armstep check {path}\n" == captured.out
+    armstep = use_armstep()
+    shield = armstep.Shield(path)
+    assert shield.tables.joint_names[0] == "panda_joint1"
+    assert (shield.dt, shield.tables.frame_names) == (2e-3, ("panda_hand_tcp",))
+    assert call(*words, "--acceleration-limit", "2", "--jerk-limit", "300") == 0
+    limits = armstep.load_tables(path).limits
+    assert {*limits["acceleration"], *limits["jerk"]} == {2.0, 300.0}
+    assert capsys.readouterr().err == ""
+    assert call(*words, "--acceleration-limit", "none", "-q") == 0
+    captured = capsys.readouterr()
     assert "accelerations are not limited" in captured.err
-    text = (tmp_path / "drawing" / "drawing" / "__init__.py").read_text(encoding="utf-8")
-    assert "class Controller" in text
-    assert "DT = 0.002" in text
+    assert captured.out == ""
+
+
+@needs("gcc")
+def test_a_controller_of_the_settings_becomes_tables(tmp_path, capsys) -> None:
+    path = tmp_path / "drawing.json"
+    words = ("export", "--tables", path, "--controller", "--reference", "circle")
+    assert call(*words, "--dt", "2e-3", "--acceleration-limit", "none") == 0
+    assert "accelerations are not limited" in capsys.readouterr().err
+    controller = use_armstep().Controller(path)
+    assert controller.dt == 2e-3
+    assert controller.tables.has_reference

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from export_settings import drawing, with_limits
-from helpers_export import WARNINGS, compiled_core, needs, run
+from helpers_export import WARNINGS, compiled_core, needs, run, use_armstep
 from hostile_arms import START, make_shield
 from iiwa_dnn import (
     AccelerationLimits,
@@ -29,7 +29,6 @@ from iiwa_dnn.control import fitting
 from iiwa_dnn.control.requests import Reason
 from iiwa_dnn.export.arm_tables import STATE
 from iiwa_dnn.export.core import LAID_OUT, core
-from iiwa_dnn.export.load import _Input
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.schemes import CollisionAvoidance
 from iiwa_dnn.schemes.parts import enter_limit
@@ -117,7 +116,7 @@ class Arm:
         """Take a step; return its result and its command."""
         dq = np.full(self.n, 77.0)
         asked = None if request is None else request.ctypes.data
-        given = _Input(
+        given = use_armstep()._library.Input(
             q.ctypes.data, kind, asked, *(own.get(k, 0.0) for k in ("t", "dt", "elapsed"))
         )
         return self.call("step", self.scratch, ctypes.byref(given), dq), dq
@@ -259,6 +258,27 @@ def test_a_controller_that_cannot_see_brakes(tracking_text: str, library: Any) -
     assert not commands[-1].any()
     assert np.abs(rates).max() <= 1.0 + 1e-9
     assert np.abs(np.diff(rates, axis=0)).max() <= 1e-3 * 50.0 * (1 + 1e-6)
+
+
+def test_targets_that_are_no_numbers_are_refused_and_forgotten(
+    tmp_path: Path, library: Any
+) -> None:
+    """Without acceleration limits it stops at once."""
+    controller, q0 = drawing()
+    text = export.tables(controller, tmp_path / "arm.json", q0=q0).read_text(encoding="utf-8")
+    arm, other = Arm(text, library), Arm(text, library)
+    arm.begin()
+    other.begin()
+    start = np.array(q0)
+    target = controller.targets(0.0).ravel()
+    for k in range(20):
+        wrong_q, wrong = start.copy(), target.copy()
+        (wrong_q if k % 2 else wrong)[k % 7] = (np.nan, np.inf, -np.inf)[k % 3]
+        result, dq = arm.step(wrong_q, request=wrong)
+        assert result == INVALID
+        assert not dq.any()
+        expected = other.step(start, request=target)[1]
+        np.testing.assert_array_equal(arm.step(start, request=target)[1], expected)
 
 
 def test_memory_of_others_is_refused(text: str, tracking_text: str, library: Any) -> None:

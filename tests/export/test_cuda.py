@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from helpers_cuda import FREE, LOCAL, Device, DeviceArray, packaged_with_grid, to_device
-from helpers_export import needs
+from helpers_cuda import FREE, LOCAL, Device, on_grid, to_device
+from helpers_export import needs, use_armstep
 from hostile_arms import DT, START, compare, make_shield
-from iiwa_dnn import Controller, DoubleIndicator, InvalidInputError, export, load_robot
+from iiwa_dnn import export
 
 pytestmark = needs("gcc", "g++")
 
@@ -21,21 +21,16 @@ COUNT = 45  # no multiple of a block
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    return packaged_with_grid(make_shield(), tmp_path_factory.mktemp("cuda"), "cuda_shield")
-
-
-@pytest.fixture(scope="module")
-def package(made: Any) -> Any:
-    return made[0]
+def make(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    return on_grid(make_shield(), tmp_path_factory.mktemp("cuda"))
 
 
 def tiled(own: Any, count: int = COUNT) -> Any:
     return to_device(np.tile(own, (count, 1)))
 
 
-def test_hostile_steps_over_a_grid_have_the_bits_of_the_cpu(package: Any) -> None:
-    shields = package.Shields(COUNT), package.Shields(COUNT, device="cuda")
+def test_hostile_steps_over_a_grid_have_the_bits_of_the_cpu(make: Any) -> None:
+    shields = make(COUNT), make(COUNT, device="cuda")
     differing, path = compare(*shields, 330, to_device, np.array)
     assert differing == 0
     assert np.abs(path[-1] - START).max() > 0.05
@@ -47,8 +42,8 @@ def test_hostile_steps_over_a_grid_have_the_bits_of_the_cpu(package: Any) -> Non
     assert compare(*shields, 5, to_device, np.array)[0] > 0
 
 
-def test_periods_moving_obstacles_and_numbers_of_other_types(package: Any) -> None:
-    cpu, gpu = package.Shields(COUNT), package.Shields(COUNT, device="cuda")
+def test_periods_moving_obstacles_and_numbers_of_other_types(make: Any) -> None:
+    cpu, gpu = make(COUNT), make(COUNT, device="cuda")
     random = np.random.default_rng(1)
     q = np.tile(START, (COUNT, 1))
     near = np.array([0.36, 0.16, 0.64])
@@ -64,8 +59,8 @@ def test_periods_moving_obstacles_and_numbers_of_other_types(package: Any) -> No
         q = expected.next_q
 
 
-def test_halt_reset_copies_and_pickles(package: Any) -> None:
-    cpu, gpu = package.Shields(COUNT), package.Shields(COUNT, device="cuda")
+def test_halt_reset_copies_and_pickles(make: Any) -> None:
+    cpu, gpu = make(COUNT), make(COUNT, device="cuda")
     mask = np.arange(COUNT) % 3 == 0
     q, dq = np.tile(START, (COUNT, 1)), np.full((COUNT, 7), 0.2)
 
@@ -81,7 +76,7 @@ def test_halt_reset_copies_and_pickles(package: Any) -> None:
     assert np.array(gpu.step(to_device(q)).reason)[mask].all()
     cpu.step(q)
     gpu = pickle.loads(pickle.dumps(copy.deepcopy(gpu)))
-    assert isinstance(gpu, package.Shields)
+    assert isinstance(gpu, use_armstep().Shields)
     assert gpu.device == "cuda"
     both()
     cpu.reset(mask, q + 0.001)
@@ -92,33 +87,26 @@ def test_halt_reset_copies_and_pickles(package: Any) -> None:
     both()
 
 
-def test_a_bad_row_has_its_reason_and_no_other_row_knows(package: Any) -> None:
-    gpu, alone = package.Shields(3, device="cuda"), package.Shields(3)
+def test_a_bad_row_has_its_reason_and_no_other_row_knows(make: Any) -> None:
+    gpu, alone = make(3, device="cuda"), make(3)
     q, dq = np.tile(START, (3, 1)), np.full((3, 7), 0.2)
     places = np.tile([[0.36, 0.16, 0.64]], (3, 1, 1))
     places[0, 0, 1] = np.nan
     bad = q.copy()
     bad[2, 4] = np.nan
     found = gpu.step(to_device(bad), to_device(dq), obstacles=to_device(places))
-    assert package.Reason(int(np.array(found.reason)[0])).name == "NOT_FINITE"
-    assert package.Reason(int(np.array(found.reason)[2])).name == "Q_NOT_FINITE"
+    assert use_armstep().Reason(int(np.array(found.reason)[0])).name == "NOT_FINITE"
+    assert use_armstep().Reason(int(np.array(found.reason)[2])).name == "Q_NOT_FINITE"
     expected = alone.step(q, dq)
     assert np.array(found.dq)[1].tobytes() == expected.dq[1].tobytes()
     assert not np.array(found.dq)[[0, 2]].any()
 
 
-def test_arrays_of_the_caller_are_written_on_his_stream(made: Any) -> None:
-    package, streams = made
-    gpu = package.Shields(COUNT, device="cuda")
-    first = gpu.step(tiled(START), tiled(np.ones(7)))
-    streams.clear()
-    again = gpu.step(tiled(START), tiled(np.ones(7)), out=first, stream=77)
-    assert again is first
-    assert streams == [77]
-    assert all(isinstance(each, DeviceArray) for each in again[:4])
-    wrong = first._replace(dq=to_device(np.zeros((COUNT, 7), np.float32)))
-    with pytest.raises(ValueError, match="out: must be without gaps"):
-        gpu.step(tiled(START), out=wrong)
+def test_place_and_saved_states_are_for_the_cpu(make: Any) -> None:
+    gpu = make(2, device="cuda")
+    for call in (lambda: gpu.place(np.zeros((1, 3))), gpu.save):
+        with pytest.raises(ValueError, match="are for the CPU"):
+            call()
 
 
 @pytest.mark.parametrize(
@@ -128,50 +116,39 @@ def test_arrays_of_the_caller_are_written_on_his_stream(made: Any) -> None:
         ({"q": tiled(START, 2)}, r"q: must be of shape \(45, 7\)"),
         ({"dq": tiled(START), "twist": tiled(np.zeros(6))}, "pass exactly one"),
         ({"given": tiled(START)}, "given: must be of shape"),
-        ({"dt": -1.0}, "dt: must be a finite number above 0"),
+        ({"dt": -1.0}, "must be above 0 s"),
     ],
 )
-def test_wrong_input_is_an_error(package: Any, own: dict[str, Any], said: str) -> None:
-    gpu = package.Shields(COUNT, device="cuda")
+def test_wrong_input_is_an_error(make: Any, own: dict[str, Any], said: str) -> None:
+    gpu = make(COUNT, device="cuda")
     with pytest.raises(ValueError, match=said):
         gpu.step(**{"q": tiled(START), **own})
 
 
-def test_too_many_arms_are_refused_with_bytes_an_arm(package: Any) -> None:
-    each = 8 * package._library.MEMORY + 16 * 7 + 5
+def test_too_many_arms_are_refused_with_bytes_an_arm(make: Any) -> None:
+    each = 8 * make(1).tables.memory + 16 * 7 + 5
     with pytest.raises(MemoryError, match=f"take {each} bytes each"):
-        package.Shields(FREE // each + 1, device="cuda")
+        make(FREE // each + 1, device="cuda")
 
 
 def test_the_stack_of_the_threads_counts_until_they_have_it(
-    package: Any, monkeypatch: pytest.MonkeyPatch
+    make: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Device, "mem_info", (LOCAL * 132 * 2048, 0))
-    sys.modules[f"{package.__name__}._cuda"]._running.clear()
+    sys.modules["armstep.cuda"].RUNNING.clear()
     with pytest.raises(MemoryError, match="stack of the GPU's threads 10813 MB"):
-        package.Shields(1, device="cuda")
+        make(1, device="cuda")
     monkeypatch.undo()
-    package.Shields(1, device="cuda").step(tiled(START, 1))
+    make(1, device="cuda").step(tiled(START, 1))
     monkeypatch.setattr(Device, "mem_info", (10**6, 0))
-    package.Shields(1, device="cuda")
+    make(1, device="cuda")
 
 
-def test_what_is_missing_is_said_in_a_line(package: Any, tmp_path: Path) -> None:
-    lines = "import sys; sys.modules['cupy'] = None; from cuda_shield import Shields"
-    lines += "; Shields(2, device='cuda')"
-    folder = Path(package.__file__).parents[1]
+def test_what_is_missing_is_said_in_a_line(tmp_path: Path) -> None:
+    path = export.tables(make_shield(), tmp_path / "arm.json")
+    lines = "import sys; sys.modules['cupy'] = None; from armstep import Shields"
+    lines += f"; Shields({str(path)!r}, 2, device='cuda')"
+    folder = Path(use_armstep().__file__).parents[1]
     command = [sys.executable, "-c", lines]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    assert "pip install 'cuda_shield[cuda]'" in done.stderr.splitlines()[-1]
-    (folder / "cuda_shield" / "_cuda.py").rename(tmp_path / "_cuda.py")
-    try:
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    finally:
-        (tmp_path / "_cuda.py").rename(folder / "cuda_shield" / "_cuda.py")
-    assert "export it with --cuda" in done.stderr.splitlines()[-1]
-
-
-def test_a_controller_has_no_grid(tmp_path: Path) -> None:
-    controller = Controller(load_robot("iiwa7"), DoubleIndicator())
-    with pytest.raises(InvalidInputError, match="cuda: is for a shield"):
-        export.python(controller, tmp_path, "a_controller", cuda=True)
+    assert "no cupy: pip install 'armstep[cuda]'" in done.stderr.splitlines()[-1]

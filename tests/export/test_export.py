@@ -1,30 +1,26 @@
 """Exported controllers: C's commands are Python's, and the code keeps the promises of its page."""
 
-import ctypes
 import importlib
 import re
 import shutil
 from inspect import cleandoc
 from pathlib import Path
 from typing import Any
-from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
 import iiwa_dnn
 from export_settings import SETTINGS, drawing, with_limits
-from helpers_export import QUICK, WARNINGS, needs, packaged, run
+from helpers_export import WARNINGS, in_armstep, needs, run
 from hostile_arms import START, make_shield
 from iiwa_dnn import DoubleIndicator
-from iiwa_dnn.compiling import build
 from iiwa_dnn.compiling.kinds import attributes
 from iiwa_dnn.compiling.sources import Package
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.export import ExportedController, c99, load, python
+from iiwa_dnn.export import c99
 from iiwa_dnn.export.arm_tables import STATE
 from iiwa_dnn.export.folder import run as run_controller, take_exported_kinematics
-from iiwa_dnn.export.load import _Input
 from iiwa_dnn.schemes.joint_limits import PositionConstants
 from iiwa_dnn.studies.runs import paper_robot
 
@@ -40,22 +36,6 @@ def heart(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def code_of(folder: Path) -> list[Path]:
     """List the files of a folder that go into a program."""
     return [each for each in folder.glob("*.c") if each.stem not in ("compare", "example")]
-
-
-def loaded(folder: Path) -> ExportedController:
-    return load(folder, (*WARNINGS, *QUICK))
-
-
-@pytest.fixture(scope="module")
-def loaded_heart(heart: Path) -> ExportedController:
-    return loaded(heart)
-
-
-@pytest.fixture
-def exported(loaded_heart: ExportedController) -> ExportedController:
-    """The heart's controller, as just begun."""
-    loaded_heart.reset()
-    return loaded_heart
 
 
 REACHING = ("inertia, velocity limits active", "collisions with balls")
@@ -76,8 +56,9 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
     Less scratch than there is, five eighths of it, is enough.
     """
     controller, q0 = SETTINGS[name]()
-    there = packaged(controller, tmp_path, "a_controller", q0, [*WARNINGS, *QUICK]).Controller()
-    there._room[:] = UNTOUCHED
+    there = in_armstep(controller, tmp_path, q0)
+    scratch = there._buffers.scratch
+    scratch[:] = UNTOUCHED
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
     take_exported_kinematics(controller)
     dt = controller.dt
@@ -89,7 +70,7 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
         command = controller.step(q, k * dt)
         found = there.step(q, k * dt)
         assert targets.tobytes() == command.targets.tobytes()
-        assert found._memory[STATE : STATE + command.data.size].tobytes() == command.data.tobytes()
+        assert found.memory[STATE : STATE + command.data.size].tobytes() == command.data.tobytes()
         assert found.dq.tobytes() == command.dq.tobytes()
         assert found.next_q.tobytes() == command.next_q.tobytes()
         said = (found.action, found.program, found.fraction, there.path_lag)
@@ -100,7 +81,7 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
             limited += bool(limits)
         actions.add(found.action)
         q = command.next_q
-    assert np.flatnonzero(there._room != UNTOUCHED).max() < 5 * there._room.size // 8
+    assert np.flatnonzero(scratch != UNTOUCHED).max() < 5 * scratch.size // 8
     assert np.abs(q - q0).max() > 1e-4
     assert limited > 5 or name not in REACHING
     assert len(actions) > 1 or not name.startswith(("without", "yielding", "collisions with balls"))
@@ -168,9 +149,7 @@ def test_clang_has_no_warning_either(heart: Path) -> None:
     run("clang", *WARNINGS, "-fsyntax-only", *heart.glob("*.c"))
 
 
-def test_the_code_is_plain_c_and_its_memory_is_stated(
-    heart: Path, exported: ExportedController
-) -> None:
+def test_the_code_is_plain_c_and_its_memory_is_stated(heart: Path) -> None:
     text = (heart / "armstep.c").read_text(encoding="utf-8")
     code = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     included = {"float", "math", "stdbool", "stddef", "stdint", "string"}
@@ -183,9 +162,12 @@ def test_the_code_is_plain_c_and_its_memory_is_stated(
         " * iiwa_dnn/schemes/joint_limits.py: joint_limits */",
     ):
         assert words in text
-    assert exported.size <= 16_000
+    [header] = [each for each in heart.glob("*.h") if each.stem != "armstep"]
+    stated = re.search(r"_MEMORY = (\d+)", header.read_text(encoding="utf-8"))
+    assert stated
+    assert 8 * int(stated[1]) <= 16_000
     readme = (heart / "README.md").read_text(encoding="utf-8")
-    assert f"memory of an arm | 8 × {exported.size // 8} bytes" in readme
+    assert f"memory of an arm | 8 × {stated[1]} bytes" in readme
     assert "@" not in readme
 
 
@@ -208,27 +190,6 @@ def test_size_without_global_state(
     text, data, bss = map(int, run(f"{prefix}size", made).splitlines()[1].split()[:3])
     assert text <= most
     assert data == bss == 0
-
-
-def test_inputs_that_are_no_numbers_stop_the_arm(exported: ExportedController) -> None:
-    rows = run_controller(*drawing(), 20)
-    expected = [exported.step(row[1:8], row[10:28]).dq for row in rows]
-    exported.reset()
-    for k, (row, before) in enumerate(zip(rows, expected, strict=True)):
-        dq = np.ones(7)
-        q, target = row[1:8].copy(), row[10:28].copy()
-        (q if k % 2 else target)[k % 7] = (np.nan, np.inf, -np.inf)[k % 3]
-        given = (q.ctypes.data, 0, target.ctypes.data)
-        assert stepped(exported, given, dq) == -1
-        assert not dq.any()  # without acceleration limits it stops at once
-        np.testing.assert_array_equal(exported.step(row[1:8], row[10:28]).dq, before)
-
-
-def stepped(exported: ExportedController, given: tuple[Any, ...], dq: np.ndarray) -> int:
-    """Take a step whose inputs are not checked."""
-    place = (exported._arm, exported._memory, exported._scratch)
-    own = ctypes.byref(_Input(*given))
-    return int(exported._library.armstep_step(*place, own, ctypes.c_void_p(dq.ctypes.data)))
 
 
 class _Local(iiwa_dnn.Limit):
@@ -268,14 +229,13 @@ def test_a_kernel_as_the_page_of_schemes_shows_it_is_exported(
     monkeypatch.syspath_prepend(tmp_path)
     limit = Page(importlib.import_module("page_kernel").clearance_row)
     controller, q0 = drawing(with_limits(limit))
-    exported = loaded(c99(controller, tmp_path / "folder", q0))
+    exported = in_armstep(controller, tmp_path, q0)
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
     take_exported_kinematics(controller)
     for k in range(50):
         command = controller.step(q0, k * controller.dt)
-        assert exported.step(q0, command.targets).dq.tobytes() == command.dq.tobytes()
-    [file] = (tmp_path / "folder").glob("*_own.c")
-    code = file.read_text(encoding="utf-8")
+        assert exported.step(q0, 0.0, command.targets).dq.tobytes() == command.dq.tobytes()
+    code = (tmp_path / "arm_own.c").read_text(encoding="utf-8")
     assert "h.data[0] = own.at->gain * (d - own.at->distance);" in code
 
 
@@ -365,9 +325,9 @@ def test_a_reference_without_compiled_form_leaves_the_targets_to_the_caller(tmp_
     folder = c99(controller, tmp_path, q0)
     assert "| references | none |" in (folder / "README.md").read_text(encoding="utf-8")
     run("gcc", *WARNINGS, "-fsyntax-only", folder / "example.c")
-    exported = loaded(folder)
-    assert stepped(exported, (np.asarray(q0).ctypes.data, 0, None), np.empty(7)) == -1
-    assert exported.step(q0, controller.targets(0.0).ravel()).action == 0
+    exported = in_armstep(controller, tmp_path, q0)
+    assert not exported.tables.has_reference
+    assert exported.step(q0, 0.0, controller.targets(0.0)).ok
 
 
 def test_the_controller_that_is_exported_stays_as_it_is(tmp_path: Path) -> None:
@@ -384,17 +344,11 @@ def test_the_controller_that_is_exported_stays_as_it_is(tmp_path: Path) -> None:
 def test_the_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
     controller, q0 = drawing()
     (tmp_path / "Makefile").write_text("mine")
-    for write in (
-        lambda **own: c99(controller, tmp_path, q0, **own),
-        lambda **own: python(controller, tmp_path, "a_controller", q0=q0, **own),
-    ):
-        with pytest.raises(FileError, match="holds other files than an export"):
-            write()
-        assert [each.name for each in tmp_path.iterdir()] == ["Makefile"]
-    python(controller, tmp_path, "a_controller", q0=q0, overwrite=True)
-    python(controller, tmp_path, "a_controller", q0=q0)  # as an earlier export is there
+    with pytest.raises(FileError, match="holds other files than an export"):
+        c99(controller, tmp_path, q0)
+    assert [each.name for each in tmp_path.iterdir()] == ["Makefile"]
     c99(controller, tmp_path, q0, overwrite=True)
-    c99(controller, tmp_path, q0)
+    c99(controller, tmp_path, q0)  # as an earlier export is there
     assert (tmp_path / "Makefile").read_text(encoding="utf-8") != "mine"
 
 
@@ -403,27 +357,15 @@ def test_without_a_reference_the_vectors_follow_a_figure(tmp_path: Path) -> None
     controller.reference = None
     folder = c99(controller, tmp_path, q0)
     rows = np.loadtxt(folder / "vectors.csv", delimiter=",", skiprows=1)
-    exported = loaded(folder)
+    exported = in_armstep(controller, tmp_path, q0)
     for row in rows:
-        dq, action = exported.step(row[1:8], row[10:28])
-        assert action == row[-1]
-        np.testing.assert_allclose(dq, row[28:35], rtol=0, atol=1e-9)
+        command = exported.step(row[1:8], row[0], row[10:28])
+        assert command.action == row[-1]
+        np.testing.assert_allclose(command.dq, row[28:35], rtol=0, atol=1e-9)
     assert np.ptp(rows[:, 10]) > 1e-3
 
 
-def test_errors_of_loading(
-    heart: Path, exported: ExportedController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    with pytest.raises(FileError, match="no tables"):
-        load(tmp_path)
-    for name in ("armstep.c", "broken.c", "broken.h"):
-        (tmp_path / name).write_text("int broken(", encoding="utf-8")
-    with pytest.raises(FileError, match="does not compile"):
-        load(tmp_path)
-    monkeypatch.setattr(build, "compiler", Mock(side_effect=LookupError("apt-get install gcc")))
-    with pytest.raises(FileError, match="apt-get install gcc"):
-        load(heart)
-    with pytest.raises(InvalidInputError, match="q"):
-        exported.step([1.0], np.zeros(18))
-    with pytest.raises(InvalidInputError, match="target"):
-        exported.step(np.zeros(7), [np.nan] * 18)
+@pytest.mark.parametrize("name", ["a-b", "class", "A", "1a", "double"])
+def test_a_name_that_is_none_of_c_is_refused(name: str, tmp_path: Path) -> None:
+    with pytest.raises(InvalidInputError, match="name: must be"):
+        c99(drawing()[0], tmp_path / "none", name=name)

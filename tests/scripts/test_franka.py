@@ -23,6 +23,7 @@ import numpy as np
 import pytest
 
 import iiwa_dnn
+from helpers_export import use_armstep
 from helpers_physics import ROOT, run_python
 from judge_distances import Judge
 from scripts import franka
@@ -121,7 +122,7 @@ def test_the_motion_is_accepted_with_reserve_for_lost_commands(
 
 RECORDING = """
 import numpy as np
-from fr3_shield import Shield
+from armstep import Shield
 step, log = Shield.step, []
 def recorded(shield, q, **request):
     begin = time.perf_counter()
@@ -163,10 +164,8 @@ def test_a_port_alone_is_one_of_this_machine_and_a_refusal_is_said_at_once(capfd
 
 
 def test_hostile_requests_of_a_slow_policy_abort_no_motion(server, tmp_path: Path) -> None:
-    folder = iiwa_dnn.export.python(franka.make_shield(), tmp_path / "fr3_shield", "fr3_shield")
-    installed = tmp_path / "installed"
-    pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "-q", "--no-deps")
-    subprocess.run([*pip, "--no-build-isolation", "--target", installed, folder], check=True)
+    tables = iiwa_dnn.export.tables(franka.make_shield(), tmp_path / "fr3_shield.json")
+    package = Path(use_armstep().__file__).parents[1]
     seconds = float(os.environ.get("SECONDS_OF_HOSTILE_REQUESTS", "5"))
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
         link.bind(("127.0.0.1", 0))
@@ -178,9 +177,10 @@ def test_hostile_requests_of_a_slow_policy_abort_no_motion(server, tmp_path: Pat
     code = (
         f"import atexit, time\n{RECORDING}\natexit.register(lambda: np.save({str(file)!r}, log))\n"
         "from scripts import franka\n"
-        f"franka.main('127.0.0.1', {seconds}, requests='{place[0]}:{place[1]}')"
+        f"franka.main('127.0.0.1', {seconds}, requests='{place[0]}:{place[1]}',"
+        f" shield={str(tables)!r})"
     )
-    done = run_python(code, timeout=300.0 + 5.0 * seconds, PYTHONPATH=str(installed))
+    done = run_python(code, timeout=300.0 + 5.0 * seconds, PYTHONPATH=str(package))
     ended.set()
     sender.join()
     assert done.returncode == 0, done.stderr

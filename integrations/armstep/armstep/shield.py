@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from armstep._library import ONE
 from armstep.arms import FARTHEST, TWIST, Arms, Decision, Decisions, numbers
-from armstep.errors import InputError
+from armstep.errors import InputError, LibraryError
 from armstep.tables import Path, Tables
 
 KINDS = ("dq", "twist", "position")
@@ -158,12 +158,23 @@ class Shield(_Requests):
 class Shields(_Requests):
     """Shields of N arms, whose steps are one call; each is answered as by a `Shield`."""
 
+    def __new__(cls, *arguments: Any, device: str = "cpu", **named: Any) -> Shields:
+        """Take the class for a device."""
+        if device == "cpu":
+            return super().__new__(cls)
+        try:
+            from armstep.cuda import CudaShields
+        except ModuleNotFoundError as error:
+            raise LibraryError(f"no {error.name}: pip install 'armstep[cuda]'") from None
+        return super().__new__(CudaShields)
+
     def __init__(
         self,
         tables: Path | Tables,
         count: int,
         threads: int | None = None,
         own: Path | None = None,
+        device: str = "cpu",
     ) -> None:
         """Begin, with all arms at rest where they are measured first.
 
@@ -172,9 +183,11 @@ class Shields(_Requests):
             count: Number of arms, N.
             threads: Threads of a step; None: as many as there are processors.
             own: Library of the parts of a user's own, if the arm has such.
+            device: ``"cpu"``, or for `armstep.cuda.CudaShields` ``"cuda"`` or ``"cuda:1"``.
 
         Raises:
             TablesError: The tables cannot be read, or are those of a controller.
+            LibraryError: What a GPU needs is not installed.
         """
         super().__init__(tables, count, int(threads or os.cpu_count() or 1), own)
 

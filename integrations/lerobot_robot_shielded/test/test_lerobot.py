@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import iiwa_dnn
-from integrations.environment import environment
+from integrations.environment import environment, tables_of
 from judge_limits import breaches
 
 HERE = Path(__file__).resolve().parent
@@ -42,7 +42,8 @@ def commands() -> Path:
 
 def run(commands: Path, command: str, folder: Path, *words: str) -> subprocess.CompletedProcess:
     """Run a command of LeRobot with the shielded robot, which notes its goals in a folder."""
-    robot = ("--robot.type=shielded", "--robot.shield=arm_shield", "--robot.robot={type: ideal}")
+    shield = f"--robot.shield={tables_of(commands / 'python')}"
+    robot = ("--robot.type=shielded", shield, "--robot.robot={type: ideal}")
     own = {"GOALS_FILE": str(folder / "goals.npy"), "HF_LEROBOT_HOME": str(folder / "home")}
     return subprocess.run(
         [commands / f"lerobot-{command}", *robot, "--teleop.type=chunks", *words],

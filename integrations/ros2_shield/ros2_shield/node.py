@@ -1,11 +1,10 @@
 """A ROS 2 node between requests and an arm's controllers, around an exported shield.
 
-The shield is a package that ``iiwa-dnn export --python NAME`` made. docs/integrations.md has the
-topics and parameters.
+The shield is a file of tables that ``iiwa-dnn export --tables FILE`` wrote. docs/integrations.md
+has the topics and parameters.
 """
 
 import gc
-import importlib
 import signal
 import sys
 import time
@@ -13,6 +12,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
+import armstep
 import numpy as np
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -98,19 +98,18 @@ class ShieldNode(Node):
             self._set[name] = self.declare_parameter(name, default, about).value
         if self._set["command"] not in COMMANDS:
             raise RefusedError(f"parameter command: {self._set['command']!r} is none of {COMMANDS}")
-        name = self._set["shield"]
         try:
-            self._package = package = importlib.import_module(name)
             # Of one arm: it brakes at joint positions that are not finite, where `Shield` raises.
-            self._shields = package.Shields(1)
-        except (AttributeError, ImportError, TypeError, ValueError) as error:
-            raise RefusedError(f"parameter shield: {name!r} is no such package: {error}") from error
+            self._shields = armstep.Shields(self._set["shield"], 1)
+        except armstep.ArmstepError as error:
+            raise RefusedError(f"parameter shield: {error}") from error
+        self._tables = tables = self._shields.tables
         self._takes_velocity = self._set["command"] == "velocity"
-        if self._takes_velocity and package.LONGEST_PERIOD is None:
+        if self._takes_velocity and tables.longest_period is None:
             raise RefusedError("parameter command: velocity needs a shield with a longest_period")
-        if not self._takes_velocity and package.DELAY:
+        if not self._takes_velocity and tables.delay:
             raise RefusedError("parameter command: positions need a shield without a delay")
-        self._longest = package.LONGEST_PERIOD or self._set["timeout"]
+        self._longest = tables.longest_period or self._set["timeout"]
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         is_simulated = self.get_parameter("use_sim_time").value
         self._pace = self.get_clock() if is_simulated else steady
@@ -134,10 +133,10 @@ class ShieldNode(Node):
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self.create_service(Trigger, "~/halt", self._on_halt)
         self.create_service(Trigger, "~/reset", self._on_reset)
-        self.create_timer(package.DT, self._on_timer, clock=self._pace)
+        self.create_timer(tables.dt, self._on_timer, clock=self._pace)
         self.create_timer(REPORT, self._report, clock=steady)
         if is_simulated:
-            self.create_timer(package.DT, self._on_watch, clock=steady)
+            self.create_timer(tables.dt, self._on_watch, clock=steady)
 
     def _restart(self) -> None:
         """Forget commands, the request and why the arm is held."""
@@ -185,7 +184,7 @@ class ShieldNode(Node):
         return [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
 
     def _velocities(self, message: Float64MultiArray) -> Any:
-        count = len(self._package.JOINT_NAMES)
+        count = len(self._tables.joint_names)
         if len(message.data) != count:
             raise RefusedError(f"of {len(message.data)} velocities, not {count}")
         return message.data
@@ -201,10 +200,10 @@ class ShieldNode(Node):
         found = dict(zip(message.name, message.position, strict=False))
         if len(found) != len(message.name):
             raise RefusedError("with a joint twice, or without positions")
-        for each in self._package.JOINT_NAMES:
+        for each in self._tables.joint_names:
             if each not in found:
                 raise RefusedError(f"without joint {each!r}")
-        return [found[each] for each in self._package.JOINT_NAMES]
+        return [found[each] for each in self._tables.joint_names]
 
     # ---- Periods
 
@@ -212,7 +211,7 @@ class ShieldNode(Node):
         """Begin a period of the clock, unless the timer makes up for one that was late."""
         self._is_stalled = False
         elapsed = self._now() - self._began[0]
-        if not 0.0 <= elapsed < 0.5 * self._package.DT:
+        if not 0.0 <= elapsed < 0.5 * self._tables.dt:
             self._step(elapsed)
 
     def _on_watch(self) -> None:
@@ -220,7 +219,7 @@ class ShieldNode(Node):
         age = time.monotonic() - self._began[1]
         self._is_stalled = self._is_stalled or age > self._set["timeout"]
         if self._is_stalled:
-            self._step(self._package.DT, "clock stands still")
+            self._step(self._tables.dt, "clock stands still")
 
     def _step(self, elapsed: float, fault: str = "") -> None:
         """Send the command of a period.
@@ -236,7 +235,7 @@ class ShieldNode(Node):
         if not is_first and not 0.0 < elapsed <= self._longest:
             fault = fault or f"period not within {self._longest:g} s"
         if is_first or not 0.0 < elapsed <= timeout:
-            elapsed = self._package.DT
+            elapsed = self._tables.dt
         self._worst = max(self._worst, elapsed)
         blind = self._states.fault(now, timeout)
         q = self._told(now, elapsed, blind)
@@ -244,7 +243,7 @@ class ShieldNode(Node):
         self._fault = self._held or fault or blind or self._request.fault(now, timeout)
         if not (is_first and blind):
             request = {"dq": np.zeros_like(q)} if self._fault else self._request.value
-            period = {"elapsed": elapsed} if self._takes_velocity else {"dt": self._package.DT}
+            period = {"elapsed": elapsed} if self._takes_velocity else {"dt": self._tables.dt}
             self._command = self._shields.step(q, **request, **period)
             self._send(self._command)
         if self._fault != before:
@@ -268,7 +267,7 @@ class ShieldNode(Node):
             error = np.abs(self._due - q)[0]
             self._due = self._due + min(elapsed / FORGOTTEN, 1.0) * (q - self._due)
             if error.max() > self._set["following_error"]:
-                name = self._package.JOINT_NAMES[error.argmax()]
+                name = self._tables.joint_names[error.argmax()]
                 self._held = self._held or f"joint {name!r} does not follow its commands"
         if not self._takes_velocity:
             return command.next_q
@@ -281,8 +280,8 @@ class ShieldNode(Node):
             self._commands.publish(Float64MultiArray(data=numbers))
             return
         point = JointTrajectoryPoint(positions=numbers)
-        point.time_from_start.nanosec = round(1e9 * self._package.DT)
-        message = JointTrajectory(joint_names=self._package.JOINT_NAMES, points=[point])
+        point.time_from_start.nanosec = round(1e9 * self._tables.dt)
+        message = JointTrajectory(joint_names=[*self._tables.joint_names], points=[point])
         self._commands.publish(message)
 
     # ---- Halt, reset, state
@@ -316,7 +315,7 @@ class ShieldNode(Node):
 
     def _report(self) -> None:
         """Publish whether and why the arm brakes, and how far it is from its limits."""
-        status = DiagnosticStatus(name=f"{self.get_name()}: {self._set['shield']}")
+        status = DiagnosticStatus(name=f"{self.get_name()}: {self._tables.name}")
         status.level = DiagnosticStatus.STALE
         status.message = self._fault
         if self._command is not None:

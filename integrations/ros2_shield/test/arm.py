@@ -1,4 +1,4 @@
-"""A simulated arm and hostile requests, for a shield's node: ``arm.py NAME FILE SECONDS MODE``.
+"""A simulated arm and hostile requests, for a shield's node: ``arm.py TABLES FILE SECONDS MODE``.
 
 It runs in the environment of the node. ``simulated``: /clock waits for the node's commands,
 velocities, so that a judge's verdict does not depend on the machine; a period lasts one control
@@ -6,10 +6,10 @@ period, or several. ``timed``: both go by the machine's clock, and the arm takes
 them late. FILE gets the start, and periods and velocities.
 """
 
-import importlib
 import sys
 import time
 
+import armstep
 import numpy as np
 import rclpy
 from builtin_interfaces.msg import Time
@@ -42,11 +42,11 @@ def stamp(ns):
 class Arm(Node):
     """An ideal arm, and whoever asks for motion."""
 
-    def __init__(self, package, is_timed):
+    def __init__(self, tables, is_timed):
         super().__init__("arm")
-        self.names = list(package.JOINT_NAMES)
-        self.dt = package.DT
-        self.limits = package.LIMITS
+        self.names = list(tables.joint_names)
+        self.dt = tables.dt
+        self.limits = tables.limits
         self.is_timed = is_timed
         self.path = [START]
         self.dq = np.zeros(len(START))
@@ -260,7 +260,7 @@ def measure(arm, count):
 if __name__ == "__main__":
     name, file, seconds, mode = sys.argv[1:]
     rclpy.init()
-    arm = Arm(importlib.import_module(name), mode == "timed")
+    arm = Arm(armstep.load_tables(name), mode == "timed")
     arm.ask(None, 200, lambda: arm.times, patience=0.2)
     drive(arm, float(seconds))
     check_reasons(arm)

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import iiwa_dnn
-from integrations.environment import environment
+from integrations.environment import environment, tables_of
 from judge_distances import Judge
 
 HERE = Path(__file__).resolve().parent
@@ -54,7 +54,7 @@ def start(python: Path, *words: Any, **options: Any) -> subprocess.Popen[str]:
 
 def start_node(python: Path, *settings: str) -> subprocess.Popen[str]:
     """Start the node with parameters beside its shield."""
-    words = [word for each in ("shield:=arm_shield", *settings) for word in ("-p", each)]
+    words = [word for each in (f"shield:={tables_of(python)}", *settings) for word in ("-p", each)]
     program = ("-m", "ros2_shield.node", "--ros-args")
     return start(python, *program, *words, stderr=subprocess.PIPE)
 
@@ -70,7 +70,7 @@ def test_no_limit_is_broken_and_the_node_says_why_it_brakes(
     python: Path, mode: str, settings: tuple[str, ...], end: signal.Signals, tmp_path: Path
 ) -> None:
     node = start_node(python, *settings)
-    words = (HERE / "arm.py", "arm_shield", tmp_path / "run.npz", SECONDS, mode)
+    words = (HERE / "arm.py", tables_of(python), tmp_path / "run.npz", SECONDS, mode)
     arm = start(python, *words, stdout=subprocess.PIPE)
     try:
         for line in arm.stdout:
