@@ -15,13 +15,15 @@ from typing import Any
 import armstep
 import numpy as np
 import rclpy
+from armstep.arms import FARTHEST
+from armstep.drive import Drive
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import TwistStamped
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
 from rclpy.exceptions import ParameterException
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
+from rclpy.qos import QoSProfile, qos_profile_sensor_data
 from rclpy.signals import SignalHandlerOptions
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
@@ -30,13 +32,7 @@ from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 NEWEST = QoSProfile(depth=1)
-"""Reliable and volatile, as joint_state_broadcaster publishes; the last message alone counts."""
-
-REST = 1e-9
-"""Velocity of a joint at rest [rad/s]: at a position limit it may back off by rounding."""
-
-FORGOTTEN = 1.0
-"""Time constant with which a velocity-controlled arm's following error is forgotten [s]."""
+"""Reliable and volatile; of requests the last message alone counts."""
 
 REPORT = 0.1
 """Period of the diagnostics [s]."""
@@ -66,21 +62,24 @@ class Newest:
 
     kind: str  # words for it
     problem: str  # reason why the message does not count, or nothing
-    value: dict[str, Any] = field(default_factory=dict)  # its numbers (1, k) by their name
-    time: float = 0.0  # of its arrival, by the clock of the periods [s]
-    age: float = 0.0  # that it had then by its stamp [s]
+    value: dict[str, Any] = field(default_factory=dict)  # its numbers (k,) by their name
+    stamp: int = 0  # its own [ns], 0 without one
+    time: float = -np.inf  # of its stamp, by the clock of the periods [s]
+
+    def is_recent(self, now: float, timeout: float) -> bool:
+        """Test whether the message is not too old at a time [s]."""
+        return abs(now - self.time) <= timeout
 
     def fault(self, now: float, timeout: float) -> str:
         """Return why the message does not count at a time [s], or nothing."""
-        is_recent = 0.0 <= now - self.time <= timeout - self.age
-        return self.problem or ("" if is_recent else f"{self.kind} timed out")
+        return self.problem or ("" if self.is_recent(now, timeout) else f"{self.kind} timed out")
 
 
 class ShieldNode(Node):
     """Keep an arm within its limits whatever is requested.
 
-    Periods are those of a timer by a steady clock or, with `use_sim_time`, by /clock. `_step`
-    alone computes a command and decides whether to brake.
+    Periods are those of a timer by a steady clock or, with `use_sim_time`, by /clock. A
+    `armstep.drive.Drive` decides when to begin and to brake.
     """
 
     def __init__(self) -> None:
@@ -98,35 +97,34 @@ class ShieldNode(Node):
             self._set[name] = self.declare_parameter(name, default, about).value
         if self._set["command"] not in COMMANDS:
             raise RefusedError(f"parameter command: {self._set['command']!r} is none of {COMMANDS}")
+        self._takes_velocity = self._set["command"] == "velocity"
         try:
-            # Of one arm: it brakes at joint positions that are not finite, where `Shield` raises.
-            self._shields = armstep.Shields(self._set["shield"], 1)
+            shield = armstep.Shield(self._set["shield"])
         except armstep.ArmstepError as error:
             raise RefusedError(f"parameter shield: {error}") from error
-        self._tables = tables = self._shields.tables
-        self._takes_velocity = self._set["command"] == "velocity"
-        if self._takes_velocity and tables.longest_period is None:
-            raise RefusedError("parameter command: velocity needs a shield with a longest_period")
-        if not self._takes_velocity and tables.delay:
-            raise RefusedError("parameter command: positions need a shield without a delay")
-        self._longest = tables.longest_period or self._set["timeout"]
+        about = (self._takes_velocity, self._set["timeout"], self._set["following_error"])
+        try:
+            self._drive = Drive(shield, *about)
+        except armstep.InputError as error:
+            raise RefusedError(f"parameter command: {error}") from error
+        self._tables = tables = shield.tables
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         is_simulated = self.get_parameter("use_sim_time").value
         self._pace = self.get_clock() if is_simulated else steady
         self._states = Newest("joint states", "no joint states")
         self._request = Newest("request", "no request")
-        self._fault = "no joint states"  # why the arm brakes
         self._began = (0.0, time.monotonic())  # the last period, by its clock and a steady one [s]
         self._is_stalled = False  # whether /clock stands still
-        self._worst = 0.0  # longest period since the last report [s]
-        self._restart()
-        for topic, message, *taker in (
-            ("/joint_states", JointState, self._states, "q", self._joints),
-            ("~/delta_twist_cmds", TwistStamped, self._request, "twist", self._twist),
-            ("~/velocity_cmds", Float64MultiArray, self._request, "dq", self._velocities),
-            ("~/position_cmds", JointTrajectory, self._request, "position", self._positions),
+        for topic, message, read in (
+            ("~/delta_twist_cmds", TwistStamped, self._twist),
+            ("~/velocity_cmds", Float64MultiArray, self._velocities),
+            ("~/position_cmds", JointTrajectory, self._positions),
         ):
-            self.create_subscription(message, topic, partial(self._take, *taker), NEWEST)
+            take = partial(self._take, self._request, read)
+            self.create_subscription(message, topic, take, NEWEST)
+        # Best effort receives what is reliable, too; another's states do not displace the arm's.
+        states = (JointState, "/joint_states", self._on_states, qos_profile_sensor_data)
+        self.create_subscription(*states)
         is_trajectory = self._set["command"] == "trajectory"
         sent = JointTrajectory if is_trajectory else Float64MultiArray
         self._commands = self.create_publisher(sent, "~/commands", NEWEST)
@@ -138,72 +136,75 @@ class ShieldNode(Node):
         if is_simulated:
             self.create_timer(tables.dt, self._on_watch, clock=steady)
 
-    def _restart(self) -> None:
-        """Forget commands, the request and why the arm is held."""
-        self._shields.reset()
-        self._request.problem = "no request"
-        self._held = ""  # why the arm brakes until ~/reset
-        self._command: Any = None  # the last one
-        self._seen: Any = None  # joint positions of the last period (1, n) [rad]
-        self._due: Any = None  # those to which the commands lead (1, n) [rad]
-
     # ---- Messages
 
-    def _take(self, newest: Newest, name: str, numbers: Any, message: Any) -> None:
-        """Keep the numbers of a message, or the reason why it does not count."""
+    def _take(self, newest: Newest, read: Any, message: Any) -> bool:
+        """Keep the numbers of a message, or the reason why it does not count.
+
+        One that is not stamped later than the newest is passed over; return whether it counts.
+        """
+        now = self._now()
+        stamp = Time.from_msg(message.header.stamp) if hasattr(message, "header") else Time()
+        is_late = 0 < stamp.nanoseconds <= newest.stamp
+        if is_late and newest.is_recent(now, self._set["timeout"]):
+            return False
         try:
-            age = self._age(message)
-            value = np.array([numbers(message)], dtype=float)
-            if not np.isfinite(value).all():
+            age = self._age(stamp)
+            value = {name: np.array(numbers, float) for name, numbers in read(message).items()}
+            if not all(np.isfinite(each).all() for each in value.values()):
                 raise RefusedError("not finite")
-        except RefusedError as error:
+        except (RefusedError, armstep.InputError) as error:
             newest.problem = f"{newest.kind} {error}"
-            return
+            return False
         newest.problem = ""
-        newest.value = {name: value}
-        newest.time, newest.age = self._now(), age
+        newest.value = value
+        newest.stamp, newest.time = stamp.nanoseconds, now - age
+        return True
 
     def _now(self) -> float:
         return float(self._pace.now().nanoseconds * 1e-9)
 
-    def _age(self, message: Any) -> float:
-        """Return the age of a message by its stamp [s], 0 without one."""
-        stamp = Time.from_msg(message.header.stamp) if hasattr(message, "header") else Time()
+    def _age(self, stamp: Time) -> float:
+        """Return the age of a message by its stamp [s], 0 without one.
+
+        One that is ahead is of the next period at most: it came before the clock's tick.
+        """
         if stamp.nanoseconds == 0:
             return 0.0
         age = float((self.get_clock().now() - stamp).nanoseconds * 1e-9)
         if abs(age) > self._set["timeout"]:
             raise RefusedError(f"stamped in the {'past' if age > 0.0 else 'future'}")
-        return max(age, 0.0)
+        return max(age, -self._tables.dt)
 
-    def _twist(self, message: TwistStamped) -> list[float]:
+    def _twist(self, message: TwistStamped) -> dict[str, Any]:
         frame = message.header.frame_id
         if frame not in ("", self._set["base_frame"]):
             raise RefusedError(f"in frame {frame!r}, not {self._set['base_frame']!r}")
         linear, angular = message.twist.linear, message.twist.angular
-        return [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
+        return {"twist": [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]}
 
-    def _velocities(self, message: Float64MultiArray) -> Any:
+    def _velocities(self, message: Float64MultiArray) -> dict[str, Any]:
         count = len(self._tables.joint_names)
         if len(message.data) != count:
             raise RefusedError(f"of {len(message.data)} velocities, not {count}")
-        return message.data
+        return {"dq": message.data}
 
-    def _positions(self, message: JointTrajectory) -> list[float]:
+    def _positions(self, message: JointTrajectory) -> dict[str, Any]:
         if len(message.points) != 1:
             raise RefusedError(f"of {len(message.points)} points, not one")
-        positions = message.points[0].positions
-        return self._joints(JointState(name=message.joint_names, position=positions))
+        return {"position": self._drive.ordered(message.joint_names, message.points[0].positions)}
 
-    def _joints(self, message: JointState) -> list[float]:
-        """Return positions [rad] in the order of the shield's joints, by their names."""
-        found = dict(zip(message.name, message.position, strict=False))
-        if len(found) != len(message.name):
-            raise RefusedError("with a joint twice, or without positions")
-        for each in self._tables.joint_names:
-            if each not in found:
-                raise RefusedError(f"without joint {each!r}")
-        return [found[each] for each in self._tables.joint_names]
+    def _measured(self, message: JointState) -> dict[str, Any]:
+        q = self._drive.ordered(message.name, message.position)
+        if max(map(abs, q)) > FARTHEST:
+            raise RefusedError(f"beyond {FARTHEST:g} rad")
+        return {"q": q}
+
+    def _on_states(self, message: JointState) -> None:
+        """Take joint states, unless they are those of others."""
+        is_others = set(message.name).isdisjoint(self._tables.joint_names)
+        if not is_others and self._take(self._states, self._measured, message):
+            self._drive.see(self._states.time, self._states.value["q"])
 
     # ---- Periods
 
@@ -218,7 +219,7 @@ class ShieldNode(Node):
         """Begin a period while /clock stands still: the arm may not."""
         age = time.monotonic() - self._began[1]
         self._is_stalled = self._is_stalled or age > self._set["timeout"]
-        if self._is_stalled:
+        if self._is_stalled and self._drive.has_begun:
             self._step(self._tables.dt, "clock stands still")
 
     def _step(self, elapsed: float, fault: str = "") -> None:
@@ -231,51 +232,17 @@ class ShieldNode(Node):
         now = self._now()
         timeout = self._set["timeout"]
         self._began = (now, time.monotonic())
-        is_first = self._command is None
-        if not is_first and not 0.0 < elapsed <= self._longest:
-            fault = fault or f"period not within {self._longest:g} s"
-        if is_first or not 0.0 < elapsed <= timeout:
-            elapsed = self._tables.dt
-        self._worst = max(self._worst, elapsed)
-        blind = self._states.fault(now, timeout)
-        q = self._told(now, elapsed, blind)
-        before = self._fault
-        self._fault = self._held or fault or blind or self._request.fault(now, timeout)
-        if not (is_first and blind):
-            request = {"dq": np.zeros_like(q)} if self._fault else self._request.value
-            period = {"elapsed": elapsed} if self._takes_velocity else {"dt": self._tables.dt}
-            self._command = self._shields.step(q, **request, **period)
-            self._send(self._command)
-        if self._fault != before:
+        before = self._drive.fault
+        reasons = (fault, *(each.fault(now, timeout) for each in (self._states, self._request)))
+        command = self._drive.step(now, elapsed, self._request.value, *reasons)
+        if command is not None:
+            self._send(command)
+        if self._drive.fault != before:
             self._report()
-
-    def _told(self, now: float, elapsed: float, blind: str) -> Any:
-        """Return the joint positions (1, n) [rad] for the shield; hold an arm that does not follow.
-
-        Commanded positions never jump, so they are told as measured ones: the shield is then never
-        resynchronised.
-        """
-        measured = self._states.value.get("q")
-        command = self._command
-        if command is None:
-            self._seen = self._due = measured
-            return measured
-        q = measured + (now - self._states.time) * command.dq
-        self._due = self._due + elapsed * command.dq if self._takes_velocity else command.next_q
-        if not blind and measured is not self._seen:
-            self._seen = measured
-            error = np.abs(self._due - q)[0]
-            self._due = self._due + min(elapsed / FORGOTTEN, 1.0) * (q - self._due)
-            if error.max() > self._set["following_error"]:
-                name = self._tables.joint_names[error.argmax()]
-                self._held = self._held or f"joint {name!r} does not follow its commands"
-        if not self._takes_velocity:
-            return command.next_q
-        return np.nan * q if blind else q
 
     def _send(self, command: Any) -> None:
         """Publish a command in the form of the parameter."""
-        numbers = (command.dq if self._takes_velocity else command.next_q)[0].tolist()
+        numbers = (command.dq if self._takes_velocity else command.next_q).tolist()
         if self._set["command"] != "trajectory":
             self._commands.publish(Float64MultiArray(data=numbers))
             return
@@ -287,52 +254,51 @@ class ShieldNode(Node):
     # ---- Halt, reset, state
 
     def _on_halt(self, _: Any, response: Any) -> Any:
-        self._held = "halted"
+        self._drive.hold("halted")
         response.success = True
         response.message = "brakes until ~/reset"
         return response
 
     def _on_reset(self, _: Any, response: Any) -> Any:
         """Forget why the arm is held and the request, if it is at rest."""
-        response.success = self._is_at_rest()
+        response.success = self._drive.is_at_rest
         response.message = "waits for requests" if response.success else "moves: ~/halt first"
         if response.success:
-            self._restart()
+            self._drive.reset()
+            self._request.problem = "no request"
         return response
-
-    def _is_at_rest(self) -> bool:
-        """Test whether the last command was one to rest, or there was none."""
-        return self._command is None or bool(np.abs(self._command.dq).max() <= REST)
 
     def come_to_rest(self, executor: Any) -> str:
         """Brake within the limits; return why that was not possible, or nothing."""
-        self._held = "the node ends"
-        duration = 1.0 + self._set["timeout"] + 2.0 * self._shields.stopping_time(0)
-        end = time.monotonic() + duration
-        while not self._is_at_rest() and time.monotonic() < end:
+        drive = self._drive
+        drive.hold("the node ends")
+        stopping = drive.command.stopping_time if drive.command is not None else 0.0
+        end = time.monotonic() + 1.0 + self._set["timeout"] + 2.0 * stopping
+        while not drive.is_at_rest and time.monotonic() < end:
             executor.spin_once(timeout_sec=0.01)
-        return "" if self._is_at_rest() else f"velocities left: {self._command.dq.round(4)}"
+        return "" if drive.is_at_rest else f"velocities left: {drive.command.dq.round(4)}"
 
     def _report(self) -> None:
         """Publish whether and why the arm brakes, and how far it is from its limits."""
         status = DiagnosticStatus(name=f"{self.get_name()}: {self._tables.name}")
         status.level = DiagnosticStatus.STALE
-        status.message = self._fault
-        if self._command is not None:
-            limits = self._shields.active_limits(0)
-            margin = self._shields.margin(0)
+        status.message = fault = self._drive.fault
+        command = self._drive.command
+        if command is not None:
+            limits = command.active_limits
+            margin = command.margin
             status.level = DiagnosticStatus.WARN if limits else DiagnosticStatus.OK
-            status.level = DiagnosticStatus.ERROR if self._fault else status.level
-            status.message = self._fault or (limits[0] if limits else "follows the request")
+            status.level = DiagnosticStatus.ERROR if fault else status.level
+            status.message = fault or (limits[0] if limits else "follows the request")
             values = {
                 "active limits": "; ".join(limits),
                 "margin of joints [rad]": f"{margin.joint:.6g}",
                 "margin of distances [m]": f"{margin.distance:.6g}",
-                "stopping time [s]": f"{self._shields.stopping_time(0):.6g}",
-                "longest period [s]": f"{self._worst:.6g}",
+                "stopping time [s]": f"{command.stopping_time:.6g}",
+                "longest period [s]": f"{self._drive.worst:.6g}",
             }
             status.values = [KeyValue(key=key, value=value) for key, value in values.items()]
-        self._worst = 0.0
+        self._drive.worst = 0.0
         message = DiagnosticArray(status=[status])
         message.header.stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(message)

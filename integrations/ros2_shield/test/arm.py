@@ -3,7 +3,9 @@
 It runs in the environment of the node. ``simulated``: /clock waits for the node's commands,
 velocities, so that a judge's verdict does not depend on the machine; a period lasts one control
 period, or several. ``timed``: both go by the machine's clock, and the arm takes positions and shows
-them late. FILE gets the start, and periods and velocities.
+them late. ``near`` and ``remote``: simulated, no faults but those of a bad network of the latter.
+``moving``: simulated, of an arm that moves before the node begins. FILE gets the start, and periods
+and velocities.
 """
 
 import sys
@@ -16,6 +18,7 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import TwistStamped
 from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
@@ -42,12 +45,15 @@ def stamp(ns):
 class Arm(Node):
     """An ideal arm, and whoever asks for motion."""
 
-    def __init__(self, tables, is_timed):
+    def __init__(self, tables, mode):
         super().__init__("arm")
+        self.is_remote = mode == "remote"
+        self.on_its_way = []  # messages and the times of their arrival
+        self.random = np.random.default_rng(0)
         self.names = list(tables.joint_names)
         self.dt = tables.dt
         self.limits = tables.limits
-        self.is_timed = is_timed
+        self.is_timed = mode == "timed"
         self.path = [START]
         self.dq = np.zeros(len(START))
         self.t = 1000.0
@@ -57,7 +63,11 @@ class Arm(Node):
         self.said = [""]  # by the diagnostics
         self.publishers_of = {kind: self.create_publisher(kind, TOPICS[kind], 1) for kind in TOPICS}
         self.create_subscription(DiagnosticArray, "/diagnostics", self.on_state, 10)
-        kind = JointTrajectory if is_timed else Float64MultiArray
+        # The node receives states of both reliabilities.
+        if not self.is_timed:
+            states = (JointState, TOPICS[JointState], qos_profile_sensor_data)
+            self.publishers_of[JointState] = self.create_publisher(*states)
+        kind = JointTrajectory if self.is_timed else Float64MultiArray
         self.create_subscription(kind, "/shield/commands", self.on_command, 1000)
 
     def on_state(self, message):
@@ -76,7 +86,16 @@ class Arm(Node):
         self.log.append([self.dt * self.is_timed, *self.dq])
 
     def publish(self, message):
-        self.publishers_of[type(message)].publish(message)
+        """Publish a message; over the network of a remote arm late, unordered, twice or not."""
+        is_far = self.is_remote and not isinstance(message, Clock)
+        copies = self.random.choice([0, 1, 2], p=[0.2, 0.7, 0.1]) if is_far else 1
+        for _ in range(copies):
+            is_late = is_far and self.random.random() < 0.7
+            self.on_its_way.append((self.t + is_late * self.random.uniform(0.04, 0.12), message))
+        arrived = [each for each in self.on_its_way if each[0] <= self.t]
+        self.on_its_way = [each for each in self.on_its_way if each[0] > self.t]
+        for _, each in sorted(arrived, key=lambda pair: pair[0]):
+            self.publishers_of[type(each)].publish(each)
 
     def now(self):
         """Return the time of the clock [ns]."""
@@ -92,6 +111,7 @@ class Arm(Node):
         message.position = [0.0, *(shown if q is None else q)[::-1].tolist()]
         message.header.stamp = stamp(self.now() if at is None else at)
         self.publish(message)
+        self.publish(JointState(name=["gripper"], position=[0.0]))  # of its own, on this topic
 
     def wait(self, until, patience=PATIENCE):
         end = time.perf_counter() + patience
@@ -182,6 +202,31 @@ def drive(arm, seconds):
     assert arm.is_timed or any("period not within" in words for words in arm.said)
 
 
+def rove(arm, seconds):
+    """Ask for velocities that change twice a second, for a number of seconds."""
+    random = np.random.default_rng(0)
+    end = arm.t + seconds
+    while arm.t < end:
+        asked = random.choice([-1.0, 1.0], 7) * random.uniform(0.3, 3.0) * arm.limits["velocity"]
+        arm.ask(Float64MultiArray(data=asked.tolist()), 125)
+    assert not any("does not follow" in words for words in arm.said)
+
+
+def begin_in_motion(arm):
+    """Check that a node waits for an arm to move steadily, and brakes from its velocity."""
+    steady = 0.3 * arm.limits["velocity"] * np.sign(-START - 1e-3)
+    for k in range(100):
+        arm.dq = steady * (-1.0) ** (k // 10)
+        arm.turn(patience=0.02)
+    assert not arm.times
+    assert any(words.startswith("waits until") for words in arm.said)
+    arm.dq = steady
+    arm.ask(None, 150, lambda: arm.times, patience=0.02)
+    arm.ask(None, 200, arm.rests)
+    assert arm.rests()
+    arm.log[:0] = 2 * [[arm.dt, *steady]]
+
+
 def check_reasons(arm):
     """Check that a moving arm comes to rest for each reason, which is said, and goes on."""
     random = np.random.default_rng(0)
@@ -193,7 +238,7 @@ def check_reasons(arm):
         if words not in GOOD:
             arm.ask(request, 200, arm.rests, **shown)
             assert arm.rests(), words
-            assert words in arm.said[-1], arm.said[-1]
+            assert arm.wait(lambda words=words: words in arm.said[-1]), arm.said[-1]
 
 
 def call(arm, name):
@@ -237,7 +282,7 @@ def check_clock(arm):
         arm.ask(request, 200, lambda: not arm.rests())
         assert not arm.rests(), arm.said[-1]
         assert arm.wait(arm.rests)
-        assert "clock stands still" in arm.said
+        assert arm.wait(lambda: arm.said[-1] == "clock stands still")
     arm.ask(request, 200, lambda: not arm.rests())
     assert not arm.rests(), arm.said[-1]
     arm.t -= 50.0
@@ -260,16 +305,22 @@ def measure(arm, count):
 if __name__ == "__main__":
     name, file, seconds, mode = sys.argv[1:]
     rclpy.init()
-    arm = Arm(armstep.load_tables(name), mode == "timed")
-    arm.ask(None, 200, lambda: arm.times, patience=0.2)
-    drive(arm, float(seconds))
-    check_reasons(arm)
-    check_held(arm)
+    arm = Arm(armstep.load_tables(name), mode)
+    if mode == "moving":
+        begin_in_motion(arm)
+    else:
+        arm.ask(None, 200, lambda: arm.times, patience=0.05)
+    if mode in ("near", "remote"):
+        rove(arm, float(seconds))
+    if mode in ("simulated", "timed"):
+        drive(arm, float(seconds))
+        check_reasons(arm)
+        check_held(arm)
     np.savez(file, start=arm.path[0], log=arm.log)
+    if mode == "simulated":
+        check_clock(arm)
     if arm.is_timed:
         measure(arm, int(4 * float(seconds)))
         arm.ask(arm.velocity(0.2))
-    else:
-        check_clock(arm)
     print("stop", flush=True)  # the node is ended now, in motion, its clock stands still
     assert arm.wait(arm.rests), f"the node left the arm moving: {arm.dq}"

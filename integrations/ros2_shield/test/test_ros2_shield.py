@@ -31,6 +31,7 @@ pytestmark = pytest.mark.skipif(
     sys.version_info[:2] != (3, 11), reason="the wheels of ROS Jazzy are for Python 3.11"
 )
 SECONDS = os.environ.get("SECONDS_OF_HOSTILE_REQUESTS", "5")
+SIMULATED = ("use_sim_time:=true", "timeout:=0.5")
 DISTANCE = 0.02
 ROBOT = iiwa_dnn.load_robot("iiwa7").with_limits(acceleration=10.0, jerk=500.0)
 BALL = iiwa_dnn.Sphere(center=[0.36, 0.16, 0.64], radius=0.05)
@@ -59,36 +60,56 @@ def start_node(python: Path, *settings: str) -> subprocess.Popen[str]:
     return start(python, *program, *words, stderr=subprocess.PIPE)
 
 
-@pytest.mark.parametrize(
-    ("mode", "settings", "end"),
-    [
-        ("simulated", ("use_sim_time:=true", "timeout:=0.5"), signal.SIGINT),
-        ("timed", ("command:=trajectory", "following_error:=0.5"), signal.SIGTERM),
-    ],
-)
-def test_no_limit_is_broken_and_the_node_says_why_it_brakes(
-    python: Path, mode: str, settings: tuple[str, ...], end: signal.Signals, tmp_path: Path
-) -> None:
+def run(python: Path, folder: Path, mode: str, *settings: str) -> Any:
+    """Run the node and an arm, end the node in motion, and return what the arm has written."""
     node = start_node(python, *settings)
-    words = (HERE / "arm.py", tables_of(python), tmp_path / "run.npz", SECONDS, mode)
+    words = (HERE / "arm.py", tables_of(python), folder / "run.npz", SECONDS, mode)
     arm = start(python, *words, stdout=subprocess.PIPE)
     try:
         for line in arm.stdout:
             print(line, end="")
             if line == "stop\n":
                 break
-        node.send_signal(end)
+        node.send_signal(signal.SIGTERM if mode == "timed" else signal.SIGINT)
         assert node.wait(60) == 0  # at rest
         assert arm.wait(60) == 0
     finally:
         node.kill()
         arm.kill()
-    run = np.load(tmp_path / "run.npz")
-    judge(run["start"], run["log"][:, :1], run["log"][:, 1:])
+    return np.load(folder / "run.npz")
 
 
-def judge(start: np.ndarray, periods: np.ndarray, dq: np.ndarray) -> None:
-    """Judge velocities (k, n) [rad/s] that are held for periods (k, 1) [s], from a start."""
+@pytest.mark.parametrize(
+    ("mode", "settings"),
+    [
+        ("simulated", SIMULATED),
+        ("timed", ("command:=trajectory", "following_error:=0.5")),
+        ("moving", SIMULATED),
+    ],
+)
+def test_no_limit_is_broken_and_the_node_says_why_it_brakes(
+    python: Path, mode: str, settings: tuple[str, ...], tmp_path: Path
+) -> None:
+    found = run(python, tmp_path, mode, *settings)
+    judge(found["start"], found["log"])
+
+
+def test_a_bad_network_breaks_no_limit_and_slows_the_arm_little(
+    python: Path, tmp_path: Path
+) -> None:
+    ways = []
+    for mode in ("near", "remote"):
+        found = run(python, tmp_path, mode, *SIMULATED)
+        judge(found["start"], found["log"])
+        ways.append(np.abs(found["log"][:, :1] * found["log"][:, 1:]).sum())
+    print(f"way {ways[1] / ways[0]:.3f} of that over a good network")
+    assert ways[1] >= 0.9 * ways[0]
+
+
+def judge(start: np.ndarray, log: np.ndarray) -> None:
+    """Judge periods [s] and the velocities [rad/s] held for them, (k, 1 + n), from a start."""
+    periods = log[:, :1]
+    dq = log[:, 1:]
     lower, upper, velocity, acceleration, jerk = ROBOT.limits
     q = start + np.vstack([0.0 * start, np.cumsum(periods * dq, axis=0)])
     assert (q >= lower - 1e-9).all()

@@ -1,0 +1,321 @@
+"""What stands between a shield and an arm's driver: when to begin, when to brake, and why."""
+
+import math
+from bisect import bisect_right
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from armstep.errors import InputError
+from armstep.shield import Shield, ShieldCommand
+from armstep.tables import Array
+
+TURN = 2.0 * np.pi
+"""Turn after which a joint without position limits is at the same place [rad]."""
+
+FORGOTTEN = 1.0
+"""Time constant with which a velocity-controlled arm's following error is forgotten [s]."""
+
+WINDOWS = (0.1, 1.0)
+"""Times for which an arm moves steadily before it is commanded [s]; coarse encoders need the last.
+"""
+
+STEADY = 2e-3
+"""Velocity that counts as noise [rad/s]: the jerk of a jump by it is within usual limits."""
+
+REST = 1e-9
+"""Commanded velocity that counts as rest [rad/s]: at a limit a joint may back off by rounding."""
+
+
+def without_turns(difference: Array, limits: Mapping[str, Array]) -> Array:
+    """Return differences of positions (..., n) [rad], without whole turns of unlimited joints."""
+    is_unlimited = np.isinf(limits["upper"] - limits["lower"])
+    return difference - TURN * is_unlimited * np.round(difference / TURN)
+
+
+class Recent:
+    """Joint positions of the last moments, for the velocity from which an arm is commanded."""
+
+    def __init__(self, limits: Mapping[str, Array], longest: float) -> None:
+        """Take the limits of n joints, and the longest time between two states [s]."""
+        self._limits = limits
+        self._longest = longest
+        self._states: list[Any] = []
+
+    def see(self, t: float, q: Array) -> None:
+        """Take positions q (n,) [rad] that were measured at a time [s]."""
+        if self._states and not 0.0 < t - self._states[-1][0] <= self._longest:
+            self._states.clear()
+        self._states.append((t, q))
+        while t - self._states[0][0] > max(WINDOWS) + self._longest:
+            del self._states[0]
+
+    def velocity(self) -> Array | None:
+        """Return the velocities (n,) [rad/s] of an arm in steady motion; None: it is not.
+
+        Noise is no motion: an arm at rest has those of 0.
+        """
+        if not self._states:
+            return None
+        t, q = (np.array(each, dtype=float) for each in zip(*self._states, strict=True))
+        for window in WINDOWS:
+            first = np.searchsorted(t, t[-1] - window, side="right") - 1
+            if first < 0:
+                return None
+            ages = (t[-1] - t[first:])[:, None]
+            way = without_turns(q[-1] - q[first:], self._limits)
+            mean: Array = way[0] / ages[0]
+            for dq in (0.0 * mean, mean):
+                if (np.abs(way - ages * dq) <= window * STEADY).all():
+                    return dq
+        return None
+
+
+class Following:
+    """Commanded joint positions of the last moments, and how the measured ones differ from them.
+
+    Attributes:
+        error: Following error: measured less commanded positions at the last state's time [rad],
+            (n,); of an arm that takes velocities, less what is forgotten of it.
+        forgets: Whether the arm takes velocities: what it has lost it does not make up for.
+    """
+
+    def __init__(
+        self, limits: Mapping[str, Array], delay: float, span: float, forgets: bool
+    ) -> None:
+        """Take the limits of n joints.
+
+        Args:
+            limits: Limits of n joints.
+            delay: Time by which the arm is behind its commands [s].
+            span: Largest age of a state [s].
+            forgets: Whether the arm takes velocities.
+        """
+        self._limits = limits
+        self._delay = delay
+        self._span = span + delay
+        self.forgets = forgets
+
+    def begin(self, t: float, q: Array, dq: Array) -> None:
+        """Begin at a time [s] with positions q (n,) [rad], that change by dq (n,) [rad/s] before.
+
+        That is where the arm is measured; its commands are ahead by the delay.
+        """
+        ahead = q + self._delay * dq
+        self._times = [t - self._span, t]
+        self._positions = [ahead - self._span * dq, ahead]
+        self._velocities = [dq, dq]
+        self._offset = q - self.commanded(t - self._delay)
+        self._forgotten = 0.0 * q
+        self.error = 0.0 * q
+        self._seen = t
+
+    def command(self, dq: Array) -> None:
+        """Give a velocity (n,) [rad/s] from the time of the last `advance` on."""
+        self._velocities[-1] = dq
+
+    def advance(self, t: float, elapsed: float, held: float) -> None:
+        """Begin a period.
+
+        Args:
+            t: Present time [s]; if the clock has jumped, times before are counted from it.
+            elapsed: Time since the last period began [s].
+            held: Time for which its velocity moved the arm [s].
+        """
+        jump = t - elapsed - self._times[-1]
+        self._times = [*(each + jump for each in self._times), t]
+        self._positions.append(self._positions[-1] + held * self._velocities[-1])
+        self._velocities.append(self._velocities[-1])
+        if self._times[1] < t - self._span:
+            for each in (self._times, self._positions, self._velocities):
+                del each[0]
+
+    def commanded(self, t: float) -> Array:
+        """Return the commanded positions of a time [s], (n,) [rad]."""
+        k = max(bisect_right(self._times, t) - 1, 0)
+        return self._positions[k] + (t - self._times[k]) * self._velocities[k]
+
+    def see(self, t: float, q: Array) -> None:
+        """Take positions q (n,) [rad] that were measured at a time [s]."""
+        self._offset = q - self.commanded(t - self._delay)
+        self.error = without_turns(self._offset - self._forgotten, self._limits)
+        if self.forgets:
+            part = min(max(t - self._seen, 0.0) / FORGOTTEN, 1.0)
+            self._forgotten = self._forgotten + part * self.error
+        self._seen = t
+
+    def measured(self, t: float) -> Array:
+        """Return the positions of a time [s] that the last state and the commands since tell."""
+        return self.commanded(t - self._delay) + self._offset
+
+
+class Drive:
+    """A shield between requests and an arm's driver, which says what is measured and sends.
+
+    The arm begins once its velocity is known, after a reset too; then commands never jump. It
+    brakes for each reason that a step is given or finds, and is held for some until `reset`.
+
+    Attributes:
+        shield: The shield.
+        command: Its last command, or None.
+        fault: Why the arm brakes, or is not commanded yet; else "".
+        held: Why it brakes until `reset`, or "".
+        has_begun: Whether the arm is commanded.
+        worst: Longest period since this was last set [s].
+    """
+
+    def __init__(
+        self,
+        shield: Shield,
+        takes_velocity: bool = True,
+        timeout: float = 0.1,
+        following_error: float = 0.1,
+    ) -> None:
+        """Take a shield.
+
+        Args:
+            shield: The shield.
+            takes_velocity: Whether the driver takes velocities; or positions.
+            timeout: Age up to which joint states count [s].
+            following_error: Difference of measured and commanded positions at which a joint counts
+                as one that does not follow [rad].
+
+        Raises:
+            InputError: The shield does not fit to such a driver.
+        """
+        tables = shield.tables
+        if takes_velocity and tables.longest_period is None:
+            raise InputError("velocity needs a shield with a longest_period")
+        if not takes_velocity and tables.delay:
+            raise InputError("positions need a shield without a delay")
+        self.shield = shield
+        self.command: ShieldCommand | None = None
+        self.fault = "no joint states"
+        self.worst = 0.0
+        self._timeout = timeout
+        self._following_error = following_error
+        self._following = Following(tables.limits, tables.delay, timeout, takes_velocity)
+        self._recent = Recent(tables.limits, timeout)
+        self._state: tuple[float, Array] | None = None
+        self._seen: Any = None  # the state that was compared with commands
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget why the arm is held, and begin anew; until then the last command goes on."""
+        self.held = ""
+        self.has_begun = False
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Test whether the last command was one to rest, or there was none."""
+        return self.command is None or bool(np.abs(self.command.dq).max() <= REST)
+
+    def hold(self, reason: str) -> None:
+        """Brake for a reason until `reset`."""
+        self.held = self.held or reason
+
+    def ordered(self, names: Any, values: Any) -> list[float]:
+        """Return values in the order of the shield's joints, by their names.
+
+        Raises:
+            InputError: One of them is not there, or twice.
+        """
+        found = dict(zip(names, values, strict=False))
+        if len(found) != len(names):
+            raise InputError("with a joint twice, or without positions")
+        for each in self.shield.tables.joint_names:
+            if each not in found:
+                raise InputError(f"without joint {each!r}")
+        return [found[each] for each in self.shield.tables.joint_names]
+
+    def see(self, t: float, q: Array) -> None:
+        """Take joint positions q (n,) [rad] that were measured at a time [s], the last ones."""
+        self._state = (t, q)
+        self._recent.see(t, q)
+
+    def step(
+        self,
+        t: float,
+        elapsed: float,
+        request: Mapping[str, Any],
+        fault: str = "",
+        blind: str = "",
+        idle: str = "",
+    ) -> ShieldCommand | None:
+        """Return the command of a period, or the last one before the arm begins.
+
+        Args:
+            t: Present time [s].
+            elapsed: Time since the last period began [s].
+            request: Request as an argument of `Shield.step`.
+            fault: Reason to brake.
+            blind: Reason why joint states do not count.
+            idle: Reason why the request does not count.
+        """
+        late = ""
+        if self.has_begun:
+            late, elapsed = self._advance(t, elapsed)
+            if not blind:
+                self._compare()
+        else:
+            elapsed = self.shield.dt
+            blind = blind or self._begin(t)
+        self.worst = max(self.worst, elapsed)
+        self.fault = self.held or fault or late or blind or idle
+        if self.has_begun:
+            self.command = self._answer(t, elapsed, request, blind)
+            self._following.command(self.command.dq)
+        return self.command
+
+    def _advance(self, t: float, elapsed: float) -> tuple[str, float]:
+        """Begin a period; return what is wrong with the last one, or "", and its length [s].
+
+        That of a clock that has jumped is not known.
+        """
+        dt = self.shield.dt
+        longest = self.shield.tables.longest_period or self._timeout
+        late = "" if 0.0 < elapsed <= longest else f"period not within {longest:g} s"
+        length = elapsed if 0.0 < elapsed <= self._timeout else dt
+        self._following.advance(t, length, length if self._following.forgets else dt)
+        return late, length
+
+    def _begin(self, t: float) -> str:
+        """Begin with the velocity that the arm has; return why that is not possible, or ""."""
+        dq = self._recent.velocity()
+        if dq is None or self._state is None:
+            return "waits until the arm is at rest or moves steadily"
+        dt = self.shield.dt
+        self._seen = self._state
+        self._following.begin(t, self._state[1] + (t - self._state[0]) * dq, dq)
+        count = 2 + math.ceil(self.shield.tables.delay / dt)  # commands that the shield remembers
+        self.shield.reset(self._following.commanded(t - count * dt))
+        for _ in range(count):
+            self.shield.send(dq, dt)
+        self.has_begun = True
+        return ""
+
+    def _compare(self) -> None:
+        """Compare a new state with the commands of its time; hold an arm that does not follow."""
+        if self._state is None or self._state is self._seen:
+            return
+        self._seen = self._state
+        self._following.see(*self._state)
+        error = np.abs(self._following.error)
+        if error.max() > self._following_error:
+            name = self.shield.tables.joint_names[error.argmax()]
+            self.hold(f"joint {name!r} does not follow its commands")
+
+    def _answer(
+        self, t: float, elapsed: float, request: Mapping[str, Any], blind: str
+    ) -> ShieldCommand:
+        """Return the shield's command for a request, or one to brake.
+
+        Commanded positions never jump, so they are told as measured ones: the shield is then never
+        resynchronised.
+        """
+        asked = {"dq": np.zeros(len(self._following.error))} if self.fault else request
+        if not self._following.forgets:
+            return self.shield.step(self._following.commanded(t), **asked, dt=self.shield.dt)
+        q = None if blind else self._following.measured(t)
+        return self.shield.step(q, **asked, elapsed=elapsed)
