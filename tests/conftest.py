@@ -3,6 +3,8 @@
 import gc
 import os
 import signal
+from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -20,6 +22,18 @@ os.environ["MPLBACKEND"] = "Agg"
 # The same examples in every run, and none too slow on a busy machine.
 settings.register_profile("iiwa_dnn", derandomize=True, deadline=None)
 settings.load_profile("iiwa_dnn")
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Callable[[str | bytes], Path]:
+    """Write a URDF file, and return its path."""
+
+    def write(content: str | bytes) -> Path:
+        path = tmp_path / "some.urdf"
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        return path
+
+    return write
 
 
 def pytest_collection_finish() -> None:

@@ -42,11 +42,7 @@ def test_every_image_of_the_pages_has_its_script() -> None:
 def test_a_figure_is_drawn_in_the_readers_colors(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in {
-        "shield": ("ruckig", "pylibfranka"),
-        "push": ("mujoco",),
-        "solvers": ("daqp",),
-    }.get(name, ()):
+    for module in NEEDS.get(name, ()):
         pytest.importorskip(module)
     monkeypatch.setattr(figures, "PAPER_DT", 2e-3)
     monkeypatch.setattr(figures, "WORKS", (1e4,))

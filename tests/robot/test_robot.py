@@ -2,7 +2,6 @@
 
 import pickle
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -31,16 +30,6 @@ def one_joint(limit: str = LIMIT, kind: str = "revolute") -> str:
 @pytest.fixture(scope="module")
 def robot() -> Robot:
     return load_robot("iiwa7")
-
-
-@pytest.fixture
-def written(tmp_path: Path):
-    def write(content: str | bytes) -> Path:
-        path = tmp_path / "some.urdf"
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-        return path
-
-    return write
 
 
 def test_by_name_and_by_path(robot: Robot, written) -> None:

@@ -3,7 +3,6 @@
 import os
 import re
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -48,16 +47,6 @@ def elbow(old: str, new: str) -> str:
 
 def plus(content: str) -> str:
     return ARM.replace("</robot>", f"{content}</robot>")
-
-
-@pytest.fixture
-def written(tmp_path: Path):
-    def write(content: str | bytes) -> Path:
-        path = tmp_path / "some.urdf"
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-        return path
-
-    return write
 
 
 READ = {
