@@ -11,7 +11,7 @@ from tyro.extras import subcommand_cli_from_dict
 
 from iiwa_dnn.app.collisions import collisions
 from iiwa_dnn.app.command_line import guard
-from iiwa_dnn.app.replay import view
+from iiwa_dnn.app.replay import replay, view
 from iiwa_dnn.app.sweeps import atlas, paper
 from iiwa_dnn.app.track import export, physics, track
 
@@ -24,6 +24,7 @@ COMMANDS: dict[str, Any] = {
     "paper": paper,
     "atlas": atlas,
     "view": view,
+    "replay": replay,
     "collisions": collisions,
 }
 

@@ -3,6 +3,7 @@
 import signal
 import socket
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,6 +13,7 @@ from tyro.conf import Positional
 
 from iiwa_dnn import InvalidInputError, Record, Robot, compute_metrics
 from iiwa_dnn.app.command_line import SETTINGS_FILE, shown
+from iiwa_dnn.app.recording import read_recording, replayed
 from iiwa_dnn.app.settings import load
 from iiwa_dnn.errors import import_extra
 from iiwa_dnn.files import one_line, read_toml
@@ -48,20 +50,21 @@ def view(
     # Not by exceptions: modules that viser imports swallow those.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    replay = Replay(robot_of(record, file.with_name(SETTINGS_FILE), robot), record, host, port)
+    replay = Replay(
+        robot_of(record.settings, file.with_name(SETTINGS_FILE), robot), record, host, port
+    )
     print(f"open http://{host}:{replay.server.get_port()} in a browser; Ctrl-C ends it", flush=True)
     while True:
         time.sleep(1 / 30)
         replay.tick(1 / 30)
 
 
-def robot_of(record: Record, settings: Path, name: str | None = None) -> Robot:
-    """Load the robot of a record by its settings file; without one, by the record's own settings.
+def robot_of(kept: Mapping[str, Any], settings: Path, name: str | None = None) -> Robot:
+    """Load a record's robot by its settings file; without one, by the record's own settings `kept`.
 
     Raises:
         InvalidInputError: The robot's joints are not those of the record.
     """
-    kept = record.settings
     tools = kept.get("tools", [])
     tip = tools[0]["flange"] if tools else kept.get("tip")
     table = {"name": kept["robot"], "tip": tip, "locked": list(kept["locked"] or ())}
@@ -75,6 +78,22 @@ def robot_of(record: Record, settings: Path, name: str | None = None) -> Robot:
         problem = f"{robot.name} has other joints than the record: {' '.join(robot.joint_names)}"
         raise InvalidInputError("--robot", problem, name)
     return robot
+
+
+def replay(
+    recording: Positional[Path], *, robot: Annotated[str | None, shown("NAME")] = None
+) -> int:
+    """Judge a recording of a shield's steps on an arm; write a report, and a file to attach.
+
+    Args:
+        recording: folder that `armstep.recorded` wrote
+        robot: robot of the recording, by name or file, if its own is elsewhere now
+    """
+    head, rows = read_recording(recording)
+    own = robot_of(head["tables"]["robot"], recording / SETTINGS_FILE, robot)
+    findings, file = replayed(recording, head, rows, own)
+    print(*findings, f"report: {recording / 'report.md'}; to attach: {file}", sep="\n")
+    return int(len(findings) > 0)
 
 
 def serve(title: str, host: str, port: int) -> Any:

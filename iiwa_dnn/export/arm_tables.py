@@ -23,7 +23,7 @@ from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.fitting import controller_scratch, shield_scratch
 from iiwa_dnn.control.paths import by_frame
 from iiwa_dnn.control.plan import Paths
-from iiwa_dnn.control.requests import REASONS
+from iiwa_dnn.control.requests import REASONS, TWIST
 from iiwa_dnn.control.shield import Shield, called_parts
 from iiwa_dnn.control.tracking import TrackingPlan, TrackingSizes, TrackingState
 from iiwa_dnn.errors import InvalidInputError
@@ -40,7 +40,7 @@ from iiwa_dnn.export.core import (
 from iiwa_dnn.export.flat import Flat
 from iiwa_dnn.export.nodes import Node, PartNumber, path_constants, program_constants, robot_labels
 from iiwa_dnn.naming import active_limits, describe, limit_kinds
-from iiwa_dnn.qp import Matrix
+from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Reference
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics_kernel import model_tables
@@ -51,6 +51,9 @@ from iiwa_dnn.schemes.program import ProgramArrays
 
 STEPS = 200
 """Recorded steps that tables in JSON hold."""
+
+REQUESTS = ("", "dq", "twist", "position")
+"""Arguments of a shield's step by the kinds of requests."""
 
 STATE = 1
 """Numbers of an arm's memory before its state: the mark of its tables."""
@@ -89,6 +92,11 @@ class Tables:
         limits = made.limits if isinstance(made, Shield) else made.scheme.limits
         self.kept = ", ".join(each.title for each in limits) or "none"
         self.own = OwnParts()
+        avoidance = avoidance_of(made if isinstance(made, Shield) else made.scheme)
+        self._scene = avoidance and {
+            "distance": avoidance.distance,
+            "obstacles": avoidance.settings()["obstacles"],
+        }
         if isinstance(made, Shield):
             self._take_shield(made, frame or made.robot.tip)
         else:
@@ -199,6 +207,31 @@ class Tables:
             digest = ((digest ^ letter) * _PRIME) & _BITS
         return digest
 
+    @property
+    def _described(self) -> dict[str, Any]:
+        """The robot, as the settings of a record have it."""
+        robot = self.robot
+        return {
+            "robot": robot.name,
+            "joints": [*robot.joint_names],
+            "locked": dict(zip(robot.locked, robot.q_locked, strict=True)),
+            "tip": robot.tip,
+            "tools": [tool.settings() for tool in robot.tools],
+        }
+
+    def _step(self, row: Vector) -> dict[str, Any]:
+        """Return a recorded step: arguments by their names, the command and its result."""
+        n = self.robot.dof
+        t, *numbers, result = Node.of(row, {}).plain
+        kind, period = numbers[n : n + 2]
+        asked = numbers[n + 2 : -n]
+        given = {"q": numbers[:n], "t": t, "target": asked}
+        if self.kind == "shield":
+            request = REQUESTS[int(kind)]
+            given = {"q": numbers[:n], **({"dt": period} if period else {})}
+            given |= {request: asked[: TWIST if request == "twist" else n]} if request else {}
+        return {"given": given, "dq": numbers[-n:], "result": int(result)}
+
     def json(self, name: str, rows: Matrix, tolerance: float) -> str:
         """Write the tables as JSON, with recorded steps.
 
@@ -223,13 +256,14 @@ class Tables:
             "memory": self.memory,
             "scratch": self.scratch,
             "own": self.own.names,
+            "robot": self._described,
+            "scene": self._scene,
             "numbers": Node(self.flat.named).plain,
             "integers": Node(self.flat.worded).plain,
         }
         own["checksum"] = sha256(json.dumps(own).encode()).hexdigest()[:16]
-        steps = [json.dumps(Node.of(row, {}).plain) for row in rows[:STEPS]]
-        lines = ",\n  ".join(steps)
-        vectors = f'{{"tolerance": {tolerance!r}, "rows": [\n  {lines}\n ]}}'
+        lines = ",\n  ".join(json.dumps(self._step(row)) for row in rows[:STEPS])
+        vectors = f'{{"tolerance": {tolerance!r}, "steps": [\n  {lines}\n ]}}'
         return f'{json.dumps(own, indent=1)[:-2]},\n "vectors": {vectors}\n}}\n'
 
 

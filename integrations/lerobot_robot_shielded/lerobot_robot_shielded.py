@@ -31,12 +31,14 @@ class ShieldedConfig(RobotConfig):
         robot: Settings of the robot that is wrapped, with its type.
         shield: File of the shield's tables, whose period is 1 / fps.
         joints: Names of the robot's motors in the order of the shield's joints; none: its own.
+        record: Folder that the last minutes are recorded in; none: they are not.
         following_error: Distance of a motor from its goal [rad] beyond which the goal waits.
     """
 
     robot: dict[str, Any]  # a choice of RobotConfig would contain itself
     shield: str
     joints: list[str] = field(default_factory=list)
+    record: str = ""
     following_error: float = 0.3
 
 
@@ -68,10 +70,13 @@ class Shielded(Robot):
         self.robot = make_robot_from_config(draccus.decode(RobotConfig, config.robot))
         try:
             # Of one arm: it brakes at positions that are not finite, where `Shield` raises.
-            self._shields = armstep.Shields(config.shield, 1)
+            self._shields: Any = armstep.Shields(config.shield, 1)
         except armstep.ArmstepError as error:
             raise ValueError(f"shield: {error}") from error
         tables = self._shields.tables
+        self._recorded: Any = None
+        if config.record:
+            self._recorded = self._shields = armstep.recorded(self._shields, config.record)
         if tables.delay:
             raise ValueError("shield: goal positions need one without a delay")
         self._dt = tables.dt
@@ -145,6 +150,8 @@ class Shielded(Robot):
             waits = (np.abs(away) > self.config.following_error) & ((goal - q) * away > 0.0)
             request = {"position": np.where(waits, q, goal)}
             reason = "; ".join(f"{self._motors[i]} does not follow" for i in waits[0].nonzero()[0])
+        if self._recorded:
+            self._recorded.measured = np.nan * q if measured is None else measured
         self._command = self._shields.step(q, dt=self._dt, **request)
         words = reason or [*self._shields.active_limits(0), "follows the actions"][0]
         words = re.sub(r"\bjoint (\d+)", lambda found: self._motors[int(found[1]) - 1], words)
@@ -162,4 +169,6 @@ class Shielded(Robot):
                 break
             time.sleep(self._dt)
             self._step(self._sent, None, "disconnects")
+        if self._recorded:
+            self._recorded.close()
         self.robot.disconnect()

@@ -25,7 +25,8 @@ def test_the_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> Non
         assert call(*words) == 0
         text = capsys.readouterr().out
         assert all(re.search(rf"^│? +• {name} +\w", text, re.MULTILINE) for name in COMMANDS)
-    assert list(COMMANDS) == ["track", "physics", "export", "paper", "atlas", "view", "collisions"]
+    usual = ["track", "physics", "export", "paper", "atlas", "view", "replay", "collisions"]
+    assert list(COMMANDS) == usual
     assert call("--version") == 0
     assert capsys.readouterr().out == f"iiwa-dnn {iiwa_dnn.__version__}\n"
 

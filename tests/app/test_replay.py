@@ -203,20 +203,22 @@ def test_the_robot_is_the_one_of_the_settings_or_the_record(tmp_path: Path) -> N
     kept = {"robot": "iiwa7", "locked": {"iiwa7_joint_1": 0.0}, "joints": joints}
     record = make_record(dof=6, settings=kept)
     none = tmp_path / "none.toml"
-    assert robot_of(record, none).locked == ("iiwa7_joint_1",)
+    assert robot_of(record.settings, none).locked == ("iiwa7_joint_1",)
     with pytest.raises(IiwaDnnError):
-        robot_of(record, none, "iiwa7_dual")
+        robot_of(record.settings, none, "iiwa7_dual")
     with pytest.raises(InvalidInputError, match="panda has other joints than the record"):
-        robot_of(make_record(settings={"locked": None}), none, "panda")  # it has seven, too
+        robot_of(
+            make_record(settings={"locked": None}).settings, none, "panda"
+        )  # it has seven, too
     file = tmp_path / "settings.toml"
     urdf = load_robot("iiwa7").path
     file.write_text(
         f'[robot]\nname = "{urdf}"\nlocked = ["iiwa7_joint_1"]\nq0 = [0, 0, 0, 0, 0, 0]\n'
     )
     moved = replace(record, settings={**record.settings, "robot": "my_arm"})
-    assert robot_of(moved, file).locked == ("iiwa7_joint_1",)
+    assert robot_of(moved.settings, file).locked == ("iiwa7_joint_1",)
     file.write_text('[robot]\nname = "gone.urdf"\nlocked = ["iiwa7_joint_1"]\n')
-    assert robot_of(moved, file, "iiwa7").name == "iiwa7"
+    assert robot_of(moved.settings, file, "iiwa7").name == "iiwa7"
 
 
 def test_bad_input_is_one_line_and_2(tmp_path, capsys, monkeypatch) -> None:

@@ -361,7 +361,7 @@ def test_tool_shapes_are_settings_of_a_run_and_of_its_record(tmp_path: Path) -> 
     path = d.Circle(radius=0.02, period=2.0).anchored(start)
     record = d.simulate(held, d.DoubleIndicator(), path, start.q, dt=1e-2, duration=0.05)
     record.save(tmp_path / "record.npz")
-    again = robot_of(d.Record.load(tmp_path / "record.npz"), tmp_path / "none.toml")
+    again = robot_of(d.Record.load(tmp_path / "record.npz").settings, tmp_path / "none.toml")
     assert [tool.shapes for tool in again.tools] == [tool.shapes for tool in held.tools]
     np.testing.assert_allclose(d.Configuration(again, start.q).pose, start.pose, atol=1e-12)
 

@@ -12,6 +12,7 @@ package needs numpy alone.
 from armstep.arms import Decision, Decisions
 from armstep.controller import Action, Command, Controller, Controllers, Program, make_target
 from armstep.errors import ArmstepError, InputError, LibraryError, TablesError
+from armstep.recorder import Recorded, recorded
 from armstep.shield import Margin, Reason, Shield, ShieldCommand, Shields
 from armstep.tables import Tables, load_tables
 
@@ -28,6 +29,7 @@ __all__ = [
     "Margin",
     "Program",
     "Reason",
+    "Recorded",
     "Shield",
     "ShieldCommand",
     "Shields",
@@ -35,4 +37,5 @@ __all__ = [
     "TablesError",
     "load_tables",
     "make_target",
+    "recorded",
 ]

@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from armstep.arms import TWIST
 from armstep.controller import Controller, Controllers
 from armstep.errors import ArmstepError, TablesError
-from armstep.shield import KINDS, Shield, Shields
+from armstep.shield import Shield, Shields
 from armstep.tables import load_tables
 
 BATCH = 3
@@ -29,39 +28,32 @@ def check(path: str, own: str | None = None) -> int:
         TablesError: The file cannot be read, or holds no recorded steps.
     """
     tables = load_tables(path, own)
-    try:
-        vectors = json.loads(Path(path).read_text(encoding="utf-8"))["vectors"]
-        rows = np.array([[*map(float, row)] for row in vectors["rows"]])
-        tolerance = float(vectors["tolerance"])
-    except (LookupError, TypeError, ValueError):
-        raise TablesError(f"{path}: holds no recorded steps") from None
     kinds: Any = (Shield, Shields) if tables.kind == "shield" else (Controller, Controllers)
     arms = kinds[0](tables), kinds[1](tables, BATCH)
     differing = 0
-    for k, row in enumerate(rows):
-        differing += not _is_same(arms, row, tolerance)
-        if k % 50 == 25:
-            arms = pickle.loads(pickle.dumps(copy.deepcopy(arms)))
-    print(f"{tables.name}, {tables.digest}: {len(rows)} steps, {differing} differ from iiwa_dnn's")
+    try:
+        vectors = json.loads(Path(path).read_text(encoding="utf-8"))["vectors"]
+        for k, step in enumerate(vectors["steps"]):
+            differing += not _is_same(arms, step, vectors["tolerance"])
+            if k % 50 == 25:
+                arms = pickle.loads(pickle.dumps(copy.deepcopy(arms)))
+    except (LookupError, TypeError, ValueError) as error:
+        raise TablesError(f"{path}: holds no recorded steps: {error!r}") from None
+    count = len(vectors["steps"])
+    print(f"{tables.name}, {tables.digest}: {count} steps, {differing} differ from iiwa_dnn's")
     return differing
 
 
-def _is_same(arms: Any, row: Any, tolerance: float) -> bool:
+def _is_same(arms: Any, step: dict[str, Any], tolerance: float) -> bool:
     """Take a recorded step of one arm and of a batch; return whether all are as recorded."""
-    tables = arms[0].tables
-    n = len(tables.joint_names)
-    most = np.where(np.isfinite(tables.limits["velocity"]), tables.limits["velocity"], 1.0)
-    q, (kind, period), asked, expected = np.split(row[1:-1], [n, n + 2, len(row) - 2 - n])
-    given: dict[str, Any] = {"q": q, "target": asked}
-    times = {"t": row[0]}
-    if tables.kind == "shield":
-        request = {KINDS[int(kind) - 1]: asked[: TWIST if kind == 2 else n]} if kind else {}
-        given = {"q": q, **request}
-        times = {"dt": period or None}
-    tiled = {name: np.tile(value, (BATCH, 1)) for name, value in given.items()}
-    one, many = arms[0].step(**given, **times), arms[1].step(**tiled, **times)
-    errors = np.abs(np.array([one.dq, *many.dq]) - expected) / most
-    return bool(errors.max() <= tolerance) and {one.result, *many.reason} == {row[-1]}
+    given = {name: np.array(value, np.float64) for name, value in step["given"].items()}
+    tiled = {k: np.tile(each, (BATCH, 1)) if each.ndim else each for k, each in given.items()}
+    one, many = arms[0].step(**given), arms[1].step(**tiled)
+    most = arms[0].tables.limits["velocity"]
+    errors = np.abs([one.dq, *many.dq] - np.array(step["dq"])) / np.where(
+        np.isfinite(most), most, 1.0
+    )
+    return bool(errors.max() <= tolerance) and {one.result, *many.reason} == {step["result"]}
 
 
 def main(words: list[str]) -> int:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import copy
 import ctypes
 import os
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -113,9 +112,6 @@ class Decision:
         return f"<{type(self).__name__} dq = {self.dq} rad/s{': ' * bool(limits)}{limits}>"
 
 
-D = TypeVar("D", bound=Decision)
-
-
 class Decisions(NamedTuple):
     """Commands of one step of N arms.
 
@@ -138,7 +134,11 @@ class Decisions(NamedTuple):
         return self.arms.active_limits(i)
 
 
-class Arms(Generic[D]):
+Answer = TypeVar("Answer")
+"""What a step returns: the decision of one arm, or those of many."""
+
+
+class Arms(Generic[Answer]):
     """Memory of one arm, or of N. Threads may share it; copies, pickles and forks carry it along.
 
     Attributes:
@@ -153,7 +153,7 @@ class Arms(Generic[D]):
     count: int
     threads: int
     _kind: str
-    _decision: type[D]
+    _decision: type[Decision]
 
     def __init__(self, tables: Path | Tables, count: int | None, threads: int, own: Any) -> None:
         """Begin, with all arms at rest where they are measured first.
@@ -209,16 +209,13 @@ class Arms(Generic[D]):
             raise InputError(f"{name}: is fixed when the object is made")
         super().__setattr__(name, value)
 
-    def __reduce__(self) -> Any:
-        return _restored, (type(self), self.tables, *self._copied())
-
-    def __deepcopy__(self, memo: Any) -> Any:
-        return copy.copy(self)
-
-    def _copied(self) -> tuple[Any, ...]:
+    def __getstate__(self) -> tuple[Any, ...]:
         """Return arguments of `_begin` for a copy."""
         with self._lock:
-            return self._memory.reshape(*self._many, -1).copy(), self.threads
+            return self.tables, self._memory.reshape(*self._many, -1).copy(), self.threads
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        self._begin(*state)
 
     def _mask(self, name: str, value: ArrayLike | None) -> Any:
         """Return which arms a mask (N,) chooses; None: all."""
@@ -252,8 +249,8 @@ class Arms(Generic[D]):
         request: Array | None,
         periods: tuple[float, float] = (0.0, 0.0),
         t: float = 0.0,
-    ) -> None:
-        """Take a step of all arms, whose answers are in the buffers; the lock is held.
+    ) -> Answer:
+        """Take a step of all arms; the lock is held.
 
         Raises:
             InputError: A step was refused: its arm takes the next command of its motion to rest.
@@ -268,6 +265,10 @@ class Arms(Generic[D]):
             self._buffers.asked[: request.size] = request.reshape(-1)
         if self._shared() if self._many else ONE.armstep_steps(*self._call, 0, 1):
             raise InputError("a step was refused: its arm brakes")
+        if not self._many:
+            return cast(Answer, self._last())
+        dq, next_q, clipped, results = (each.copy() for each in self._buffers[3:7])
+        return cast(Answer, Decisions(dq, next_q, clipped, results, self))  # type: ignore[arg-type]
 
     def _shared(self) -> int:
         """Take the steps of all arms, shared by threads; return the number that was refused."""
@@ -286,22 +287,18 @@ class Arms(Generic[D]):
         tasks = [self._pool[1].submit(work) for _ in others]
         return work() + sum(each.result() for each in tasks)
 
-    def _last(self, i: int = 0) -> D:
+    def _last(self, i: int = 0) -> Any:
         """Return the decision of arm i's last step."""
-        with self._lock:
-            _, _, _, dq, next_q, clipped, results, _ = self._buffers
-            arrays = dq[i].copy(), next_q[i].copy()
-            memory = self._memory[i].copy()
-            return self._decision(*arrays, bool(clipped[i]), int(results[i]), self.tables, memory)
-
-    def _all(self) -> Decisions:
-        """Return the decisions of all arms' last step."""
         _, _, _, dq, next_q, clipped, results, _ = self._buffers
-        return Decisions(dq.copy(), next_q.copy(), clipped.copy(), results.copy(), self)
+        with self._lock:
+            arrays = dq[i].copy(), next_q[i].copy()
+            codes = bool(clipped[i]), int(results[i])
+            return self._decision(*arrays, *codes, self.tables, self._memory[i].copy())
 
     def active_limits(self, i: int = 0) -> tuple[str, ...]:
         """Name what keeps the last command of arm i from what was asked."""
-        return self._last(i).active_limits
+        limits: tuple[str, ...] = self._last(i).active_limits
+        return limits
 
     def place(self, obstacles: ArrayLike) -> None:
         """Say where the centres of the obstacles are [m], (k, 3); for many arms or (N, k, 3).
@@ -362,9 +359,3 @@ class Arms(Generic[D]):
                 raise TablesError("saved: is damaged, or of other tables")
         with self._lock:
             self._memory[...] = memory
-
-
-def _restored(kind: Any, tables: Tables, memory: Array, threads: int) -> Any:
-    own = kind.__new__(kind)
-    own._begin(tables, memory, threads)
-    return own

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from armstep._library import ONE
-from armstep.arms import FARTHEST, FINITE, TARGET, Arms, Decision, Decisions, numbers
+from armstep.arms import FARTHEST, FINITE, TARGET, Answer, Arms, Decision, Decisions, numbers
 from armstep.errors import InputError
 from armstep.tables import Array, Path, Tables
 
@@ -69,29 +69,41 @@ class Command(Decision):
         return float(ONE.armstep_fraction(self.tables.arm, self.memory.ctypes))
 
 
-class _Targets(Arms[Command]):
+class _Controllers(Arms[Answer]):
     """What a controller and many have in common."""
 
     _kind = "controller"
     _decision = Command
 
-    def _answer(self, q: ArrayLike, t: float, target: ArrayLike | None) -> None:
-        """Take a step; the lock is held."""
+    def step(self, q: ArrayLike, t: float, target: ArrayLike | None = None) -> Answer:
+        """Compute the command for joint positions; it counts as sent. N arms have arrays of N rows.
+
+        Args:
+            q: Measured joint positions [rad], (n,).
+            t: Time [s]; the reference is asked for the time `path_lag` before it.
+            target: Targets of the tracked frames, (18,) or (frames, 18), in place of the
+                reference's.
+
+        Raises:
+            InputError: An argument has a wrong shape or is not finite, or there is neither target
+                nor reference; nothing is changed.
+        """
         joints = numbers("q", q, self._shape, FARTHEST)
         if not np.isfinite(t):
             raise InputError(f"t: must be finite, not {t!r}")
-        if target is None and not self.tables.has_reference:
-            raise InputError("target: there is no reference, so each step needs one")
         wanted: Any = None
         if target is not None:
             shape = (*self._many, len(self.tables.frame_names), TARGET)
             given = np.asarray(target)
             is_flat = given.ndim == len(shape) - 1 and given.size == math.prod(shape)
             wanted = numbers("target", given.reshape(shape) if is_flat else given, shape, FINITE)
-        self._take(joints, 0, wanted, t=t)
+        elif not self.tables.has_reference:
+            raise InputError("target: there is no reference, so each step needs one")
+        with self._lock:
+            return self._take(joints, 0, wanted, t=t)
 
 
-class Controller(_Targets):
+class Controller(_Controllers[Command]):
     """Controller of one arm."""
 
     def __init__(self, tables: Path | Tables, own: Path | None = None) -> None:
@@ -123,23 +135,6 @@ class Controller(_Targets):
                 raise InputError("targets: there is no reference")
         return found
 
-    def step(self, q: ArrayLike, t: float, target: ArrayLike | None = None) -> Command:
-        """Compute the command for joint positions; it counts as sent.
-
-        Args:
-            q: Measured joint positions [rad], (n,).
-            t: Time [s]; the reference is asked for the time `path_lag` before it.
-            target: Targets of the tracked frames, (18,) or (frames, 18), in place of the
-                reference's.
-
-        Raises:
-            InputError: An argument has a wrong shape or is not finite, or there is neither target
-                nor reference; nothing is changed.
-        """
-        with self._lock:
-            self._answer(q, t, target)
-            return self._last()
-
     def send(self, dq: ArrayLike, fraction: float = 1.0) -> None:
         """Count a velocity dq (n,) [rad/s] as sent for a period, in place of a step's command.
 
@@ -150,7 +145,7 @@ class Controller(_Targets):
         self._send(dq, self.dt, fraction)
 
 
-class Controllers(_Targets):
+class Controllers(_Controllers[Decisions]):
     """Controllers of N arms, whose steps are one call; each is answered as by a `Controller`."""
 
     def __init__(
@@ -162,19 +157,3 @@ class Controllers(_Targets):
     ) -> None:
         """Begin at rest; as `Controller`, with a number of arms, and of threads as `Shields`."""
         super().__init__(tables, count, int(threads or os.cpu_count() or 1), own)
-
-    def step(self, q: ArrayLike, t: float, target: ArrayLike | None = None) -> Decisions:
-        """Compute the commands for joint positions; they count as sent.
-
-        Args:
-            q: Measured joint positions [rad], (N, n).
-            t: Time [s] of all arms.
-            target: Targets of the tracked frames, (N, 18) or (N, frames, 18), in place of the
-                reference's.
-
-        Raises:
-            InputError: As `Controller.step`; no arm has taken a step.
-        """
-        with self._lock:
-            self._answer(q, t, target)
-            return self._all()

@@ -126,9 +126,9 @@ class CudaShields(Shields):
                 f" {free / 1e6:.0f} MB are free"
             )
 
-    def _copied(self) -> tuple[Any, ...]:
+    def __getstate__(self) -> tuple[Any, ...]:
         with self._lock, self._device:
-            return np.ascontiguousarray(cupy.asnumpy(self._memory).T), self.device
+            return self.tables, np.ascontiguousarray(cupy.asnumpy(self._memory).T), self.device
 
     def _last(self, i: int = 0) -> ShieldCommand:
         """Return the decision of arm i's last step, without its velocities."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from armstep._library import ONE
-from armstep.arms import FARTHEST, TWIST, Arms, Decision, Decisions, numbers
+from armstep.arms import FARTHEST, TWIST, Answer, Arms, Decision, Decisions, numbers
 from armstep.errors import InputError, LibraryError
 from armstep.tables import Path, Tables
 
@@ -76,7 +76,7 @@ class ShieldCommand(Decision):
         return float(ONE.armstep_stopping_time(self.tables.arm, self.memory.ctypes, scratch))
 
 
-class _Requests(Arms[ShieldCommand]):
+class _Shields(Arms[Answer]):
     """What a shield and many have in common."""
 
     _kind = "shield"
@@ -93,8 +93,65 @@ class _Requests(Arms[ShieldCommand]):
         shape = (*self._many, TWIST) if name == "twist" else self._shape
         return 1 + given[0], read(name, values[given[0]], shape)
 
+    def step(
+        self,
+        q: ArrayLike | None,
+        dq: ArrayLike | None = None,
+        *,
+        twist: ArrayLike | None = None,
+        position: ArrayLike | None = None,
+        given: ArrayLike | None = None,
+        obstacles: ArrayLike | None = None,
+        dt: float | None = None,
+        elapsed: float | None = None,
+    ) -> Answer:
+        """Compute the command that is closest to a request; for N arms, arrays have N rows.
 
-class Shield(_Requests):
+        Without a request the last one counts, until it is too old.
+
+        Args:
+            q: Measured joint positions [rad], (n,); None: they could not be read; the arm brakes.
+                Of many, those whose positions are not finite brake.
+            dq: Joint velocity that is requested [rad/s], (n,).
+            twist: Or linear [m/s] and angular [rad/s] velocity of the frame along the base's axes.
+            position: Or joint positions to reach [rad], (n,).
+            given: Whether each of many arms has a new request, (N,); None: all have.
+            obstacles: Where the centres of the obstacles are [m], (k, 3), of many or (N, k, 3);
+                None: where they were.
+            dt: Period for which the command will be held [s].
+            elapsed: Time since the last step [s].
+
+        Raises:
+            InputError: An argument has a wrong shape, `q` of one arm is not finite, there are
+                several requests, or a period is wrong; nothing is changed.
+        """
+        most = None if self._many else FARTHEST
+        joints = np.nan if q is None else numbers("q", q, self._shape, most)
+        request = self._request(dq, twist, position)
+        periods = self._periods(dt, elapsed)
+        mask = self._mask("given", given)
+        with self._lock:
+            if obstacles is not None:
+                self.place(obstacles)
+            self._buffers.given[...] = mask
+            return self._take(joints, *request, periods)
+
+    def margin(self, i: int | None = None) -> Margin:
+        """Return the distances of arm i at the positions that its last command starts from.
+
+        If i is None, those of all arms, as arrays (N,).
+        """
+        if i is None:
+            return Margin(*np.array([self.margin(k) for k in range(self.count)]).T)
+        found: Margin = self._last(i).margin
+        return found
+
+    def stopping_time(self, i: int = 0) -> float:
+        """Return the time of arm i's motion to rest from its last command [s]."""
+        return float(self._last(i).stopping_time)
+
+
+class Shield(_Shields[ShieldCommand]):
     """Shield of one arm."""
 
     def __init__(self, tables: Path | Tables, own: Path | None = None) -> None:
@@ -109,43 +166,6 @@ class Shield(_Requests):
         """
         super().__init__(tables, None, 1, own)
 
-    def step(
-        self,
-        q: ArrayLike | None,
-        dq: ArrayLike | None = None,
-        *,
-        twist: ArrayLike | None = None,
-        position: ArrayLike | None = None,
-        obstacles: ArrayLike | None = None,
-        dt: float | None = None,
-        elapsed: float | None = None,
-    ) -> ShieldCommand:
-        """Compute the command that is closest to a request.
-
-        Without a request the last one counts, until it is too old.
-
-        Args:
-            q: Measured joint positions [rad], (n,); None: they could not be read; the arm brakes.
-            dq: Joint velocity that is requested [rad/s], (n,).
-            twist: Or linear [m/s] and angular [rad/s] velocity of the frame along the base's axes.
-            position: Or joint positions to reach [rad], (n,).
-            obstacles: Where the centres of the obstacles are [m], (k, 3); None: where they were.
-            dt: Period for which this command will be held [s].
-            elapsed: Time since the last step [s].
-
-        Raises:
-            InputError: An argument has a wrong shape, `q` is not finite, there are several
-                requests, or a period is wrong; nothing is changed.
-        """
-        joints = np.nan if q is None else numbers("q", q, self._shape, FARTHEST)
-        request = self._request(dq, twist, position)
-        periods = self._periods(dt, elapsed)
-        with self._lock:
-            if obstacles is not None:
-                self.place(obstacles)
-            self._take(joints, *request, periods)
-            return self._last()
-
     def reset(self, q: ArrayLike | None = None) -> None:  # type: ignore[override]
         """Stand at joint positions q (n,) [rad]; None: where the arm is measured next."""
         super().reset(None, q)
@@ -155,7 +175,7 @@ class Shield(_Requests):
         self._send(dq, self._periods(self.dt if dt is None else dt, None)[0], 1.0)
 
 
-class Shields(_Requests):
+class Shields(_Shields[Decisions]):
     """Shields of N arms, whose steps are one call; each is answered as by a `Shield`."""
 
     def __new__(cls, *arguments: Any, device: str = "cpu", **named: Any) -> Shields:
@@ -190,56 +210,3 @@ class Shields(_Requests):
             LibraryError: What a GPU needs is not installed.
         """
         super().__init__(tables, count, int(threads or os.cpu_count() or 1), own)
-
-    def step(
-        self,
-        q: ArrayLike,
-        dq: ArrayLike | None = None,
-        *,
-        twist: ArrayLike | None = None,
-        position: ArrayLike | None = None,
-        given: ArrayLike | None = None,
-        obstacles: ArrayLike | None = None,
-        dt: float | None = None,
-        elapsed: float | None = None,
-    ) -> Decisions:
-        """Compute the commands that are closest to requests, arrays (N, n) or (N, 6).
-
-        An arm whose request is not finite, or whose joint positions are not, brakes.
-
-        Args:
-            q: Measured joint positions [rad], (N, n).
-            dq: Joint velocities that are requested [rad/s], (N, n).
-            twist: Or twists of the frame, (N, 6).
-            position: Or joint positions to reach [rad], (N, n).
-            given: Whether each arm has a new request, (N,); None: all have.
-            obstacles: Where the obstacles' centres are [m], (k, 3) or (N, k, 3).
-            dt: Period for which the commands will be held [s].
-            elapsed: Time since the last step [s].
-
-        Raises:
-            InputError: An array has a wrong shape, or a period is wrong; no arm has taken a step.
-        """
-        joints = numbers("q", q, self._shape)
-        request = self._request(dq, twist, position)
-        periods = self._periods(dt, elapsed)
-        mask = self._mask("given", given)
-        with self._lock:
-            if obstacles is not None:
-                self.place(obstacles)
-            self._buffers.given[...] = mask
-            self._take(joints, *request, periods)
-            return self._all()
-
-    def margin(self, i: int | None = None) -> Margin:
-        """Return the distances of arm i at the positions that its last command starts from.
-
-        If i is None, those of all arms, as arrays (N,).
-        """
-        if i is not None:
-            return self._last(i).margin
-        return Margin(*np.array([self.margin(k) for k in range(self.count)]).T)
-
-    def stopping_time(self, i: int) -> float:
-        """Return the time of arm i's motion to rest from its last command [s]."""
-        return self._last(i).stopping_time

@@ -55,6 +55,7 @@ class Tables:
         has_reference: Whether a controller samples its targets where none are given.
         memory: Doubles of an arm.
         scratch: Doubles that a call takes for itself.
+        members: The members of the file, but the recorded steps.
     """
 
     name: str
@@ -71,6 +72,7 @@ class Tables:
     has_reference: bool
     memory: int
     scratch: int
+    members: Mapping[str, Any]
 
     def __init__(self, members: Mapping[str, Any], own: str | None = None) -> None:
         """Check the members of a file, and lay them out in C.
@@ -90,7 +92,8 @@ class Tables:
         if members["checksum"] != checksum(kept):
             raise TablesError("is damaged: its checksum is another one")
         vars(self).update(_attributes(members))
-        self._source = kept, own
+        self.members = kept
+        self._own = own
         struct = TablesStruct(
             digest=int(self.digest, 16),
             release=RELEASE,
@@ -109,7 +112,7 @@ class Tables:
             raise TablesError(f"is damaged: {STATUS.get(status, STATUS[3])}")
 
     def __reduce__(self) -> Any:
-        return Tables, self._source
+        return Tables, (self.members, self._own)
 
     def __deepcopy__(self, memo: Any) -> Tables:
         return self

@@ -63,7 +63,7 @@ def test_recorded_steps_are_repeated_and_can_differ(
     assert command.main(["check", str(files[kind])]) == 0
     assert "200 steps, 0 differ from iiwa_dnn's" in capsys.readouterr().out
     members = json.loads(files[kind].read_text(encoding="utf-8"))
-    members["vectors"]["rows"][60][-3] += 1e-6
+    members["vectors"]["steps"][60]["dq"][-2] += 1e-6
     other = tmp_path / "other.json"
     other.write_text(json.dumps(members), encoding="utf-8")
     assert command.main(["check", str(other)]) == 1
@@ -71,7 +71,7 @@ def test_recorded_steps_are_repeated_and_can_differ(
     del members["vectors"]
     other.write_text(json.dumps(members), encoding="utf-8")
     assert command.main(["check", str(other)]) == 2
-    assert capsys.readouterr().err == f"{other}: holds no recorded steps\n"
+    assert capsys.readouterr().err == f"{other}: holds no recorded steps: KeyError('vectors')\n"
     assert command.main([]) == 2
 
 

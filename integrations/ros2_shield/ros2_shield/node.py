@@ -46,6 +46,7 @@ PARAMETERS = {
     "base_frame": "base_link",
     "timeout": 0.1,  # [s]
     "following_error": 0.1,  # [rad]
+    "record": "",
 }
 """Parameters and their defaults."""
 
@@ -99,9 +100,12 @@ class ShieldNode(Node):
             raise RefusedError(f"parameter command: {self._set['command']!r} is none of {COMMANDS}")
         self._takes_velocity = self._set["command"] == "velocity"
         try:
-            shield = armstep.Shield(self._set["shield"])
+            shield: Any = armstep.Shield(self._set["shield"])
         except armstep.ArmstepError as error:
             raise RefusedError(f"parameter shield: {error}") from error
+        self._recorded: Any = None
+        if self._set["record"]:
+            self._recorded = shield = armstep.recorded(shield, self._set["record"])
         about = (self._takes_velocity, self._set["timeout"], self._set["following_error"])
         try:
             self._drive = Drive(shield, *about)
@@ -205,6 +209,8 @@ class ShieldNode(Node):
         is_others = set(message.name).isdisjoint(self._tables.joint_names)
         if not is_others and self._take(self._states, self._measured, message):
             self._drive.see(self._states.time, self._states.value["q"])
+            if self._recorded:
+                self._recorded.measured = self._states.value["q"]
 
     # ---- Periods
 
@@ -276,6 +282,8 @@ class ShieldNode(Node):
         end = time.monotonic() + 1.0 + self._set["timeout"] + 2.0 * stopping
         while not drive.is_at_rest and time.monotonic() < end:
             executor.spin_once(timeout_sec=0.01)
+        if self._recorded:
+            self._recorded.close()
         return "" if drive.is_at_rest else f"velocities left: {drive.command.dq.round(4)}"
 
     def _report(self) -> None:

@@ -1,0 +1,131 @@
+"""A recording of a shield's steps on an arm, and its replay by judges that are not the shield's."""
+
+import json
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers_commands import call
+from helpers_export import needs, use_armstep
+from iiwa_dnn import Configuration, Shield, Sphere, export, load_robot
+from iiwa_dnn.app.recording import read_recording
+
+pytestmark = needs("gcc")
+
+DT = 4e-3
+SECONDS = 26.0
+ROBOT = load_robot("panda")
+START = ROBOT.start_posture()
+SWING = 0.25 * np.array([1.0, 0.5, 1.0, 0.5, 1.0, 1.0, 1.0])
+AWAY = [0.3, 0.0, 0.0]
+
+
+def among(t: float, first: float, length: float) -> bool:
+    return first <= t < first + length
+
+
+def drive(shield: Any, clock: list[float], faults: bool) -> None:
+    """Drive an arm along sinusoids; with faults of its own, not of the shield."""
+    path = [START]
+    tip = Configuration(ROBOT, START).position
+    for k in range(round(SECONDS / DT)):
+        t = DT * k
+        elapsed = 4.0 * DT if faults and among(t, 19.0, 0.2) and k % 10 == 0 else DT
+        behind = 20 if faults and among(t, 6.0, 4.0) else 1
+        measured = path[max(0, len(path) - behind)].copy()
+        if faults and among(t, 14.0, 0.2):
+            measured[3] = ROBOT.q_lower[3] - 0.02
+        place = tip + AWAY
+        if faults and among(t, 22.0, 0.2):
+            place = Configuration(ROBOT, measured).position + [0.05, 0.0, 0.05]
+        goal = START + SWING * np.sin(0.9 * t + np.arange(7))
+        given = {"position": goal, "elapsed": elapsed, "obstacles": [place]}
+        shield.measured = measured
+        path.append(shield.step(path[-1], **given).next_q)
+        clock[0] += elapsed
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    now = [100.0]
+    recorder = use_armstep().recorder
+    monkeypatch.setattr(recorder.time, "monotonic", lambda: now[0])
+    return now
+
+
+@pytest.fixture(scope="module")
+def tables(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    ball = Sphere(Configuration(ROBOT, START).position + AWAY, 0.05)
+    shield = Shield(ROBOT, DT, [ball], longest_period=0.02)
+    return export.tables(shield, tmp_path_factory.mktemp("tables") / "arm.json")
+
+
+@pytest.mark.parametrize("faults", [True, False])
+def test_lag_a_limit_late_cycles_and_a_near_pair_are_found_where_they_are(
+    faults: bool,
+    tables: Path,
+    clock: list[float],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    armstep = use_armstep()
+    with armstep.recorded(armstep.Shield(tables), tmp_path / "day1") as shield:
+        drive(shield, clock, faults)
+        assert shield.tables.name == "arm"
+    assert call("replay", tmp_path / "day1") == int(faults)
+    *found, last = capsys.readouterr().out.splitlines()
+    assert last.endswith(f"to attach: {tmp_path / 'day1.zip'}")
+    expected = (
+        "period [of the stated one] 4 1.5 19.",
+        "following error [rad]",
+        "lag [s] 0.07",
+        "measured position [of the limit]",
+        "measured velocity [of the limit]",
+        "lack of distance [m]",
+    )
+    assert len(found) == faults * len(expected)
+    for line, words in zip(found, expected, strict=faults):
+        assert line.startswith(f"found {words}")
+    report = (tmp_path / "day1" / "report.md").read_text(encoding="utf-8")
+    assert ("Sphere 1 and panda_" in report) == faults or "lack of distance" in report
+    with zipfile.ZipFile(tmp_path / "day1.zip") as own:
+        assert {"day1/report.md", "day1/recording.png", "day1/head.json"} < {*own.namelist()}
+
+
+def test_the_ring_keeps_the_last_chunks_whole(
+    tables: Path, clock: list[float], tmp_path: Path
+) -> None:
+    armstep = use_armstep()
+    folder = tmp_path / "ring"
+    shield = armstep.recorded(armstep.Shields(tables, 1), folder, minutes=1 / 6)
+    for k in range(6000):
+        command = shield.step(START[np.newaxis], dq=np.full((1, 7), 0.1 * (k % 2)), dt=DT)
+        clock[0] += DT
+    shield.close()
+    shield.close()
+    assert len([*folder.glob("*.npz")]) == 1
+    assert not [*folder.glob("*.part")]
+    head, rows = read_recording(folder)
+    assert head["tables"]["digest"] == shield.tables.digest
+    assert len(rows) == 1000
+    assert rows["dq"][-1].tobytes() == command.dq[0].tobytes()
+    assert rows["request"][-1][:7].tolist() == [0.1] * 7
+    assert (rows["kind"][-1], rows["dt"][-1]) == (1, DT)
+    with pytest.raises(FileExistsError):
+        armstep.recorded(armstep.Shield(tables), folder)
+
+
+def test_what_is_no_recording_is_said_in_a_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call("replay", tmp_path) == 2
+    (tmp_path / "head.json").write_text(json.dumps({"tables": {}}), encoding="utf-8")
+    assert call("replay", tmp_path) == 2
+    (tmp_path / "1.npz").write_bytes(b"no chunk")
+    assert call("replay", tmp_path) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 3
+    assert all("holds no recording: " in line for line in said)
