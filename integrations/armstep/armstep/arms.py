@@ -197,10 +197,10 @@ class Arms(Generic[Answer]):
             np.zeros(count, np.intc),
             np.zeros(tables.scratch),
         )
-        q, self._asked, *others, scratch = (each.ctypes.data for each in own)
-        batch = Batch(memory.ctypes.data, tables.memory, Input(q), *others)
-        self._input = batch.input
-        self._call = (tables.arm, ctypes.addressof(batch), scratch)
+        q, self._asked, self._given, *others, scratch = (each.ctypes.data for each in own)
+        self._batch = Batch(memory.ctypes.data, tables.memory, Input(q), None, *others)
+        self._input = self._batch.input
+        self._call = (tables.arm, ctypes.addressof(self._batch), scratch)
         self._lock = threading.RLock()
         self._pool: tuple[int, ThreadPoolExecutor] | None = None
 

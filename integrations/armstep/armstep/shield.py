@@ -129,11 +129,13 @@ class _Shields(Arms[Answer]):
         joints = np.nan if q is None else numbers("q", q, self._shape, most)
         request = self._request(dq, twist, position)
         periods = self._periods(dt, elapsed)
-        mask = self._mask("given", given)
+        mask = None if given is None else self._mask("given", given)
         with self._lock:
             if obstacles is not None:
                 self.place(obstacles)
-            self._buffers.given[...] = mask
+            self._batch.given = None if mask is None else self._given
+            if mask is not None:
+                self._buffers.given[...] = mask
             return self._take(joints, *request, periods)
 
     def margin(self, i: int | None = None) -> Margin:
