@@ -5,6 +5,7 @@ docs/integrations.md has the lines to type.
 """
 
 import logging
+import math
 import re
 import time
 from dataclasses import dataclass, field
@@ -18,9 +19,6 @@ from lerobot.robots import Robot, RobotConfig, make_robot_from_config
 EARLY = 0.8
 """Fraction of the shield's period before which a next action is not yet taken."""
 
-REST = 1e-9
-"""Velocity of a joint at rest [rad/s]: at a position limit it may back off by rounding."""
-
 
 @RobotConfig.register_subclass("shielded")
 @dataclass(kw_only=True)
@@ -33,6 +31,7 @@ class ShieldedConfig(RobotConfig):
         joints: Names of the robot's motors in the order of the shield's joints; none: its own.
         record: Folder that the last minutes are recorded in; none: they are not.
         following_error: Distance of a motor from its goal [rad] beyond which the goal waits.
+        gripper_speed: Largest speed of what is no joint [1/s], in its own unit.
     """
 
     robot: dict[str, Any]  # a choice of RobotConfig would contain itself
@@ -40,6 +39,7 @@ class ShieldedConfig(RobotConfig):
     joints: list[str] = field(default_factory=list)
     record: str = ""
     following_error: float = 0.3
+    gripper_speed: float = math.inf
 
 
 def wrapped(name: str) -> Any:
@@ -69,31 +69,31 @@ class Shielded(Robot):
         self.config = config
         self.robot = make_robot_from_config(draccus.decode(RobotConfig, config.robot))
         try:
-            # Of one arm: it brakes at positions that are not finite, where `Shield` raises.
-            self._shields: Any = armstep.Shields(config.shield, 1)
+            self._shield: Any = armstep.Shield(config.shield)
+            joints = self._shield.tables.joint_names
+            self._motors = config.joints or [*joints]
+            keys = [f"{each}.pos" for each in self._motors]
+            known = [*self.robot.action_features]
+            if len({*keys} & {*known}) != len(joints):
+                raise ValueError(f"joints: {keys} are not {len(joints)} different ones of {known}")
+            self._recorded: Any = None
+            if config.record:
+                self._recorded = self._shield = armstep.recorded(self._shield, config.record)
+            self._restart()
         except armstep.ArmstepError as error:
             raise ValueError(f"shield: {error}") from error
-        tables = self._shields.tables
-        self._recorded: Any = None
-        if config.record:
-            self._recorded = self._shields = armstep.recorded(self._shields, config.record)
-        if tables.delay:
-            raise ValueError("shield: goal positions need one without a delay")
-        self._dt = tables.dt
-        self._motors = config.joints or list(tables.joint_names)
-        self._keys = [f"{each}.pos" for each in self._motors]
-        known = self.robot.action_features
-        count = len(tables.joint_names)
-        if len(self._keys) != count or len({*self._keys} & {*known}) != count:
-            raise ValueError(f"joints: {self._keys} are not {count} different ones of {[*known]}")
-        self._restart()
 
     def _restart(self) -> None:
-        self._shields.reset()
-        self._measured: Any = None
-        self._command: Any = None
+        """Begin anew, where the robot is observed next."""
+        joints = armstep.Joints(self._motors, math.radians(1.0))
+        error = self.config.following_error
+        about = {"following_error": error, "joints": joints, "stands": True}
+        self._drive = armstep.Drive(self._shield, takes_velocity=False, **about)
+        self._others: dict[str, armstep.Channel] = {}
+        self._observed: dict[str, Any] = {}  # since the last action
         self._sent: dict[str, Any] = {}
-        self._time = 0.0
+        self._time = 0.0  # of the last action [s]
+        self._now = 0.0  # time of the periods [s]
         self._said = ""
 
     def __getattr__(self, name: str) -> Any:
@@ -108,18 +108,19 @@ class Shielded(Robot):
         self._restart()
 
     def get_observation(self) -> dict[str, Any]:
-        """Return the robot's observation, and keep its joint positions for the next action."""
-        found = self.robot.get_observation()
-        self._measured = self._radians(found)
-        return found
+        """Return the robot's observation, and keep it for the next action."""
+        self._observed = self.robot.get_observation()
+        return self._observed
 
     def _radians(self, values: dict[str, Any]) -> Any:
-        """Return the positions (1, n) [rad] among values; None if one is no finite number."""
-        try:
-            found = np.radians([[float(values[key]) for key in self._keys]])
-        except (KeyError, TypeError, ValueError):
-            return None
-        return found if np.isfinite(found).all() else None
+        """Return the joint positions (n,) [rad] among values.
+
+        Raises:
+            InputError: One of them is no finite number, or not there.
+        """
+        return self._drive.joints.ordered(
+            (key.removesuffix(".pos") for key in values), values.values()
+        )
 
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
         """Send the goal positions closest to an action that keep every limit; return what is sent.
@@ -127,48 +128,60 @@ class Shielded(Robot):
         An action that comes sooner than the shield's period admits does not count.
         """
         now = time.perf_counter()
-        if now - self._time >= EARLY * self._dt:
+        if now - self._time >= EARLY * self._shield.dt:
             self._time = now
-            goal = self._radians(action)
-            self._step(action, goal, "" if goal is not None else "no number for each joint")
+            self._step(action)
         return self._sent
 
-    def _step(self, action: dict[str, Any], goal: Any, reason: str) -> None:
-        """Take a step towards a goal (1, n) [rad], or brake for a reason."""
-        if self._command is None:
-            self.get_observation()
-            if self._measured is None:
-                raise ValueError("the robot's joint positions are not finite")
-        measured, self._measured = self._measured, None
-        if measured is None:
-            reason = reason or "no observation since the last action, or no number for each joint"
-        # Goals never jump: the shield is told its own, and a motor that does not follow is awaited.
-        q = measured if self._command is None else self._command.next_q
-        request = {"dq": np.zeros_like(q)}
-        if not reason:
-            away = q - measured
-            waits = (np.abs(away) > self.config.following_error) & ((goal - q) * away > 0.0)
-            request = {"position": np.where(waits, q, goal)}
-            reason = "; ".join(f"{self._motors[i]} does not follow" for i in waits[0].nonzero()[0])
+    def _step(self, action: dict[str, Any]) -> None:
+        """Take a step towards an action, or brake."""
+        drive = self._drive
+        observed = self._observed
+        if not drive.has_begun:
+            observed = self.get_observation()
+        self._observed = {}
+        dt = self._shield.dt
+        self._now += dt  # goals are where the robot is a period later, whenever it is observed
+        reasons = {"blind": "" if observed else "no observation since the last action"}
+        request: dict[str, Any] = {}
+        measured = np.full(len(self._motors), np.nan)
+        try:
+            if observed:
+                measured = self._radians(observed)
+                drive.see(self._now, measured)
+        except armstep.InputError:
+            reasons["blind"] = "no observed number for each joint"
         if self._recorded:
-            self._recorded.measured = np.nan * q if measured is None else measured
-        self._command = self._shields.step(q, dt=self._dt, **request)
-        words = reason or [*self._shields.active_limits(0), "follows the actions"][0]
+            self._recorded.measured = measured
+        try:
+            request = {"position": self._radians(action)}
+        except armstep.InputError:
+            reasons["idle"] = "no number for each joint"
+        command = drive.step(self._now, dt, request, **reasons)
+        if command is None:
+            raise ValueError(f"the robot does not begin: {drive.fault}")
+        words = drive.fault or [*command.active_limits, "follows the actions"][0]
         words = re.sub(r"\bjoint (\d+)", lambda found: self._motors[int(found[1]) - 1], words)
         if words != self._said:
             logging.info("shield: %s", words)
         self._said = words
-        goals = np.degrees(self._command.next_q[0]).tolist()
-        self._sent = self.robot.send_action(action | dict(zip(self._keys, goals, strict=True)))
+        goals = {f"{name}.pos": goal for name, goal in drive.joints.goals(command.next_q).items()}
+        for key, value in action.items():
+            if key not in goals:
+                start = observed.get(key, math.nan)
+                channel = armstep.Channel(self.config.gripper_speed, start)
+                goals[key] = self._others.setdefault(key, channel).step(float(value), dt)
+        self._sent = self.robot.send_action(goals)
 
     def disconnect(self) -> None:
         """Bring the arm to rest, and disconnect the robot."""
-        end = time.perf_counter() + 1.0 + 2.0 * self._shields.stopping_time(0)
-        while self._command is not None and np.abs(self._command.dq).max() > REST:
-            if time.perf_counter() > end:
-                break
-            time.sleep(self._dt)
-            self._step(self._sent, None, "disconnects")
+        drive = self._drive
+        drive.hold("disconnects")
+        stopping = drive.command.stopping_time if drive.command is not None else 0.0
+        end = time.perf_counter() + 1.0 + 2.0 * stopping
+        while not drive.is_at_rest and time.perf_counter() < end:
+            time.sleep(self._shield.dt)
+            self._step(self._sent)
         if self._recorded:
             self._recorded.close()
         self.robot.disconnect()

@@ -11,6 +11,7 @@ package needs numpy alone.
 
 from armstep.arms import Decision, Decisions
 from armstep.controller import Action, Command, Controller, Controllers, Program, make_target
+from armstep.drive import Channel, Drive, Joints
 from armstep.errors import ArmstepError, InputError, LibraryError, TablesError
 from armstep.recorder import Recorded, recorded
 from armstep.shield import Margin, Reason, Shield, ShieldCommand, Shields
@@ -19,12 +20,15 @@ from armstep.tables import Tables, load_tables
 __all__ = [
     "Action",
     "ArmstepError",
+    "Channel",
     "Command",
     "Controller",
     "Controllers",
     "Decision",
     "Decisions",
+    "Drive",
     "InputError",
+    "Joints",
     "LibraryError",
     "Margin",
     "Program",

@@ -1,12 +1,16 @@
 """What stands between a shield and an arm's driver: when to begin, when to brake, and why."""
 
 import math
+import signal
+import time
 from bisect import bisect_right
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from armstep.arms import FARTHEST
 from armstep.errors import InputError
 from armstep.shield import Shield, ShieldCommand
 from armstep.tables import Array
@@ -41,7 +45,7 @@ class Recent:
         """Take the limits of n joints, and the longest time between two states [s]."""
         self._limits = limits
         self._longest = longest
-        self._states: list[Any] = []
+        self._states: list[tuple[float, Array]] = []
 
     def see(self, t: float, q: Array) -> None:
         """Take positions q (n,) [rad] that were measured at a time [s]."""
@@ -51,13 +55,15 @@ class Recent:
         while t - self._states[0][0] > max(WINDOWS) + self._longest:
             del self._states[0]
 
-    def velocity(self) -> Array | None:
+    def velocity(self, stands: bool = False) -> Array | None:
         """Return the velocities (n,) [rad/s] of an arm in steady motion; None: it is not.
 
-        Noise is no motion: an arm at rest has those of 0.
+        Noise is no motion: an arm at rest has those of 0; `stands`: it is known to be.
         """
         if not self._states:
             return None
+        if stands:
+            return np.zeros_like(self._states[-1][1])
         t, q = (np.array(each, dtype=float) for each in zip(*self._states, strict=True))
         for window in WINDOWS:
             first = np.searchsorted(t, t[-1] - window, side="right") - 1
@@ -71,6 +77,11 @@ class Recent:
                     return dq
         return None
 
+    def extended(self, t: float, dq: Array) -> Array:
+        """Return the positions (n,) [rad] of a time [s] by the last ones and a velocity."""
+        last, q = self._states[-1]
+        return q + (t - last) * dq
+
 
 class Following:
     """Commanded joint positions of the last moments, and how the measured ones differ from them.
@@ -82,7 +93,12 @@ class Following:
     """
 
     def __init__(
-        self, limits: Mapping[str, Array], delay: float, span: float, forgets: bool
+        self,
+        limits: Mapping[str, Array],
+        delay: float,
+        span: float,
+        forgets: bool,
+        most: float = math.inf,
     ) -> None:
         """Take the limits of n joints.
 
@@ -91,11 +107,13 @@ class Following:
             delay: Time by which the arm is behind its commands [s].
             span: Largest age of a state [s].
             forgets: Whether the arm takes velocities.
+            most: Following error above which a joint does not follow [rad].
         """
         self._limits = limits
         self._delay = delay
         self._span = span + delay
         self.forgets = forgets
+        self._most = most
 
     def begin(self, t: float, q: Array, dq: Array) -> None:
         """Begin at a time [s] with positions q (n,) [rad], that change by dq (n,) [rad/s] before.
@@ -145,9 +163,69 @@ class Following:
             self._forgotten = self._forgotten + part * self.error
         self._seen = t
 
+    @property
+    def lost(self) -> NDArray[np.bool_]:
+        """Which joints do not follow, (n,)."""
+        return np.abs(self.error) > self._most
+
     def measured(self, t: float) -> Array:
         """Return the positions of a time [s] that the last state and the commands since tell."""
         return self.commanded(t - self._delay) + self._offset
+
+
+class Channel:
+    """A number beside the joints, as a gripper's opening: it goes through at a limited speed."""
+
+    def __init__(self, speed: float, start: float = math.nan) -> None:
+        """Take the largest speed [1/s], and what it begins with; NaN: the first wanted one."""
+        self._speed = speed
+        self._last = start
+
+    def step(self, wanted: float, elapsed: float) -> float:
+        """Return the number nearest to a wanted one after a time [s]; of NaN the last one."""
+        if math.isnan(self._last):
+            self._last = wanted
+        most = self._speed * elapsed
+        if math.isfinite(wanted):
+            self._last += min(max(wanted - self._last, -most), most)
+        return self._last
+
+
+class Joints(NamedTuple):
+    """A driver's joints.
+
+    Attributes:
+        names: Its names for the shield's joints, in their order.
+        unit: Its unit of positions [rad]; that of degrees is math.radians(1.0).
+    """
+
+    names: Sequence[str]
+    unit: float = 1.0
+
+    def ordered(self, names: Iterable[str], values: Iterable[Any]) -> Array:
+        """Return the driver's positions by their names as those of the shield's joints [rad].
+
+        Raises:
+            InputError: One of them is not there, or twice, or not finite.
+        """
+        pairs = [*zip(names, values, strict=False)]
+        found = dict(pairs)
+        if len(found) != len(pairs):
+            raise InputError("with a joint twice")
+        for each in self.names:
+            if each not in found:
+                raise InputError(f"without joint {each!r}")
+        try:
+            q = self.unit * np.array([found[each] for each in self.names], dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError("not numbers") from None
+        if not (np.abs(q) <= FARTHEST).all():
+            raise InputError("not finite")
+        return q
+
+    def goals(self, q: Array) -> dict[str, float]:
+        """Return positions of the shield's joints [rad] as the driver's, by their names."""
+        return dict(zip(self.names, (q / self.unit).tolist(), strict=True))
 
 
 class Drive:
@@ -155,9 +233,11 @@ class Drive:
 
     The arm begins once its velocity is known, after a reset too; then commands never jump. It
     brakes for each reason that a step is given or finds, and is held for some until `reset`.
+    A driver of one's own has `read` and `send`, and is driven by `run`.
 
     Attributes:
         shield: The shield.
+        joints: The driver's joints.
         command: Its last command, or None.
         fault: Why the arm brakes, or is not commanded yet; else "".
         held: Why it brakes until `reset`, or "".
@@ -171,6 +251,8 @@ class Drive:
         takes_velocity: bool = True,
         timeout: float = 0.1,
         following_error: float = 0.1,
+        joints: Joints | None = None,
+        stands: bool = False,
     ) -> None:
         """Take a shield.
 
@@ -180,6 +262,9 @@ class Drive:
             timeout: Age up to which joint states count [s].
             following_error: Difference of measured and commanded positions at which a joint counts
                 as one that does not follow [rad].
+            joints: The driver's joints; None: the shield's, in rad.
+            stands: Whether the arm stands when it begins, and a requested position waits for a
+                joint that does not follow, as of servos; others are held.
 
         Raises:
             InputError: The shield does not fit to such a driver.
@@ -190,15 +275,19 @@ class Drive:
         if not takes_velocity and tables.delay:
             raise InputError("positions need a shield without a delay")
         self.shield = shield
+        self.joints = joints or Joints(tables.joint_names)
+        count = len(tables.joint_names)
+        if not len({*self.joints.names}) == len(self.joints.names) == count:
+            raise InputError(f"joints: are not {count} different ones")
         self.command: ShieldCommand | None = None
         self.fault = "no joint states"
         self.worst = 0.0
         self._timeout = timeout
-        self._following_error = following_error
-        self._following = Following(tables.limits, tables.delay, timeout, takes_velocity)
+        self._stands = stands
+        about = (tables.delay, timeout, takes_velocity, following_error)
+        self._following = Following(tables.limits, *about)
         self._recent = Recent(tables.limits, timeout)
-        self._state: tuple[float, Array] | None = None
-        self._seen: Any = None  # the state that was compared with commands
+        self._fresh: tuple[float, Array] | None = None  # a state that no command was compared with
         self.reset()
 
     def reset(self) -> None:
@@ -215,23 +304,9 @@ class Drive:
         """Brake for a reason until `reset`."""
         self.held = self.held or reason
 
-    def ordered(self, names: Any, values: Any) -> list[float]:
-        """Return values in the order of the shield's joints, by their names.
-
-        Raises:
-            InputError: One of them is not there, or twice.
-        """
-        found = dict(zip(names, values, strict=False))
-        if len(found) != len(names):
-            raise InputError("with a joint twice, or without positions")
-        for each in self.shield.tables.joint_names:
-            if each not in found:
-                raise InputError(f"without joint {each!r}")
-        return [found[each] for each in self.shield.tables.joint_names]
-
     def see(self, t: float, q: Array) -> None:
         """Take joint positions q (n,) [rad] that were measured at a time [s], the last ones."""
-        self._state = (t, q)
+        self._fresh = (t, q)
         self._recent.see(t, q)
 
     def step(
@@ -282,12 +357,12 @@ class Drive:
 
     def _begin(self, t: float) -> str:
         """Begin with the velocity that the arm has; return why that is not possible, or ""."""
-        dq = self._recent.velocity()
-        if dq is None or self._state is None:
+        dq = self._recent.velocity(self._stands)
+        if dq is None:
             return "waits until the arm is at rest or moves steadily"
         dt = self.shield.dt
-        self._seen = self._state
-        self._following.begin(t, self._state[1] + (t - self._state[0]) * dq, dq)
+        self._fresh = None
+        self._following.begin(t, self._recent.extended(t, dq), dq)
         count = 2 + math.ceil(self.shield.tables.delay / dt)  # commands that the shield remembers
         self.shield.reset(self._following.commanded(t - count * dt))
         for _ in range(count):
@@ -297,14 +372,15 @@ class Drive:
 
     def _compare(self) -> None:
         """Compare a new state with the commands of its time; hold an arm that does not follow."""
-        if self._state is None or self._state is self._seen:
+        if self._fresh is None:
             return
-        self._seen = self._state
-        self._following.see(*self._state)
-        error = np.abs(self._following.error)
-        if error.max() > self._following_error:
-            name = self.shield.tables.joint_names[error.argmax()]
-            self.hold(f"joint {name!r} does not follow its commands")
+        self._following.see(*self._fresh)
+        self._fresh = None
+        lost = self._following.lost
+        if lost.any() and not self._stands:
+            self.hold(
+                f"joint {self.joints.names[int(lost.argmax())]!r} does not follow its commands"
+            )
 
     def _answer(
         self, t: float, elapsed: float, request: Mapping[str, Any], blind: str
@@ -315,7 +391,60 @@ class Drive:
         resynchronised.
         """
         asked = {"dq": np.zeros(len(self._following.error))} if self.fault else request
-        if not self._following.forgets:
-            return self.shield.step(self._following.commanded(t), **asked, dt=self.shield.dt)
-        q = None if blind else self._following.measured(t)
-        return self.shield.step(q, **asked, elapsed=elapsed)
+        if self._following.forgets:
+            measured = None if blind else self._following.measured(t)
+            return self.shield.step(measured, **asked, elapsed=elapsed)
+        q = self._following.commanded(t)
+        if self._stands and "position" in asked:
+            asked = {"position": self._awaited(q, asked["position"])}
+        return self.shield.step(q, **asked, dt=self.shield.dt)
+
+    def _awaited(self, q: Array, goal: Array) -> Array:
+        """Return requested positions that do not lead joints away that do not follow."""
+        waits = self._following.lost & ((goal - q) * self._following.error < 0.0)
+        late = [name for name, each in zip(self.joints.names, waits, strict=True) if each]
+        self.fault = "; ".join(f"{name} does not follow" for name in late)
+        return np.where(waits, q, goal)
+
+    def now(self) -> float:
+        """Return the time [s] of a clock that never jumps."""
+        return time.monotonic()
+
+    def read(self) -> Array | None:
+        """Wait for the next period and return what is measured (n,) [rad]; None: it is not known.
+
+        A driver's own.
+        """
+        raise NotImplementedError
+
+    def send(self, command: ShieldCommand) -> None:
+        """Send a command. A driver's own."""
+        raise NotImplementedError
+
+    def run(self, ask: Callable[[], Mapping[str, Any]], duration: float = math.inf) -> str:
+        """Drive until a time [s] is over, or until Ctrl-C, and come to rest; return why it ended.
+
+        Args:
+            ask: Returns the request of a period as an argument of `Shield.step`; none: it brakes.
+            duration: Length of the motion [s].
+        """
+        before = signal.signal(signal.SIGINT, lambda *_: self.hold("interrupted"))
+        try:
+            start = last = self.now()
+            while not (self.held and self.is_at_rest):
+                q = self.read()
+                now = self.now()
+                if q is not None:
+                    self.see(now, q)
+                if now - start > duration:
+                    self.hold("the time is over")
+                request = ask()
+                idle = "" if request else "no request"
+                blind = "" if q is not None else "no joint states"
+                command = self.step(now, now - last, request, blind=blind, idle=idle)
+                last = now
+                if command is not None:
+                    self.send(command)
+            return self.held
+        finally:
+            signal.signal(signal.SIGINT, before)

@@ -1,8 +1,17 @@
-"""Joint states of arms beside their commands, without ROS."""
+"""When an arm behind a shield begins and brakes, of drivers without an arm."""
 
+import math
+import signal
+from pathlib import Path
+from typing import Any
+
+import armstep
 import numpy as np
 import pytest
-from armstep.drive import Following, Recent
+from armstep.drive import Channel, Drive, Following, Joints, Recent
+
+import iiwa_dnn
+from judge_limits import breaches
 
 DT = 4e-3
 LIMITS = {"lower": np.array([-np.inf, -2.0]), "upper": np.array([np.inf, 2.0])}
@@ -60,3 +69,113 @@ def test_an_arm_that_accelerates_has_no_velocity_to_begin_with() -> None:
     for k in range(150):
         recent.see(k * DT, START + 0.5 * (k * DT) ** 2)
     assert recent.velocity() is None
+
+
+ROBOT = iiwa_dnn.load_robot("so101").with_limits(acceleration=10.0, jerk=200.0)
+
+
+@pytest.fixture(scope="module")
+def tables(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the tables of a shield whose periods vary."""
+    path = tmp_path_factory.mktemp("drive") / "arm.json"
+    iiwa_dnn.export.tables(iiwa_dnn.Shield(ROBOT, 0.02, longest_period=0.03), path)
+    iiwa_dnn.export.tables(iiwa_dnn.Shield(ROBOT, 0.02), path.with_name("fixed.json"))
+    return path
+
+
+class Ideal(Drive):
+    """An arm that is where it was told to be, by a clock that its periods make."""
+
+    def __init__(self, tables: Path, **settings: Any) -> None:
+        super().__init__(armstep.Shield(tables), **settings)
+        self.q = np.zeros(ROBOT.dof)
+        self.path: list[np.ndarray] = []
+        self.t = 0.0
+
+    def now(self) -> float:
+        return self.t
+
+    def read(self) -> np.ndarray | None:
+        self.t += self.shield.dt
+        self.path.append(self.q)
+        return self.q
+
+    def send(self, command: armstep.ShieldCommand) -> None:
+        self.q = self.q + self.shield.dt * command.dq
+
+
+def test_ctrl_c_brings_the_arm_to_rest_within_its_limits(tables: Path) -> None:
+    arm = Ideal(tables)
+
+    def ask() -> dict[str, Any]:
+        if len(arm.path) == 60:
+            signal.raise_signal(signal.SIGINT)
+        return {"dq": np.full(ROBOT.dof, 0.5)} if len(arm.path) > 20 else {}
+
+    before = signal.getsignal(signal.SIGINT)
+    assert arm.run(ask) == "interrupted"
+    assert signal.getsignal(signal.SIGINT) is before
+    assert arm.is_at_rest
+    assert arm.q.min() > 0.2
+    assert breaches(np.array(arm.path), arm.shield.dt, *ROBOT.limits) == []
+
+
+@pytest.mark.parametrize(
+    ("q", "reason"),
+    [(None, "no joint states"), (np.full(ROBOT.dof, 0.4), "does not follow its commands")],
+)
+def test_an_arm_that_is_not_seen_or_does_not_follow_brakes(
+    tables: Path, q: np.ndarray | None, reason: str
+) -> None:
+    arm = Ideal(tables)
+    faults = set()
+
+    def ask() -> dict[str, Any]:
+        faults.add(arm.fault)
+        if len(arm.path) == 60:
+            arm.read = lambda: q if Ideal.read(arm) is not None else None
+        return {"dq": np.full(ROBOT.dof, 0.5)}
+
+    arm.run(ask, 2.0)
+    assert any(reason in fault for fault in faults)
+    assert breaches(np.array(arm.path), arm.shield.dt, *ROBOT.limits) == []
+
+
+def test_servos_in_degrees_wait_for_one_that_is_stuck(tables: Path) -> None:
+    names = [f"motor_{k}" for k in range(ROBOT.dof)]
+    joints = Joints(names, math.radians(1.0))
+    about = {"takes_velocity": False, "following_error": 0.2, "joints": joints, "stands": True}
+    servos = Drive(armstep.Shield(tables), **about)
+    goals = dict.fromkeys(names, 0.0)
+    wanted = joints.ordered(names[::-1], [60.0] * ROBOT.dof)
+    for k in range(100):
+        shown = goals | {"motor_1": 0.0, "gripper": 7.0}
+        servos.see(0.02 * k, joints.ordered(shown, shown.values()))
+        command = servos.step(0.02 * k, 0.02, {"position": wanted})
+        goals = joints.goals(command.next_q)
+    assert servos.fault == "motor_1 does not follow"
+    assert np.degrees(0.2) < goals["motor_1"] < 30.0  # and the way to rest
+    assert goals["motor_2"] == pytest.approx(60.0)
+
+
+def test_a_driver_is_refused_by_name(tables: Path) -> None:
+    shield = armstep.Shield(tables)
+    with pytest.raises(armstep.InputError, match="joints"):
+        Drive(shield, joints=Joints("a" * ROBOT.dof))
+    with pytest.raises(armstep.InputError, match="longest_period"):
+        Drive(armstep.Shield(tables.with_name("fixed.json")))
+    for names, values, words in (
+        ("abcd", [0.0] * 4, "without joint 'e'"),
+        ("abcdee", [0.0] * 6, "twice"),
+        ("abcde", [0.0, 0.0, 0.0, 0.0, np.nan], "not finite"),
+        ("abcde", ["open"] * 5, "not numbers"),
+    ):
+        with pytest.raises(armstep.InputError, match=words):
+            Joints("abcde").ordered(names, values)
+
+
+def test_a_gripper_goes_through_at_a_limited_speed() -> None:
+    gripper = Channel(50.0, 10.0)
+    passed = [gripper.step(wanted, 0.02) for wanted in (10.5, 100.0, np.nan, 0.0)]
+    assert passed == [10.5, 11.5, 11.5, 10.5]
+    assert Channel(math.inf).step(3.0, 0.02) == 3.0

@@ -15,8 +15,6 @@ from typing import Any
 import armstep
 import numpy as np
 import rclpy
-from armstep.arms import FARTHEST
-from armstep.drive import Drive
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import TwistStamped
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
@@ -80,7 +78,7 @@ class ShieldNode(Node):
     """Keep an arm within its limits whatever is requested.
 
     Periods are those of a timer by a steady clock or, with `use_sim_time`, by /clock. A
-    `armstep.drive.Drive` decides when to begin and to brake.
+    `armstep.Drive` decides when to begin and to brake.
     """
 
     def __init__(self) -> None:
@@ -108,7 +106,7 @@ class ShieldNode(Node):
             self._recorded = shield = armstep.recorded(shield, self._set["record"])
         about = (self._takes_velocity, self._set["timeout"], self._set["following_error"])
         try:
-            self._drive = Drive(shield, *about)
+            self._drive = armstep.Drive(shield, *about)
         except armstep.InputError as error:
             raise RefusedError(f"parameter command: {error}") from error
         self._tables = tables = shield.tables
@@ -196,13 +194,12 @@ class ShieldNode(Node):
     def _positions(self, message: JointTrajectory) -> dict[str, Any]:
         if len(message.points) != 1:
             raise RefusedError(f"of {len(message.points)} points, not one")
-        return {"position": self._drive.ordered(message.joint_names, message.points[0].positions)}
+        return {
+            "position": self._drive.joints.ordered(message.joint_names, message.points[0].positions)
+        }
 
     def _measured(self, message: JointState) -> dict[str, Any]:
-        q = self._drive.ordered(message.name, message.position)
-        if max(map(abs, q)) > FARTHEST:
-            raise RefusedError(f"beyond {FARTHEST:g} rad")
-        return {"q": q}
+        return {"q": self._drive.joints.ordered(message.name, message.position)}
 
     def _on_states(self, message: JointState) -> None:
         """Take joint states, unless they are those of others."""

@@ -32,6 +32,7 @@ pytestmark = pytest.mark.skipif(
 )
 SECONDS = os.environ.get("SECONDS_OF_HOSTILE_REQUESTS", "5")
 SIMULATED = ("use_sim_time:=true", "timeout:=0.5")
+TIMED = ("command:=trajectory", "following_error:=0.5", "timeout:=0.5")
 DISTANCE = 0.02
 ROBOT = iiwa_dnn.load_robot("iiwa7").with_limits(acceleration=10.0, jerk=500.0)
 BALL = iiwa_dnn.Sphere(center=[0.36, 0.16, 0.64], radius=0.05)
@@ -80,12 +81,7 @@ def run(python: Path, folder: Path, mode: str, *settings: str) -> Any:
 
 
 @pytest.mark.parametrize(
-    ("mode", "settings"),
-    [
-        ("simulated", SIMULATED),
-        ("timed", ("command:=trajectory", "following_error:=0.5")),
-        ("moving", SIMULATED),
-    ],
+    ("mode", "settings"), [("simulated", SIMULATED), ("timed", TIMED), ("moving", SIMULATED)]
 )
 def test_no_limit_is_broken_and_the_node_says_why_it_brakes(
     python: Path, mode: str, settings: tuple[str, ...], tmp_path: Path
