@@ -13,11 +13,20 @@ from typing import NamedTuple
 
 import numpy as np
 
+from iiwa_dnn.checks import Vector3
 from iiwa_dnn.compiling.library import compiled, released
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.command import StepLog, log_of
 from iiwa_dnn.control.cycle import INVALID, take_step
+from iiwa_dnn.control.people import (
+    grow_older,
+    is_newer,
+    take_body,
+    take_people,
+    twist_rates,
+    write_bodies,
+)
 from iiwa_dnn.control.plan import ControlPlan
 from iiwa_dnn.control.requests import (
     CUT,
@@ -41,6 +50,13 @@ from iiwa_dnn.schemes.profiles import Rates, arriving, braking
 from iiwa_dnn.schemes.program import ProgramArrays, block_constants, program_views
 from iiwa_dnn.schemes.rate_limits import MotionConstants, joint_rates
 from iiwa_dnn.schemes.scene import Body, scene_views, write_distances
+from iiwa_dnn.schemes.separation import (
+    FREE_BODY,
+    FreeBody,
+    nearest_body,
+    separation_factor,
+    separation_views,
+)
 from iiwa_dnn.schemes.viability import joint_bounds
 
 TURN = 2.0 * math.pi
@@ -49,6 +65,9 @@ TURN = 2.0 * math.pi
 SHORTEST = 1e-9
 LONGEST = 1e3
 """Periods below and above which a stated one is refused [s]: quotients by them overflow."""
+
+RISE = 4.0
+"""Largest rate at which the part of a request that a separation admits grows again [1/s]."""
 
 FOLLOWING = 1e-12
 """Difference of measured and commanded positions that counts as rounding [rad]."""
@@ -96,6 +115,21 @@ class ArmSizes(NamedTuple):
     obstacles: int
     limiting: int
     sent: int
+    bodies: int
+
+
+class SeenBodies(Record):
+    """State of an arm beside bodies of bounded speed.
+
+    Attributes:
+        age: Age of the last frame of people [s]; inf: there was none.
+        is_refused: Whether the last frame, or body that was seen, had no meaning.
+        withheld: Part of the request that the separation from bodies does not admit.
+    """
+
+    age: float
+    is_refused: bool
+    withheld: float
 
 
 class ArmState(Record):
@@ -127,6 +161,8 @@ class ArmState(Record):
         limiting: Active bounds and rows of the last step, as in `StepLog`, (n + m,).
         sent: A `SentCommand` for each command of the last `delay` seconds, the last first,
             (k (1 + n),).
+        seen: What is known of bodies of bounded speed.
+        bodies: A `FreeBody` for each of them, as the last step left it.
     """
 
     time: float
@@ -151,6 +187,8 @@ class ArmState(Record):
     obstacles: Matrix = part("obstacles", 3)
     limiting: Vector = part("limiting")
     sent: Vector = part("sent")
+    seen: SeenBodies = part(SeenBodies)
+    bodies: Matrix = part("bodies", FREE_BODY)
 
 
 class ArmPlan(NamedTuple):
@@ -161,6 +199,7 @@ class ArmPlan(NamedTuple):
         step: Layout of the control step.
         request: Number of the program's block that holds the request.
         scene: Number of the program's block that holds the watched pairs; -1: none are watched.
+        separation: Number of that of bodies of bounded speed; -1: there are none.
         width: Length of the log of a step.
         motion: Limits of the joints' motion.
         fastest: Largest entry of a twist [m/s], [rad/s]; a larger twist is scaled down to it.
@@ -175,6 +214,7 @@ class ArmPlan(NamedTuple):
     step: ControlPlan
     request: int
     scene: int
+    separation: int
     width: int
     motion: MotionConstants
     fastest: float
@@ -216,6 +256,7 @@ def arm_state(plan: ArmPlan, memory: Vector) -> ArmState:
         plan.sizes.obstacles,
         plan.sizes.limiting,
         plan.sizes.sent,
+        plan.sizes.bodies,
     )
 
 
@@ -231,6 +272,7 @@ def rest_arm(plan: ArmPlan, memory: Vector, q: Vector) -> None:
     """Reset an arm to rest at joint positions q (n,) [rad]; its obstacles stay where they are.
 
     If q is empty, the arm begins at the positions that the next step measures; they are NaN before.
+    Bodies of bounded speed have to be seen anew.
     """
     arm = arm_state(plan, memory)
     centers = arm.obstacles.copy()
@@ -240,6 +282,11 @@ def rest_arm(plan: ArmPlan, memory: Vector, q: Vector) -> None:
     arm.period = plan.settings.dt
     arm.reason = Reason.NO_REQUEST
     arm.positions[:] = np.nan
+    if plan.separation >= 0:
+        own = separation_views(block_constants(plan.step.arrays, plan.separation))
+        copied(arm.bodies.reshape(arm.bodies.size), own.bodies.reshape(own.bodies.size))
+        arm.seen.age = np.inf
+        arm.seen.withheld = 1.0
     if q.size > 0:
         arm.has_begun = True
         copied(arm.positions, q)
@@ -257,6 +304,51 @@ def place_arm(plan: ArmPlan, memory: Vector, centers: Matrix) -> None:
     for k in range(0 if arm.is_misplaced else len(arm.obstacles)):
         for i in range(3):
             arm.obstacles[k, i] = centers[k, i] - arm.time * plan.velocities[k, i]
+
+
+@compiled
+def see_people(plan: ArmPlan, memory: Vector, capsules: Matrix, age: float) -> bool:
+    """Take a frame of all people in the field, seen some time ago [s]; return if it has a meaning.
+
+    Else all bodies grow older until the next frame, and a `Reason` is noted.
+
+    Args:
+        plan: Layout of the steps.
+        memory: The arm's memory, (k,), overwritten.
+        capsules: Ends and radius of each body, with the error of its place [m], (k, 7).
+        age: Time since it was seen [s].
+    """
+    arm = arm_state(plan, memory)
+    people = 0
+    if plan.separation >= 0:
+        own = separation_views(block_constants(plan.step.arrays, plan.separation))
+        people = own.head.people
+    taken = people > 0 and is_newer(age, arm.seen.age)
+    taken = taken and take_people(arm.bodies, people, capsules)
+    arm.seen.is_refused = not taken
+    if taken:
+        arm.seen.age = age
+        for k in range(len(arm.bodies) - people, len(arm.bodies)):
+            body = FreeBody.of(arm.bodies[k])
+            body.age = age
+    return taken
+
+
+@compiled
+def see_body(plan: ArmPlan, memory: Vector, number: int, box: Vector, age: float) -> bool:
+    """Place one body, as `see_people`; others grow older.
+
+    Args:
+        plan: Layout of the steps.
+        memory: The arm's memory, (k,), overwritten.
+        number: Number of the body.
+        box: Half-extents [m], axes one a row, and center [m] of its box, (15,).
+        age: Time since it was seen [s].
+    """
+    arm = arm_state(plan, memory)
+    taken = take_body(FreeBody.of(arm.bodies[number]), box, age)
+    arm.seen.is_refused = not taken
+    return taken
 
 
 @compiled
@@ -320,6 +412,7 @@ def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> None:
     arm.reasons[:] = 0.0
     arm.reasons[Reason.PERIOD_REFUSED] = 0.0 if _fits(settings, inputs) else 1.0
     arm.reasons[Reason.PLACE_NOT_FINITE] = 1.0 if arm.is_misplaced else 0.0
+    arm.reasons[Reason.FRAME_REFUSED] = 1.0 if arm.seen.is_refused else 0.0
     periods = _periods(arm, settings, inputs)
     if inputs.elapsed > 0.0 and arm.reasons[Reason.PERIOD_REFUSED] == 0.0:
         _correct_last_period(arm, motion_of(plan, arm), inputs.elapsed)
@@ -374,6 +467,7 @@ def _correct_last_period(arm: ArmState, motion: MotionState, elapsed: float) -> 
     for i in range(motion.last.size):
         arm.positions[i] += (elapsed - arm.period) * motion.last[i]
     arm.time = arm.time + elapsed - arm.period
+    _grow_older(arm, max(elapsed - arm.period, 0.0))
     arm.period = elapsed
     if arm.sent.size > 0:
         last = _sent_command(arm, 0)
@@ -565,6 +659,14 @@ def _advance(arm: ArmState, settings: ArmSettings, motion: MotionState) -> None:
     for i in range(arm.positions.size):
         arm.positions[i] += arm.period * motion.last[i]
     arm.time += arm.period
+    _grow_older(arm, arm.period)
+
+
+@compiled
+def _grow_older(arm: ArmState, seconds: float) -> None:
+    """Add seconds to the age of all that was seen."""
+    arm.seen.age += seconds
+    grow_older(arm.bodies, seconds)
 
 
 @compiled
@@ -613,8 +715,12 @@ def _answer(
         arm.reasons[Reason.CUT] = 1.0 if excess > 1.0 else 0.0
         for i in range(TWIST):
             request.velocity[i] = arm.request[i] / excess
-    else:
-        approach_request(arm, motion, plan.motion, timing, state)
+    admitted = np.empty(arm.positions.size)
+    admitted[:] = np.inf
+    if plan.separation >= 0:
+        _slow_down(plan, arm, arrays, timing, request, admitted)
+    if not is_twist:
+        approach_request(arm, motion, plan.motion, timing, admitted, state)
         copied(request.velocity, state[: arm.positions.size])
     step = ControlPlan(
         arrays,
@@ -641,6 +747,65 @@ def _answer(
 
 
 @compiled
+def _slow_down(
+    plan: ArmPlan,
+    arm: ArmState,
+    arrays: ProgramArrays,
+    timing: Periods,
+    request: RequestConstants,
+    admitted: Vector,
+) -> None:
+    """Slow a request down as the separation from bodies of bounded speed demands.
+
+    Args:
+        plan: Layout of the step.
+        arm: The arm; what is withheld of its request is noted.
+        arrays: Arrays of the step; the bodies are written to the constants.
+        timing: Periods of the step.
+        request: The request; a twist is scaled.
+        admitted: Largest speeds of the joints for another request [rad/s], (n,), overwritten.
+    """
+    constants = block_constants(arrays, plan.separation)
+    write_bodies(constants, arm.bodies, arm.seen.age)
+    n = arm.positions.size
+    dq = np.zeros(n)
+    if request.is_twist:
+        twist_rates(arrays, request, dq)
+    excess = 1.0
+    for i in range(n):
+        fastest = min(plan.motion.velocity[i], FASTEST)
+        excess = max(excess, abs(dq[i]) / fastest)
+        if not request.is_twist and not _is_refused(arm):
+            wanted = arm.request[i]
+            if arm.answered == Request.POSITION:
+                wanted = _quickest(plan, arm, i, timing.hold)
+            dq[i] = min(max(wanted, -fastest), fastest)
+    for i in range(n):
+        dq[i] /= excess
+    factor = separation_factor(constants, arrays, plan.motion, dq, timing.longest)
+    factor = min(factor, 1.0 - arm.seen.withheld + RISE * timing.expected)
+    arm.seen.withheld = 1.0 - factor
+    if factor == 1.0:
+        return
+    arm.reasons[Reason.SEPARATION] = 1.0 if largest_entry(dq) > 0.0 else 0.0
+    for i in range(n):
+        admitted[i] = factor * abs(dq[i])
+    for i in range(TWIST if request.is_twist else 0):
+        request.velocity[i] *= factor / excess
+
+
+@compiled
+def _quickest(plan: ArmPlan, arm: ArmState, i: int, hold: float) -> float:
+    """Return a velocity of joint i on its way to a requested position [rad/s].
+
+    No acceleration limit lets it be quicker, nor has it to be, to be there after `hold` [s].
+    """
+    left = _left(arm, i)
+    quickest = math.sqrt(2.0 * plan.motion.acceleration[i] * abs(left))
+    return math.copysign(min(quickest, abs(left) / hold), left)
+
+
+@compiled
 def _brake_blindly(plan: ArmPlan, arm: ArmState, motion: MotionState) -> None:
     """Advance an arm whose positions have no kinematics by a command of a motion to rest."""
     arm.reasons[Reason.Q_NOT_FINITE] = 1.0
@@ -660,7 +825,12 @@ def _place_obstacles(plan: ArmPlan, arm: ArmState, t: float, constants: Vector) 
 
 @compiled
 def approach_request(
-    arm: ArmState, motion: MotionState, limits: MotionConstants, periods: Periods, dq: Vector
+    arm: ArmState,
+    motion: MotionState,
+    limits: MotionConstants,
+    periods: Periods,
+    admitted: Vector,
+    dq: Vector,
 ) -> None:
     """Write the next velocities dq (n,) [rad/s] of the joints on their way to the request.
 
@@ -673,6 +843,7 @@ def approach_request(
         motion: The last commands.
         limits: Limits of the joints.
         periods: Periods of the step.
+        admitted: Largest speeds that are admitted [rad/s], (n,).
         dq: The velocities, or longer, overwritten.
     """
     reaches = arm.answered == Request.POSITION
@@ -691,10 +862,12 @@ def approach_request(
             below = -left if left < 0.0 else np.inf
             accel = rates.acceleration
             rates = Rates(rates.velocity, accel, rates.jerk, accel, np.inf, 0.0)
+            most = min(most, admitted[i])
             wanted = min(max(left / periods.hold, -most), most)
         elif abs(wanted) > most:
             wanted = math.copysign(most, wanted)
             arm.reasons[Reason.CUT] = 1.0
+        wanted = min(max(wanted, -admitted[i]), admitted[i])
         lower, upper, _, _ = joint_bounds(last, before, above, below, rates, periods)
         if reaches:
             wanted = min(max(wanted, lower), upper)
@@ -737,6 +910,28 @@ def _note_limits(arm: ArmState, log: StepLog) -> None:
 
 
 @compiled
+def separation_of(plan: ArmPlan, memory: Vector) -> Vector3:
+    """Find the nearest link and body, as `nearest_body`, where an arm's last command starts from.
+
+    Without bodies of bounded speed the separation is inf.
+    """
+    arm = arm_state(plan, memory)
+    if plan.separation < 0 or not arm.has_begun:
+        return np.inf, 0.0, 0.0
+    base = plan.step.arrays
+    q = motion_of(plan, arm).q
+    jacobian = np.empty((q.size, 6))
+    placements = np.empty((base.placements.shape[0], 12))
+    write_kinematics(plan.robot, q, jacobian, placements, base.inertia)
+    constants = block_constants(base, plan.separation).copy()
+    write_bodies(constants, arm.bodies, arm.seen.age)
+    grow_older(separation_views(constants).bodies, -arm.period)
+    head = separation_views(constants).head
+    head.age -= arm.period
+    return nearest_body(constants, placements)
+
+
+@compiled
 def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
     """Compute the `Margin` of an arm at the joint positions that its last command starts from."""
     arm = arm_state(plan, memory)
@@ -761,10 +956,13 @@ def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
 
 
 @released
-def write_margins(plan: ArmPlan, memories: Matrix, joint: Vector, distance: Vector) -> None:
-    """Write `margin_of` each of N arms, whose memories are (N, k), to two arrays (N,)."""
+def write_margins(
+    plan: ArmPlan, memories: Matrix, joint: Vector, distance: Vector, separation: Vector
+) -> None:
+    """Write the `Margin` of each of N arms, whose memories are (N, k), to three arrays (N,)."""
     for k in range(len(memories)):
         joint[k], distance[k] = margin_of(plan, memories[k])
+        separation[k], _, _ = separation_of(plan, memories[k])
 
 
 @compiled

@@ -1,8 +1,8 @@
 """Kernels that test whether a plan that was read holds together, and count what its steps take.
 
 Sizes have to agree and indices to lie within their arrays, so that no step on the plan leaves them.
-Constants of parts are tested where they say sizes or indices themselves: those of collisions. That
-the others are those of their parts is what a digest of the tables vouches for.
+Constants of parts are tested where they say sizes or indices themselves: those of collisions and of
+separation. That the others are those of their parts is what a digest of the tables vouches for.
 """
 
 from __future__ import annotations
@@ -20,6 +20,12 @@ from iiwa_dnn.robot.kinematics_kernel import ModelTables
 from iiwa_dnn.schemes.program import BlockKind, Column, ProgramArrays, ProgramSizes, block_constants
 from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.scene import Body, Pair, SceneHead, scene_views
+from iiwa_dnn.schemes.separation import (
+    FREE_BODY,
+    SeparationHead,
+    WatchedLink,
+    separation_views,
+)
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 MOST = 1000
@@ -27,7 +33,8 @@ MOST = 1000
 
 LOG = 20
 MOTION = 5
-"""Numbers of `StepLog` and `MotionState` beside those of the sizes that they state."""
+LINK = 12
+"""Numbers of `StepLog`, `MotionState`, `WatchedLink` beside those of the sizes that they state."""
 
 
 @compiled
@@ -49,15 +56,26 @@ def controller_scratch(plan: TrackingPlan) -> int:
 
 
 @compiled
-def shield_fits(plan: ArmPlan, collisions: int) -> bool:
-    """Test whether the plan of a shield holds together; `collisions` numbers that kernel."""
+def shield_fits(plan: ArmPlan, collisions: int, separation: int) -> bool:
+    """Test whether the plan of a shield holds together.
+
+    Args:
+        plan: The plan.
+        collisions: Number of the kernel of collisions.
+        separation: Number of that of separation.
+    """
     n = plan.step.arrays.sizes.joints
-    if not _control_fits(plan.step, plan.robot, collisions) or plan.motion.lower.size != n:
+    if (
+        not _control_fits(plan.step, plan.robot, collisions, separation)
+        or plan.motion.lower.size != n
+    ):
         return False
     if plan.lower.size != n or plan.upper.size != n or not _state_fits(plan):
         return False
     own = plan.sizes
-    return _networks_fit(plan.step, own.network, own.fallback) and _parts_fit(plan, collisions)
+    if not _networks_fit(plan.step, own.network, own.fallback):
+        return False
+    return _parts_fit(plan, collisions) and _bodies_seen_fit(plan, separation)
 
 
 @compiled
@@ -76,11 +94,13 @@ def _state_fits(plan: ArmPlan) -> bool:
 
 
 @compiled
-def controller_fits(plan: TrackingPlan, collisions: int) -> bool:
+def controller_fits(plan: TrackingPlan, collisions: int, separation: int) -> bool:
     """Test whether the plan of a controller holds together, as `shield_fits`."""
     sizes = plan.step.arrays.sizes
     own = plan.sizes
-    if not _control_fits(plan.step, plan.robot, collisions) or own.motion != _motion_width(sizes):
+    if not _control_fits(
+        plan.step, plan.robot, collisions, separation
+    ) or own.motion != _motion_width(sizes):
         return False
     return _networks_fit(plan.step, own.network, own.fallback) and own.log == _log_width(sizes)
 
@@ -98,7 +118,7 @@ def _motion_width(sizes: ProgramSizes) -> int:
 
 
 @compiled
-def _control_fits(plan: ControlPlan, robot: ModelTables, collisions: int) -> bool:
+def _control_fits(plan: ControlPlan, robot: ModelTables, collisions: int, separation: int) -> bool:
     """Test the layout of a control step."""
     arrays = plan.arrays
     if not _sizes_fit(arrays.sizes) or not _arrays_fit(arrays) or not _model_fits(robot, arrays):
@@ -107,7 +127,10 @@ def _control_fits(plan: ControlPlan, robot: ModelTables, collisions: int) -> boo
         if not _row_fits(arrays, k):
             return False
         constants = block_constants(arrays, k)
-        if arrays.table[k, Column.ADDRESS] == collisions and not _scene_fits(constants, arrays):
+        kernel = arrays.table[k, Column.ADDRESS]
+        if kernel == collisions and not _scene_fits(constants, arrays):
+            return False
+        if kernel == separation and not _separation_fits(constants, arrays):
             return False
     return _yielding_fits(plan.yielding, arrays) and _paths_fit(plan)
 
@@ -253,6 +276,44 @@ def _pair_fits(pair: Pair, joints: int, bodies: int) -> bool:
     if pair.radii.size != joints or not _is_within(pair.first, 0, bodies):
         return False
     return _is_within(pair.second, 0, bodies)
+
+
+@compiled
+def _separation_fits(constants: Vector, arrays: ProgramArrays) -> bool:
+    """Test the constants of a separation from bodies of bounded speed: links in frames."""
+    if constants.size < SeparationHead.width():
+        return False
+    head = SeparationHead.of(constants[: SeparationHead.width()])
+    if not _is_within(head.bodies, 0, MOST) or not _is_within(head.links, 0, MOST):
+        return False
+    if not _is_within(head.people, 0, head.bodies + 1):
+        return False
+    if head.link_size != LINK + 2 * arrays.sizes.joints:
+        return False
+    tables = head.link_size * head.links + FREE_BODY * head.bodies
+    if constants.size != SeparationHead.width() + tables:
+        return False
+    own = separation_views(constants)
+    outside = 0
+    for k in range(head.links):
+        link = WatchedLink.of(own.links[k])
+        outside += not _is_within(link.frame, 0, len(arrays.placements))
+    return outside == 0
+
+
+@compiled
+def _bodies_seen_fit(plan: ArmPlan, separation: int) -> bool:
+    """Test the part of a shield that bodies of bounded speed are written into."""
+    arrays = plan.step.arrays
+    if plan.separation == -1:
+        return plan.sizes.bodies == 0
+    if not _is_within(plan.separation, 0, len(arrays.table)):
+        return False
+    if arrays.table[plan.separation, Column.ADDRESS] != separation:
+        return False
+    constants = block_constants(arrays, plan.separation)
+    head = SeparationHead.of(constants[: SeparationHead.width()])
+    return plan.sizes.bodies == head.bodies
 
 
 @compiled

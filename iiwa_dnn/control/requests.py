@@ -56,6 +56,8 @@ REASONS = (
     "request of unknown kind",
     "period refused",
     "place of an obstacle not finite",
+    "frame of bodies refused",
+    "separation",
 )
 """Words of each `Reason`, in the order of their codes."""
 
@@ -72,8 +74,8 @@ class Request(IntEnum):
 class Reason(IntEnum):
     """Reasons, other than limits, for a command that differs from the request.
 
-    With those from `NO_REQUEST` to `Q_NOT_FINITE` and from `UNKNOWN_KIND` on, the arm brakes to
-    rest.
+    With those from `NO_REQUEST` to `Q_NOT_FINITE` and from `UNKNOWN_KIND` to `PLACE_NOT_FINITE` the
+    arm brakes to rest. `SEPARATION` slows the request down.
     """
 
     NONE = 0
@@ -89,6 +91,8 @@ class Reason(IntEnum):
     UNKNOWN_KIND = 10
     PERIOD_REFUSED = 11
     PLACE_NOT_FINITE = 12
+    FRAME_REFUSED = 13
+    SEPARATION = 14
 
 
 def one_request(
@@ -148,14 +152,7 @@ def add_request(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> Non
         return
     v = request.velocity[: Twist.width()]
     A = np.empty((TWIST, n))
-    point = triple(Placement.of(step.placements[request.frame]).position)
-    for j in range(n):
-        support = step.support[request.frame, j]
-        linear = point_rate(step.jacobian, j, point)
-        angular = triple(Twist.of(step.jacobian[j]).angular)
-        for i in range(3):
-            A[i, j] = support * linear[i]
-            A[3 + i, j] = support * angular[i]
+    twist_rows(step.jacobian, step.placements, step.support, request.frame, A)
     square = 0.0
     for k in range(TWIST):
         square += v[k] * v[k]
@@ -167,6 +164,20 @@ def add_request(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> Non
         for k in range(TWIST):
             A[k, i] = SIDEWAYS * A[k, i] + fraction * v[k]
     add_soft(P, q, A, v, 1.0)
+
+
+@compiled
+def twist_rows(
+    jacobian: Matrix, placements: Matrix, support: Matrix, frame: int, A: Matrix
+) -> None:
+    """Write the Jacobian A (6, n) of a frame's twist from the kinematics of `StepViews`."""
+    point = triple(Placement.of(placements[frame]).position)
+    for j in range(len(jacobian)):
+        linear = point_rate(jacobian, j, point)
+        angular = triple(Twist.of(jacobian[j]).angular)
+        for i in range(3):
+            A[i, j] = support[frame, j] * linear[i]
+            A[3 + i, j] = support[frame, j] * angular[i]
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,19 +43,24 @@ from iiwa_dnn.control.arms import (
     motion_of,
     place_arm,
     rest_arm,
+    see_body,
+    see_people,
     send_arm,
+    separation_of,
     stopping_time_of,
 )
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import ACTION_OF, periods_of_step
 from iiwa_dnn.control.cycle import INVALID, ControlLayout
 from iiwa_dnn.control.paths import long_times, setup_warnings, warn_of_bodies
+from iiwa_dnn.control.people import News, separation_in, split_bodies
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.requests import (
     CUT,
     FASTEST,
     REASONS,
     TWIST,
+    Reason,
     Request,
     RequestCost,
     one_request,
@@ -79,11 +84,15 @@ from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.periods import SLACK, Periods, checked_longest
 from iiwa_dnn.schemes.rate_limits import MotionLimits
 from iiwa_dnn.schemes.scene import Body, scene_views
+from iiwa_dnn.schemes.separation import PEOPLE_SPEED, FreeBody, Separation
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 DISTANCE = 0.02
 """Least distance from obstacles where none is stated [m]."""
 
+
+LATENCY = 0.15
+"""Age of people that a camera of 30 Hz and a tracker of 0.1 s exceed by lost frames alone [s]."""
 
 NO_TARGETS = np.zeros((0, TARGET_SIZE))
 """Targets of a shield, which tracks no frame, (0, 18)."""
@@ -96,10 +105,13 @@ class Margin(NamedTuple):
         joint: Least distance of a joint from its position limits [rad].
         distance: Least distance of a link from an obstacle or another link, less the one to keep
             [m]; inf if no pair is watched.
+        separation: Least distance of a link that joints move from what a body of bounded speed may
+            have reached, less the one to keep [m]; inf if there is no body.
     """
 
     joint: float | Vector
     distance: float | Vector
+    separation: float | Vector = np.inf
 
 
 class ArmLayout(NamedTuple):
@@ -133,14 +145,29 @@ class ArmLayout(NamedTuple):
         codes, rows = np.split(arm.limiting.astype(int), [arm.positions.size])
         words = map(describe, active_limits(names.settings, codes, rows))
         motion = motion_of(self.plan, arm)
-        return (*reasons_of(arm), *words, *names.conditions(motion.q, motion.least))
+        reasons = [
+            self.separation_words(memory) if reason == REASONS[Reason.SEPARATION] else reason
+            for reason in reasons_of(arm)
+        ]
+        return (*reasons, *words, *names.conditions(motion.q, motion.least))
+
+    def separation_words(self, memory: Vector) -> str:
+        """Name the link and the body that slow an arm's last command down, or the body's age."""
+        link, number = map(int, separation_of(self.plan, memory)[1:])
+        rule = separation_in(self.step.program.parts)
+        assert rule is not None
+        arm = self.state(memory)
+        ages = [FreeBody.of(body).age for body in arm.bodies[: len(rule.bodies)]]
+        seen = ages[number] if number < len(ages) else arm.seen.age
+        return rule.words(self.step.program.robot, link, number, seen - arm.period)
 
     def margin(self, memory: Vector) -> Margin:
         """Compute the least distances of joints from their limits, and of pairs from theirs.
 
         They are those at the joint positions that an arm's last command starts from.
         """
-        return Margin(*margin_of(self.plan, memory))
+        separation, _, _ = separation_of(self.plan, memory)
+        return Margin(*margin_of(self.plan, memory), separation)
 
     def stopping_time(self, memory: Vector) -> float:
         """Compute the time of the stopping motion from an arm's last command [s]."""
@@ -182,6 +209,7 @@ def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
         limiting=n + m,
         # Two commands in a row last longer than a period, or are one.
         sent=(1 + robot.dof) * (1 + 2 * math.ceil(shield.delay / shield.dt)) * (shield.delay > 0.0),
+        bodies=sum(len(each.names) for each in program.parts if isinstance(each, Separation)),
     )
     total = np.minimum(robot.dq_max, FASTEST).sum()
     plan = ArmPlan(
@@ -189,6 +217,7 @@ def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
         step.plan,
         program.places_of(RequestCost)[0],
         [*program.places_of(CollisionAvoidance), -1][0],
+        [*program.places_of(Separation), -1][0],
         step.log_layout.width,
         (program.rate_limits or MotionLimits()).constants(robot),
         float(CUT * max(robot.reach, 1.0) * total),  # above what the joints can do anywhere
@@ -220,6 +249,14 @@ def own_movers(shield: Shield) -> list[Obstacle]:
     """Return the obstacles of a shield that do not move at a constant velocity."""
     avoidance = avoidance_of(shield) or CollisionAvoidance()
     return [each for each in avoidance.obstacles if type(each).shift is not Obstacle.shift]
+
+
+def see(plan: ArmPlan, memory: Vector, news: News) -> None:
+    """Take what was seen of bodies of bounded speed into an arm's memory (k,), overwritten."""
+    if news.people is not None:
+        see_people(plan, memory, news.people, news.age)
+    for number, box in news.bodies.items():
+        see_body(plan, memory, number, box, news.age)
 
 
 class ShieldCommand(Command):
@@ -315,8 +352,13 @@ class Shield:
         tracking_error: float = 0.02,
         delay: float = 0.0,
         longest_period: float | None = None,
+        people: int = 0,
+        field: float | None = None,
+        latency: float = LATENCY,
+        contact_speed: float = 0.0,
+        people_speed: float = PEOPLE_SPEED,
     ) -> None:
-        """Take a robot, and the obstacles to keep away from.
+        """Take a robot, and the obstacles and people to keep away from.
 
         Args:
             robot: The robot, with limits on position and velocity; those on acceleration and jerk
@@ -333,6 +375,12 @@ class Shield:
             delay: Time by which the arm is behind its commands [s]: from a step to the reading of
                 the encoders at which its command begins to show, less one period.
             longest_period: Longest control period where periods vary [s]; None: they are constant.
+            people: Largest number of bodies that a sensor's frame shows; 0: none are told of.
+            field: Radius about the base within which the sensor sees everybody [m].
+            latency: Largest age of a frame before the next one comes [s]. An older one brakes
+                the arm earlier; the promise does not depend on it.
+            contact_speed: Speed of a link's points up to which people may touch it [m/s].
+            people_speed: Bound on their speed [m/s].
 
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
@@ -362,12 +410,25 @@ class Shield:
         self._kept: tuple[Vector, str]  # memory of the arm, never overwritten; frame of twists
         limits: list[Limit] = [JointLimits(), *own_rate_limits(robot)]
         checks.positive("distance", distance)
+        free: list[Obstacle] = []
         if isinstance(obstacles, CollisionAvoidance):
             if distance not in (DISTANCE, obstacles.distance):
                 raise InvalidInputError("distance", "is stated by the CollisionAvoidance", distance)
             limits.append(obstacles)
+            distance = obstacles.distance
         elif obstacles is not None:
-            limits.append(CollisionAvoidance(obstacles, distance=distance))
+            free, others = split_bodies(obstacles)
+            limits.append(CollisionAvoidance(others, distance=distance))
+        if free or checks.integer("people", people, 0):
+            if people and field is None:
+                problem = "is needed with people: how far from the base the sensor sees everybody"
+                raise InvalidInputError("field", problem)
+            if contact_speed and longest_period is not None:
+                problem = "needs a constant period, for the time in which an arm is quick"
+                raise InvalidInputError("contact_speed", problem, contact_speed)
+            radius = checks.positive("field", field) if people else math.inf
+            own = (people, people_speed, radius, latency, contact_speed, distance, settings.delay)
+            limits.append(Separation(tuple(free), *own))
         self._limits = tuple(limits)
         self._begin()
         self.reset()
@@ -501,6 +562,9 @@ class Shield:
         twist: ArrayLike | None = None,
         position: ArrayLike | None = None,
         frame: str | None = None,
+        people: ArrayLike | Sequence[Any] | None = None,
+        obstacles: Mapping[str, Any] | None = None,
+        age: float | None = None,
         dt: float | None = None,
         elapsed: float | None = None,
     ) -> ShieldCommand:
@@ -517,6 +581,12 @@ class Shield:
             position: Or the requested joint positions [rad], (n,). A joint is there where its
                 commanded or its measured position is, or between them.
             frame: Name of the twist's frame; None stands for the tip.
+            people: All bodies in the field as a sensor saw them: both ends and the radius, with the
+                error of the place, of each [m], tuples (a, b, radius) or (k, 7). [] is nobody in
+                the field, None no news. What has no meaning is none: the arm comes to rest.
+            obstacles: Or the place of each body with a speed that was seen, by its name: the center
+                of a sphere or a box [m], (3,), center and rotation of a box, a capsule's ends.
+            age: Time since they were seen [s]; None: the latency.
             dt: Period for which this command will be held [s]; without a `longest_period` at most
                 the control period.
             elapsed: Time since the last step [s], for which the last command was held.
@@ -545,6 +615,8 @@ class Shield:
                 periods = periods_of_step(self, self._warned, dt, elapsed)
             if self._halted:
                 halt_arm(plan, memory)
+            if people is not None or obstacles is not None:
+                see(plan, memory, News(separation_in(self._limits), people, obstacles, age))
             inputs = ArmInput(measured, kind, request, dt or 0.0, elapsed or 0.0)
             begin_step(plan, memory, inputs)
             kinematics = step.program.kinematics

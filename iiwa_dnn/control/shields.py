@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import inspect
 import os
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import Any, NamedTuple
@@ -22,8 +23,9 @@ from iiwa_dnn.control.arms import (
     step_arms,
     write_margins,
 )
+from iiwa_dnn.control.people import News, is_of_each, separation_in
 from iiwa_dnn.control.requests import one_request
-from iiwa_dnn.control.shield import Margin, Shield, called_parts, check_held
+from iiwa_dnn.control.shield import Margin, Shield, called_parts, check_held, see
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.qp.layout import IntVector
@@ -149,7 +151,9 @@ class Shields:
         twist: ArrayLike | None = None,
         position: ArrayLike | None = None,
         given: ArrayLike | None = None,
-        obstacles: ArrayLike | None = None,
+        obstacles: ArrayLike | Mapping[str, Any] | None = None,
+        people: ArrayLike | Sequence[Any] | None = None,
+        age: float | None = None,
         dt: float | None = None,
         elapsed: float | None = None,
     ) -> ShieldsCommand:
@@ -166,7 +170,11 @@ class Shields:
             position: Or the requested joint positions [rad], (N, n).
             given: Whether each arm has a new request, (N,); None: all have.
             obstacles: Present centres of the k obstacles [m], (k, 3) or (N, k, 3); None: they are
-                where they were, or where their velocities have led them.
+                where they were, or where their velocities have led them. Or the place of bodies
+                with a speed by their names, as for `Shield.step`.
+            people: A frame of people, as for `Shield.step`, for all arms; or a list of N frames,
+                each or None for an arm.
+            age: Time since they were seen [s]; None: the latency.
             dt: Period for which the commands will be held [s].
             elapsed: Time since the last step [s].
 
@@ -183,7 +191,11 @@ class Shields:
         kinds = self._flags("given", given) * kind
         layout = self._shield.layout(self.frame)
         with self._shield._lock:
-            if obstacles is not None:
+            if isinstance(obstacles, Mapping):
+                self._see(people, obstacles, age)
+            elif people is not None:
+                self._see(people, None, age)
+            if obstacles is not None and not isinstance(obstacles, Mapping):
                 self._place(obstacles)
             self._take_steps(inputs, kinds)
             arms = layout.state(self._memories)
@@ -194,6 +206,14 @@ class Shields:
                 np.argmax(arms.reasons, axis=1),
                 self,
             )
+
+    def _see(self, people: Any, bodies: Mapping[str, Any] | None, age: float | None) -> None:
+        """Take what was seen of people, by all arms or by each one, and of bodies by all arms."""
+        rule = separation_in(self._shield.limits)
+        frames = people if is_of_each(people, self.count) else [people] * self.count
+        all_news = [News(rule, frame, bodies, age) for frame in frames]
+        for memory, news in zip(self._memories, all_news, strict=True):
+            see(self._shield.layout(self.frame).plan, memory, news)
 
     def _take_steps(self, inputs: ArmInput, kinds: IntVector) -> None:
         """Take a step of all arms (`step_arms`), shared by threads."""
@@ -264,8 +284,9 @@ class Shields:
                 return layout.margin(self._memories[i])
             joint = np.empty(self.count)
             distance = np.empty(self.count)
-            write_margins(layout.plan, self._memories, joint, distance)
-            return Margin(joint, distance)
+            separation = np.empty(self.count)
+            write_margins(layout.plan, self._memories, joint, distance, separation)
+            return Margin(joint, distance, separation)
 
     def stopping_time(self, i: int) -> float:
         """Return the time of arm i's stopping motion from its last command [s]."""

@@ -44,6 +44,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Reference
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics_kernel import model_tables
+from iiwa_dnn.robot.obstacles import names_of
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
@@ -119,7 +120,7 @@ class Tables:
         self.kind = "shield"
         self.program = step.program
         self.frames: Sequence[str] = [frame]
-        self.obstacles = [f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)]
+        self.obstacles = names_of(obstacles)
         self._name_limits(REASONS)
         self.memory = STATE + memory.size
         self.scratch = shield_scratch(plan) + self.memory

@@ -56,6 +56,7 @@ _KERNELS = (
     *(arms.arm_state, arms.rest_arm, arms.halt_arm, arms.send_arm, arms.step_arm, arms.place_arm),
     *(arms.brake_arm, tracking.brake_tracking),
     *(arms.motion_of, arms.margin_of, arms.stopping_time_of, log_of, all_finite),
+    *(arms.see_people, arms.see_body, arms.separation_of),
     *(tracking.tracking_state, tracking.tracking_motion, tracking.send_tracking),
     *(tracking.sample_tracking, tracking.step_tracking),
     *(fitting.shield_fits, fitting.shield_scratch),

@@ -1,4 +1,8 @@
-"""Obstacles that an arm keeps away from: convex shapes in the world, still or moving."""
+"""Obstacles that an arm keeps away from: convex shapes in the world, still or moving.
+
+A body of bounded speed, such as a hand, states `speed` in place of a velocity: it may move in any
+direction, turn and bend, as long as none of its points is quicker.
+"""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -54,18 +58,39 @@ class Obstacle(checks.Checked, ABC):
 
     Attributes:
         velocity: Constant velocity [m/s], (3,).
+        speed: Bound on its speed in any direction [m/s], in place of a velocity; of an obstacle
+            without one, the length of `velocity`.
+        error: Bound on the error of the place at which a sensor sees it [m], with `speed`.
+        name: Its name; None: that of the shape, with a number.
 
     Raises:
         InvalidInputError: A parameter is wrong; it is named. So do all shapes.
     """
 
-    _checks: ClassVar[checks.Checks] = {"velocity": checks.vector3}
+    _checks: ClassVar[checks.Checks] = {
+        "velocity": checks.vector3,
+        "speed": checks.not_negative,
+        "error": checks.not_negative,
+    }
     velocity: Sequence[float] = (0.0, 0.0, 0.0)
+    speed: float = 0.0
+    error: float = 0.0
+    name: str | None = None
+
+    def __post_init__(self) -> None:
+        """Check the parameters; a velocity states the speed."""
+        super().__post_init__()
+        own = float(np.linalg.norm(self.velocity))
+        if own and self.speed not in (0.0, own):
+            raise InvalidInputError("speed", "is stated by the velocity: pass one of them", self)
+        if self.error and not self.is_free:
+            raise InvalidInputError("error", "is that of a body with a speed", self)
+        self._set(speed=self.speed or own)
 
     @property
-    def speed(self) -> float:
-        """Speed [m/s]; 0 of an obstacle that stands still."""
-        return float(np.linalg.norm(self.velocity))
+    def is_free(self) -> bool:
+        """Whether it has a bounded speed in any direction."""
+        return self.speed > 0.0 and not np.any(self.velocity)
 
     @property
     @abstractmethod
@@ -83,8 +108,16 @@ class Obstacle(checks.Checked, ABC):
 
     def settings(self) -> dict[str, Any]:
         """Return shape and parameters as a table of an obstacle file has them."""
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        names = [field.name for field in fields(self)]
+        if not self.is_free:
+            names = [name for name in names if name not in ("speed", "error")]
+        values = {name: getattr(self, name) for name in names}
         return {"shape": type(self).__name__} | {k: v for k, v in values.items() if v is not None}
+
+
+def names_of(obstacles: Sequence[Obstacle]) -> list[str]:
+    """Return the name of each obstacle: its own, or that of its shape with its number."""
+    return [each.name or f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)]
 
 
 @dataclass(frozen=True)

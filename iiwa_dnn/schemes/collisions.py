@@ -238,7 +238,7 @@ def keeps_distances(step: StepViews, constants: Vector, motion: Motion) -> bool:
             end = ends[at]
             if pair.unmoved_end == at + 1:
                 continue
-            x, coefficient = _along(motion, step.jacobian, pair, end, contact.normal)
+            x, coefficient = along(motion, step.jacobian, pair, end, contact.normal)
             displacement = end_displacement(motion, x, coefficient)
             change = min(change, height_of(end, contact) + min(displacement - remainder, 0.0))
         if left + change < min(kept, left):
@@ -247,7 +247,7 @@ def keeps_distances(step: StepViews, constants: Vector, motion: Motion) -> bool:
 
 
 @compiled
-def _along(
+def along(
     motion: Motion, jacobian: Matrix, pair: Pair, point: Vector3, normal: Vector3
 ) -> tuple[float, float]:
     """Compute the velocity of a point along a normal (3,), relative to the pair's first body.
@@ -275,7 +275,12 @@ def _along(
 def tuple_of_obstacles(argument: str, value: Any) -> tuple[Obstacle, ...]:
     """Return one obstacle or several as a tuple; refuse any other value."""
     obstacles = value if isinstance(value, Iterable) else (value,)
-    return tuple(checks.instance(argument, obstacle, Obstacle) for obstacle in obstacles)
+    found = tuple(checks.instance(argument, obstacle, Obstacle) for obstacle in obstacles)
+    for obstacle in found:
+        if obstacle.is_free:
+            problem = f"go in a direction that is not known: {obstacle!r}; a Shield takes it"
+            raise InvalidInputError(argument, problem, value)
+    return found
 
 
 def pairs_of_names(argument: str, value: Any) -> tuple[tuple[str, str], ...]:

@@ -38,7 +38,7 @@ from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics, Placement
 from iiwa_dnn.robot.meetings import TOUCH, Watched
-from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox
+from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox, names_of
 from iiwa_dnn.schemes.step import axis_at, rate_along, seen_from
 
 ROUNDS = 60
@@ -239,7 +239,7 @@ def make_scene(
         raise InvalidInputError("robot", problem, robot)
     model = collision_model(robot)
     links = [each.link for each in model.bodies]
-    names = links + [f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)]
+    names = links + names_of(obstacles)
     bodies = _bodies(robot, obstacles)
     numbered = model.pairs(robot) if self_collision else []
     numbered += _obstacle_pairs(robot, bodies, len(links))
@@ -459,8 +459,23 @@ def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
     pair = Pair.of(scene.pairs[k])
     first = Body.of(scene.bodies[pair.first])
     base = Placement.of(placed[pair.first])
-    half = triple(first.half)
     a, b = ends_of(scene, placed, pair.second)
+    contact = box_contact(base, triple(first.half), a, b)
+    radius = first.radius + Body.of(scene.bodies[pair.second]).radius
+    distance = contact.distance - radius + pair.allowance
+    return Contact(contact.second, contact.normal, distance)
+
+
+@compiled
+def box_contact(base: Placement, half: Vector3, a: Vector3, b: Vector3) -> Contact:
+    """Compute the nearest points and the distance of a box and a segment, both without a radius.
+
+    Args:
+        base: Placement of the box.
+        half: Its half-extents [m], (3,).
+        a: One end of the segment [m], (3,).
+        b: The other end [m], (3,).
+    """
     path = combined(1.0, b, -1.0, a)
     start = seen_from(base, combined(1.0, a, -1.0, triple(base.position)))
     along = seen_from(base, path)
@@ -474,10 +489,7 @@ def contact_of(scene: SceneViews, k: int, placed: Matrix) -> Contact:
         core, x, y, z = depth(nearest, half)
         flat = 0.0 if half[0] == 0.0 else 1.0
         normal = (flat * x, flat * y, flat * z)
-    outward = axis_at(base, normal)
-    radius = first.radius + Body.of(scene.bodies[pair.second]).radius
-    distance = core - radius + pair.allowance
-    return Contact(combined(1.0, a, s, path), outward, distance)
+    return Contact(combined(1.0, a, s, path), axis_at(base, normal), core)
 
 
 @compiled

@@ -12,6 +12,7 @@ from iiwa_dnn.compiling.sources import decoration
 ROOT = Path(iiwa_dnn.__file__).parent
 
 SPATIAL = {
+    "control/people.py": {"place.axes"},
     "references/rotations.py": {"R", "u", "v"},
     "references/shapes.py": {"target.position", "target.linear_velocity"},
     "robot/kinematics_kernel.py": {"axes", "v", "moved.axes", "start.axes", "placed"},

@@ -94,6 +94,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "halt": (INT, [POINTER] * 2),
     "send": (INT, [*[POINTER] * 3, REAL, REAL]),
     "place": (INT, [POINTER] * 3),
+    "people": (INT, [*[POINTER] * 3, SIZE, REAL]),
+    "separation": (REAL, [POINTER] * 3),
     "steps": (SIZE, [*[POINTER] * 3, SIZE, SIZE]),
     "targets": (INT, [*[POINTER] * 3, REAL, POINTER]),
     "save": (INT, [POINTER] * 3),

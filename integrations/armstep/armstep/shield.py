@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from armstep._library import ONE
-from armstep.arms import FARTHEST, TWIST, Answer, Arms, Decision, Decisions, numbers
+from armstep.arms import FARTHEST, TWIST, Answer, Arms, Decision, Decisions, numbers, pointed
 from armstep.errors import InputError, LibraryError
 from armstep.tables import Path, Tables
 
@@ -34,6 +34,8 @@ Reason = IntEnum(
         "UNKNOWN_KIND",
         "PERIOD_REFUSED",
         "PLACE_NOT_FINITE",
+        "FRAME_REFUSED",
+        "SEPARATION",
     ],
     start=0,
 )
@@ -46,10 +48,12 @@ class Margin(NamedTuple):
     Attributes:
         joint: Least distance of a joint from its position limits [rad].
         distance: Distance of the nearest pair less the least one [m]; inf if none is watched.
+        separation: That of the nearest person, who may have moved since; inf if there is none.
     """
 
     joint: Any
     distance: Any
+    separation: Any
 
 
 class ShieldCommand(Decision):
@@ -67,7 +71,8 @@ class ShieldCommand(Decision):
         joint, distance = np.empty((2, 1))
         given = (self.memory.ctypes, scratch.ctypes, joint.ctypes, distance.ctypes)
         ONE.armstep_margin(self.tables.arm, *given)
-        return Margin(joint.item(), distance.item())
+        separation = ONE.armstep_separation(self.tables.arm, *given[:2])
+        return Margin(joint.item(), distance.item(), separation)
 
     @property
     def stopping_time(self) -> float:
@@ -137,6 +142,25 @@ class _Shields(Arms[Answer]):
             if mask is not None:
                 self._buffers.given[...] = mask
             return self._take(joints, *request, periods)
+
+    def see(self, people: ArrayLike, age: float) -> None:
+        """Say where all people in the field are, as a sensor saw them `age` [s] before the step.
+
+        What has no meaning is no frame (`Reason.FRAME_REFUSED`): the arm comes to rest by itself.
+
+        Args:
+            people: Both ends and the radius, with the error of the place, of each [m], (k, 7); []
+                is nobody.
+            age: Time since they were seen [s].
+
+        Raises:
+            InputError: They have a wrong shape.
+        """
+        seen = np.asarray(people, dtype=np.float64)
+        frame = pointed("people", seen.reshape(-1, 7) if seen.size == 0 else seen, (len(seen), 7))
+        with self._lock:
+            for _, memory in self._each():
+                ONE.armstep_people(self.tables.arm, memory, frame.ctypes, len(frame), age)
 
     def margin(self, i: int | None = None) -> Margin:
         """Return the distances of arm i at the positions that its last command starts from.

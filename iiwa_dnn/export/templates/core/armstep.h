@@ -148,6 +148,19 @@ ARMSTEP_API enum armstep_status armstep_send(
  * the arm brakes until they are placed again. */
 ARMSTEP_API enum armstep_status armstep_place(const struct armstep *arm, double *memory, const double *centers);
 
+/* Say where all people in a shield's field are, as a sensor saw them `age` ago: both ends and the radius, with the error
+ * of the place, of `count` capsules. 0 of them is nobody in the field. What has no meaning (numbers that are not finite,
+ * too many, older than the last frame) is ARMSTEP_NOT_FINITE and no frame: all bodies grow older, and the arm comes to
+ * rest by itself. */
+ARMSTEP_API enum armstep_status armstep_people(
+    const struct armstep *arm, double *memory, const double capsules[][7], ptrdiff_t count, double age
+);
+
+/* Say where one body with a speed is, by its number among these: half-extents, axes one a row, center (15). */
+ARMSTEP_API enum armstep_status armstep_body(
+    const struct armstep *arm, double *memory, ptrdiff_t number, const double *box, double age
+);
+
 /* What a step is given. Fields that are left out are zero. */
 struct armstep_input {
     const double *q; /* measured joint positions (joints) */
@@ -213,6 +226,9 @@ ARMSTEP_API int armstep_active_limits(const struct armstep *arm, const double *m
 ARMSTEP_API enum armstep_status armstep_margin(
     const struct armstep *arm, const double *memory, double *scratch, double *joint, double *distance
 );
+
+/* the least separation of a shield's links from people, less the one to keep, INFINITY without; */
+ARMSTEP_API double armstep_separation(const struct armstep *arm, const double *memory, double *scratch);
 
 /* time of a shield's motion to rest from its command; */
 ARMSTEP_API double armstep_stopping_time(const struct armstep *arm, const double *memory, double *scratch);

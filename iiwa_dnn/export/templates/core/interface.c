@@ -162,14 +162,14 @@ static bool is_laid_out(const struct armstep *arm, struct reader *reader)
         return false;
     }
     if (is_shield(arm)) {
-        if (!@shield_fits@&own->shield, ARMSTEP_PART_schemes_collisions_collision_rows) || own->shield.sizes.obstacles != tables->obstacles
+        if (!@shield_fits@&own->shield, ARMSTEP_PART_schemes_collisions_collision_rows, ARMSTEP_PART_schemes_separation_separation_rows) || own->shield.sizes.obstacles != tables->obstacles
             || own->shield.sizes.n != tables->joints || tables->frames != 1) {
             return false;
         }
         memory = @ArmState@;
         scratch = @shield_scratch@&own->shield) + memory;
     } else {
-        if (!@controller_fits@&own->controller, ARMSTEP_PART_schemes_collisions_collision_rows) || tables->obstacles != 0
+        if (!@controller_fits@&own->controller, ARMSTEP_PART_schemes_collisions_collision_rows, ARMSTEP_PART_schemes_separation_separation_rows) || tables->obstacles != 0
             || own->controller.step.arrays.sizes.joints != tables->joints
             || own->controller.step.arrays.sizes.frames != tables->frames) {
             return false;
@@ -291,6 +291,34 @@ enum armstep_status armstep_place(const struct armstep *arm, double *memory, con
     }
     @place_arm@&layout_of(arm)->shield, state_of(arm, memory), places);
     return @all_finite@numbers, 0, numbers.size0) ? ARMSTEP_OK : ARMSTEP_NOT_FINITE;
+}
+
+enum armstep_status armstep_people(
+    const struct armstep *arm, double *memory, const double capsules[][7], ptrdiff_t count, double age
+)
+{
+    const Matrix own = {view_if_any(capsules != NULL ? capsules[0] : NULL, 0).data, count, 7};
+    if (!is_shield(arm)) {
+        return ARMSTEP_WRONG_KIND;
+    }
+    if (!has_begun(arm, memory)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    return @see_people@&layout_of(arm)->shield, state_of(arm, memory), own, age) ? ARMSTEP_OK : ARMSTEP_NOT_FINITE;
+}
+
+enum armstep_status armstep_body(
+    const struct armstep *arm, double *memory, ptrdiff_t number, const double *box, double age
+)
+{
+    if (!is_shield(arm) || number < 0 || number >= layout_of(arm)->shield.sizes.bodies) {
+        return ARMSTEP_WRONG_KIND;
+    }
+    if (!has_begun(arm, memory)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    return @see_body@&layout_of(arm)->shield, state_of(arm, memory), number, view(box, 15), age) ? ARMSTEP_OK
+                                                                                           : ARMSTEP_NOT_FINITE;
 }
 
 static int64_t step_shield(
@@ -526,6 +554,17 @@ enum armstep_status armstep_margin(
     *joint = found.at[0];
     *distance = found.at[1];
     return ARMSTEP_OK;
+}
+
+double armstep_separation(const struct armstep *arm, const double *memory, double *scratch)
+{
+    struct arena own_arena = arena_of(arm, scratch);
+    struct arena *const arena = &own_arena;
+    (void)arena;
+    if (!is_shield(arm) || !has_begun(arm, memory)) {
+        return INFINITY;
+    }
+    return @separation_of@&layout_of(arm)->shield, state_of(arm, memory)).at[0];
 }
 
 double armstep_stopping_time(const struct armstep *arm, const double *memory, double *scratch)

@@ -1,0 +1,216 @@
+"""Bodies of bounded speed: at rest before contact, whatever the sensor says later."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import iiwa_dnn
+from helpers_export import in_armstep
+from iiwa_dnn import Capsule, CollisionAvoidance, InvalidInputError, Shield, Shields, Sphere
+from iiwa_dnn.schemes.rest import Motion, velocity_at
+from iiwa_dnn.schemes.scene import Pair
+from iiwa_dnn.schemes.separation import (
+    FREE_BODY,
+    FreeBody,
+    Separation,
+    WatchedLink,
+    quick_periods,
+    separation_views,
+)
+
+judge_people = pytest.importorskip("judge_people", reason="numba compiles the judge")
+
+ROBOT = iiwa_dnn.load_robot("iiwa7").with_limits(acceleration=10.0)
+REQUEST = np.full(7, 0.3)
+FAR = [([1.8, 0.0, 0.2], [1.8, 0.0, 1.6], 0.2)]
+NEAR = [([0.5, 0.0, 0.2], [0.5, 0.0, 1.6], 0.2)]
+
+
+def made(**own: Any) -> Shield:
+    return Shield(ROBOT, **({"people": 3, "field": 2.5, "obstacles": []} | own))
+
+
+def driven(shield: Any, steps: int, q: Any = None, **own: Any) -> Any:
+    """Drive for a number of steps, the last one with `own` too; return the last command."""
+    q = ROBOT.start_posture() if q is None else q
+    for k in range(steps):
+        command = shield.step(
+            q, REQUEST, **(own if k == steps - 1 else {"people": FAR, "age": 0.1})
+        )
+        q = command.next_q
+    return command
+
+
+def hostile(**own: Any) -> Any:
+    return judge_people.Scene(ROBOT, **({"count": 9, "error": 0.0, "modes": (0, 1, 3)} | own))
+
+
+def test_no_link_in_motion_is_touched() -> None:
+    scene = hostile(error=0.03, modes=tuple(range(9)), lost=0.3, people=2)
+    found = judge_people.run(scene, 1500, 1, judge_people.told(scene))
+    assert found.contacts == 0
+    assert found.least > scene.distance - 1e-9
+    assert found.moving > 0.5
+    assert max(found.rates) < 1.0 + 1e-9
+
+
+def test_the_shield_of_moving_obstacles_alone_is_touched() -> None:
+    scene = hostile(modes=(0,), count=4)
+    assert judge_people.run(scene, 1500, 0, judge_people.today(scene)).contacts > 0
+
+
+@pytest.mark.parametrize("lie", ["still", "missing"])
+def test_what_is_not_told_is_missed(lie: str) -> None:
+    scene = hostile(lies=frozenset({lie}))
+    assert judge_people.run(scene, 2500, 2, judge_people.told(scene)).contacts > 0
+
+
+def test_shields_answer_as_a_shield_does() -> None:
+    one = made()
+    many = Shields(made(), 2)
+    q = np.tile(ROBOT.start_posture(), (2, 1))
+    people = ([0.9, 0.0, 0.4], [0.9, 0.3, 0.9], 0.1)
+    for k in range(60):
+        own = {} if k % 7 else {"people": [people], "age": 0.05}
+        alone = one.step(q[0], REQUEST, **own)
+        both = many.step(q, np.tile(REQUEST, (2, 1)), **own)
+        np.testing.assert_allclose(both.dq, np.tile(alone.dq, (2, 1)), atol=1e-9)
+        q = both.next_q
+    assert many.margin().separation[1] == pytest.approx(alone.margin.separation, abs=1e-9)
+    many.step(q, np.tile(REQUEST, (2, 1)), people=[[people], None], age=0.0)
+    one, other = many.margin().separation  # of the second arm the frame is older
+    assert one > other + 0.05
+
+
+def test_the_core_answers_to_the_bit(tmp_path: Path) -> None:
+    shield = made(longest_period=None)
+    many = Shields(shield, 1)
+    arm = in_armstep(shield, tmp_path)
+    q = ROBOT.start_posture()
+    frame = np.array([[0.9, 0.0, 0.4, 0.9, 0.3, 0.9, 0.1]])
+    for k in range(80):
+        own: Any = {} if k % 7 else {"people": frame[: k % 3], "age": 0.05}
+        if own:
+            arm.see(**own)
+        there = arm.step(q, REQUEST)
+        here = many.step([q], [REQUEST], **own)
+        assert there.dq.tobytes() == here.dq[0].tobytes()
+        assert there.margin.separation == many.margin(0).separation
+        q = here.next_q[0]
+    arm.see(np.full((1, 7), np.nan), age=0.05)
+    assert arm.step(q, REQUEST).reason.name == "FRAME_REFUSED"
+
+
+@pytest.mark.parametrize(
+    ("frame", "age"),
+    [
+        ([([np.nan, 0, 0], [0, 0, 1], 0.1)], 0.1),
+        ([([2.0, 0, 0], [2.0, 0, 1], -0.1)], 0.1),
+        (FAR * 4, 0.1),
+        (FAR, -0.01),
+        (FAR, np.nan),
+        (FAR, np.inf),
+        (FAR, 0.2),
+    ],
+)
+def test_what_has_no_meaning_is_no_frame(frame: Any, age: float) -> None:
+    shield = made()
+    command = driven(shield, 300, people=frame, age=age)
+    assert command.reasons == ("frame of bodies refused",)
+    before = command.margin.separation
+    later = driven(shield, 2, command.next_q)  # accepted again
+    assert later.reasons == ()
+    assert later.margin.separation > before - 0.01
+
+
+def test_without_news_the_arm_comes_to_rest_and_says_so() -> None:
+    shield = made()
+    assert not driven(shield, 1, people=None).dq.any()
+    command = shield.step(ROBOT.start_posture(), REQUEST)
+    assert command.active_limits[0] == "no frame of people yet"
+    command = driven(shield, 400)
+    assert command.dq.any()
+    for _ in range(1500):
+        command = shield.step(command.next_q, REQUEST)
+    assert not command.dq.any()
+    assert command.active_limits[0] == "age of people 1.60 s"
+    command = shield.step(command.next_q, REQUEST, people=NEAR, age=0.1)
+    assert command.active_limits[0].startswith("separation of iiwa7_link_")
+    assert command.active_limits[0].endswith(" from person 1")
+    assert command.margin.separation < 0.0
+    shield = made(field=0.8)
+    assert "edge of the field" in driven(shield, 300, people=[], age=0.1).active_limits[0]
+
+
+def test_a_body_is_seen_by_its_name_and_others_grow_older() -> None:
+    hand = Sphere([1.5, 0.0, 0.5], 0.06, speed=1.6, error=0.03, name="hand")
+    arm = Capsule([2.0, 0.0, 0.0], [2.0, 0.0, 1.0], 0.1, speed=1.6)
+    table = iiwa_dnn.Box([0.0, 0.0, -0.3], [0.5, 0.5, 0.1])
+    shield = Shield(ROBOT, obstacles=[table, hand, arm])
+    q = ROBOT.start_posture()
+    both = {"hand": [1.5, 0.0, 0.5], "Capsule 2": ([2.0, 0.0, 0.0], [2.0, 0.0, 1.0])}
+    assert not shield.step(q, REQUEST, obstacles={"hand": both["hand"]}, age=0.0).dq.any()
+    for _ in range(300):
+        command = shield.step(q, REQUEST, obstacles=both, age=0.0)
+        q = command.next_q
+    assert command.dq.any()
+    for _ in range(1500):
+        command = shield.step(q, REQUEST, obstacles={"hand": both["hand"]}, age=0.0)
+        q = command.next_q
+    assert not command.dq.any()
+    assert command.active_limits[0] == "age of Capsule 2 1.50 s"
+    with pytest.raises(iiwa_dnn.NotFoundError, match="foot"):
+        shield.step(q, REQUEST, obstacles={"foot": [0, 0, 0]})
+    assert Shield(ROBOT, obstacles=[table]).step(q, REQUEST).margin.separation == np.inf
+
+
+def test_settings_that_have_no_meaning_are_refused() -> None:
+    with pytest.raises(InvalidInputError, match="field"):
+        Shield(ROBOT, people=2)
+    with pytest.raises(InvalidInputError, match="contact_speed"):
+        made(contact_speed=0.25, longest_period=0.002)
+    with pytest.raises(InvalidInputError, match="velocity"):
+        Sphere([1, 0, 0], 0.1, speed=1.0, velocity=[2.0, 0, 0])
+    with pytest.raises(InvalidInputError, match="error"):
+        Sphere([1, 0, 0], 0.1, error=0.1)
+    with pytest.raises(InvalidInputError, match="not known"):
+        CollisionAvoidance([Sphere([1, 0, 0], 0.1, speed=1.0)])
+    with pytest.raises(InvalidInputError, match="people"):
+        Shield(ROBOT).step(ROBOT.start_posture(), REQUEST, people=[])
+    with pytest.raises(InvalidInputError, match="people"):
+        made().step(ROBOT.start_posture(), REQUEST, people=[([0, 0, 1], 0.1)])
+    with pytest.raises(InvalidInputError, match="Box with a speed"):
+        Separation((Sphere([1, 0, 0], 0.1),))
+
+
+def test_a_link_is_slow_after_the_periods_that_are_counted() -> None:
+    part = Separation(people=1, field=2.0)
+    own = separation_views(part.constants(ROBOT))
+    assert FreeBody.width() == FREE_BODY
+    random = np.random.default_rng(0)
+    for _ in range(200):
+        link = WatchedLink.of(own.links[random.integers(own.head.links)])
+        pair = Pair.of(link.reach)
+        M = float(random.integers(1, 200))
+        cubic = bool(random.random() < 0.7)
+        x = random.normal(size=7)
+        b = random.normal(size=7) * cubic
+        motion = Motion(x, b, M, 1e-3, cubic, False, False)
+        limit = float(10.0 ** random.uniform(-2, 0.5))
+        quick = quick_periods(motion, link, limit)
+        u = np.arange(M) / M
+        rates = np.array(
+            [[abs(velocity_at(*xb, at, cubic)) for xb in zip(x, b, strict=True)] for at in u]
+        )
+        speeds = rates @ np.where(pair.support > 0, pair.radii + link.radius, 0.0)
+        assert not (speeds[int(quick) :] > limit).any()
+        assert quick_periods(motion, link, 0.0) == (M if speeds.any() else 0.0)
+
+
+def test_a_link_may_be_touched_at_the_contact_speed_and_no_quicker() -> None:
+    scene = hostile(contact_speed=0.25, modes=(0, 3), people=1)
+    found = judge_people.run(scene, 1500, 3, judge_people.told(scene))
+    assert found.contacts == 0
+    assert 0.0 < found.quickest <= 0.25
