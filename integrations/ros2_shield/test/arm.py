@@ -62,6 +62,8 @@ class Arm(Node):
         self.times = []  # of the commands [s]
         self.said = [""]  # by the diagnostics
         self.publishers_of = {kind: self.create_publisher(kind, TOPICS[kind], 1) for kind in TOPICS}
+        names = ("halt", "reset")  # found long before they are called: the arm would time out
+        self.services_of = {each: self.create_client(Trigger, f"/shield/{each}") for each in names}
         self.create_subscription(DiagnosticArray, "/diagnostics", self.on_state, 10)
         # The node receives states of both reliabilities.
         if not self.is_timed:
@@ -221,11 +223,15 @@ def rove(arm, seconds):
 def begin_in_motion(arm):
     """Check that a node waits for an arm to move steadily, and brakes from its velocity."""
     steady = 0.3 * arm.limits["velocity"] * np.sign(-START - 1e-3)
-    for k in range(100):
+    waits = False
+    for k in range(2000):
         arm.dq = steady * (-1.0) ** (k // 10)
         arm.turn(patience=0.02)
+        waits = waits or any(words.startswith("waits until") for words in arm.said)
+        if waits and k > 100 and k % 20 == 19:
+            break
+    assert waits
     assert not arm.times
-    assert any(words.startswith("waits until") for words in arm.said)
     arm.dq = steady
     arm.wait(lambda: False, 1.0)  # the node may be some ticks behind
     arm.ask(None, 150, lambda: arm.times, patience=0.3)
@@ -249,7 +255,7 @@ def check_reasons(arm):
 
 def call(arm, name):
     """Call a service of the node while the arm goes on; return whether it succeeded."""
-    client = arm.create_client(Trigger, f"/shield/{name}")
+    client = arm.services_of[name]
     assert client.wait_for_service(PATIENCE)
     future = client.call_async(Trigger.Request())
     while not future.done():
