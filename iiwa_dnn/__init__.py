@@ -81,6 +81,7 @@ from iiwa_dnn.schemes import (
     Step,
     Task,
     TipSpeedLimit,
+    TorqueLimits,
 )
 from iiwa_dnn.simulation import MujocoPlant, RunSettings, simulate
 
@@ -173,6 +174,7 @@ __all__ = [
     "Task",
     "Tilting",
     "TipSpeedLimit",
+    "TorqueLimits",
     "TrackingSolver",
     "Waypoints",
     "ZeroingNetwork",

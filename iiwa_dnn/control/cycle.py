@@ -23,7 +23,7 @@ from iiwa_dnn.control.command import (
     note_active,
     note_command,
 )
-from iiwa_dnn.control.fallback import FALLBACK_BUDGET, fallback_size
+from iiwa_dnn.control.fallback import FALLBACK_BUDGET, Yielding, fallback_size
 from iiwa_dnn.control.plan import ControlPlan, Instant, PathColumn, Paths
 from iiwa_dnn.control.state import MotionState, change_spacing
 from iiwa_dnn.control.stopping import periods_to_rest
@@ -31,9 +31,11 @@ from iiwa_dnn.control.yielding import (
     BRAKE,
     NOMINAL,
     NONE,
+    contain,
     make_yielding,
     yield_step,
 )
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators.base import (
     AnswerSettings,
     CompiledAnswer,
@@ -145,6 +147,8 @@ class ControlLayout:
         self.given = self.plan._replace(samples=False)
         if program.rate_limits is not None:
             check_ranges(yielding.limits, 1.0 / (longest or dt))
+        if yielding.lengthens.any():
+            _check_lengthening(yielding, longest)
         if longest is not None:
             for k in program.places_of(JointLimits):
                 limits = PositionConstants.of(program.constants_of(k))
@@ -154,6 +158,21 @@ class ControlLayout:
     def most_solves(self) -> float:
         """Largest number of linear solves of a step, for its own program and all others."""
         return float(self.plan.network.settings.budget) + FALLBACK_BUDGET
+
+
+def _check_lengthening(yielding: Yielding, longest: float | None) -> None:
+    """Refuse limits whose motions to rest may have to be longer, where these cannot be.
+
+    Raises:
+        InvalidInputError: Not all accelerations are limited, or control periods vary.
+    """
+    accelerations = yielding.limits.acceleration
+    if not (accelerations.size and np.isfinite(accelerations).all()):
+        problem = "of torques need limits of all accelerations beside them: AccelerationLimits()"
+        raise InvalidInputError("limits", problem, accelerations)
+    if longest is not None:
+        problem = "is no part of what TorqueLimits promise: their control period is constant"
+        raise InvalidInputError("longest_period", problem, longest)
 
 
 def _asked(solver: DNNSolver, sizes: Sizes, duration: float) -> CompiledAnswer:
@@ -283,6 +302,8 @@ def take_step(
     )
     instant = Instant(step, motion_state, next_motion_state)
     assemble(log.program, arrays, step)
+    if largest_entry(plan.yielding.lengthens) > 0.0:  # else its rows may leave nothing
+        contain(program_views(log.program, sizes), plan, instant)
     _note_instant(log, arrays, motion_state, next_motion_state)
     halted = motion_state.halts or largest_entry(log.least) == MEET
     if not motion_state.yields and not halted and _answer(log, arrays, plan.network, state):

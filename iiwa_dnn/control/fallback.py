@@ -102,6 +102,7 @@ class Yielding(NamedTuple):
         tolerance: Tolerance of the residuals of an answer.
         rates: Index of the scheme's part with acceleration and jerk limits; -1 if it has none.
         rests: Indices of the limits that have a word on a motion to rest, (k,).
+        lengthens: For each of them 1 if a longer motion may keep it, else 0, (k,).
         verifies: Whether the rows of one of them do not suffice: a command is then given only if
             all of them agree with its motion to rest.
         cubic: Whether the jerk of a joint is limited.
@@ -114,6 +115,7 @@ class Yielding(NamedTuple):
     tolerance: float
     rates: int
     rests: IntVector
+    lengthens: Vector
     verifies: bool
     cubic: bool
     coupled: bool

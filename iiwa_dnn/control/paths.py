@@ -92,6 +92,8 @@ def setup_warnings(
         mode: ``"converged"`` or ``"continuous"``.
     """
     robot = program.robot
+    for limit in program.limits:
+        limit.check_start(robot, start.q)
     if problem := robot.outside(start.q):
         yield f"the start posture {problem}"
     yield from _unit_warnings(program)

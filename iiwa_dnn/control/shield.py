@@ -673,10 +673,10 @@ class Shield:
         """
         found: list[str] = []
         if len(self._unseen) > 1 and np.isfinite(measured).all():
-            self._unseen = (Request.POSITION,)
             start = Configuration(self.robot, measured)
             program = self.layout(self.robot.tip).step.program
             found += setup_warnings(program, start, 0.0, self.dt, "converged")
+            self._unseen = (Request.POSITION,)
             found += long_times({"timeout": self.settings.timeout, "delay": self.delay})
         if kind is Request.POSITION:
             self._unseen = self._unseen[:-1]

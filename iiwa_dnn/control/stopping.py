@@ -25,6 +25,12 @@ LONGEST = 1e6
 GROWTH = 1.1
 """Factor between successive numbers of periods that `least_periods` tries."""
 
+LONGER = 1.25
+"""Factor between successive numbers of periods that `periods_to_rest` tries."""
+
+TRIES = 12
+"""Largest number of motions to rest that are tried for a command."""
+
 STRETCH = 1.01
 """Factor between successive numbers of periods that `stretched` tries."""
 
@@ -65,18 +71,27 @@ def least_periods(
     Returns:
         Number M of periods, 0 at rest; inf if it would be above `LONGEST`.
     """
-    accelerations = limits.acceleration
-    jerks = limits.jerk
     periods = 0.0
     for i in range(x.size):
-        fewest = math.ceil(abs(x[i]) / (accelerations[i] * dt) * (1.0 - SLACK))
+        fewest = math.ceil(abs(x[i]) / (limits.acceleration[i] * dt) * (1.0 - SLACK))
         periods = max(periods, fewest)
+    return rated_periods(x, before, limits, dt, periods, vary) if cubic else periods
+
+
+@compiled
+def rated_periods(
+    x: Vector, before: Vector, limits: MotionConstants, dt: float, periods: float, vary: bool
+) -> float:
+    """Raise the number of periods of a cubic motion to rest until it keeps the rate limits.
+
+    Arguments and result are those of `least_periods`; `periods` is the number to begin with.
+    """
     i = 0
-    while cubic and i < x.size:
+    while i < x.size:
         if periods > LONGEST:
             return np.inf
-        jerk = jerks[i] * dt * dt
-        if within_rates(x[i], before[i], periods, accelerations[i] * dt, jerk, vary):
+        jerk = limits.jerk[i] * dt * dt
+        if within_rates(x[i], before[i], periods, limits.acceleration[i] * dt, jerk, vary):
             i += 1
         else:
             periods = max(1.0, math.ceil(GROWTH * periods))
@@ -212,21 +227,40 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector) -> float:
         before[i] = dq[i] - ratio * (dq[i] - before[i])
     rated = limits.lower.size > 0
     periods = least_periods(dq, before, limits, dt, yielding.cubic, vary) if rated else 1.0
-    if periods == np.inf:
-        return np.inf
-    if yielding.cubic and periods > 0.0:
-        write_cubic_coefficients(dq, before, periods, vary, coefficient)
-    # If periods vary, the first may be the longest and the others arbitrarily short.
-    skips = plan.timing.fraction < 1.0
-    longest = dt / plan.timing.fraction
-    motion = Motion(dq, coefficient, periods + vary, longest, yielding.cubic, vary, skips)
-    for k in range(yielding.rests.size):
-        limit = yielding.rests[k]
-        address = plan.arrays.table[limit, Column.REST]
-        agrees = enter_rest(address, instant.step, block_constants(plan.arrays, limit), motion)
-        if not agrees:
+    stored = instant.motion.stopping_periods - 1.0
+    grown = periods
+    for k in range(TRIES):
+        if periods == np.inf:
             return np.inf
-    return periods * ratio
+        if yielding.cubic and periods > 0.0:
+            write_cubic_coefficients(dq, before, periods, vary, coefficient)
+        # If periods vary, the first may be the longest and the others arbitrarily short.
+        skips = plan.timing.fraction < 1.0
+        longest = dt / plan.timing.fraction
+        motion = Motion(dq, coefficient, periods + vary, longest, yielding.cubic, vary, skips)
+        refusing = _first_refusing(plan, instant, motion)
+        if refusing < 0:
+            return periods * ratio
+        if periods == grown:
+            if yielding.lengthens[refusing] == 0.0:
+                return np.inf
+            grown = math.ceil(LONGER * grown)
+        # What is left of the stored motion most likely is enough.
+        periods = stored if k == 0 and stored > grown else grown
+        if yielding.cubic:
+            periods = rated_periods(dq, before, limits, dt, periods, vary)
+    return np.inf
+
+
+@compiled
+def _first_refusing(plan: ControlPlan, instant: Instant, motion: Motion) -> int:
+    """Find the first limit of `Yielding.rests` that does not agree with a motion; -1: all agree."""
+    for k in range(plan.yielding.rests.size):
+        limit = plan.yielding.rests[k]
+        address = plan.arrays.table[limit, Column.REST]
+        if not enter_rest(address, instant.step, block_constants(plan.arrays, limit), motion):
+            return k
+    return -1
 
 
 @compiled

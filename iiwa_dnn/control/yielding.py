@@ -93,6 +93,7 @@ def make_yielding(program: ProgramLayout, tol: float, alike: bool) -> Yielding:
         tol,
         [*program.places_of(MotionLimits), -1][0],
         np.array(rests, dtype=np.int64),
+        np.array([float(isinstance(part, Limit) and part.slower_helps) for part in lasting]),
         not all(isinstance(part, Limit) and part.rows_suffice for part in lasting),
         bool((limits.jerk < np.inf).any()),
         bool((weights == 0.0).any()),
@@ -145,7 +146,7 @@ def yield_step(
     wider = program_views(own, sizes)
     copied(wider.lb, nominal.lb)
     copied(wider.ub, nominal.ub)
-    _contain(wider, plan, instant)
+    contain(wider, plan, instant)
     if kind != STOPPED:
         _approach_answer(limits, wider, plan, instant, log.stats, x)
         rest = _make_stoppable(wider, plan, instant, log, x)
@@ -380,7 +381,7 @@ def _approach_answer(
 
     Args:
         limits: The program that was answered, with the nominal bounds.
-        wider: The same, with bounds and rows that admit the stored motion (`_contain`).
+        wider: The same, with bounds and rows that admit the stored motion (`contain`).
         plan: Layout of the step.
         instant: The instant of the step; the answer is written to `wanted` of the next state.
         stats: Statistics of the step, updated as in `solve_warm`.
@@ -482,7 +483,7 @@ def _make_stoppable(
 
 
 @compiled
-def _contain(limits: QPViews, plan: ControlPlan, instant: Instant) -> None:
+def contain(limits: QPViews, plan: ControlPlan, instant: Instant) -> None:
     """Widen bounds and rows of a program so that they admit the stored stopping motion.
 
     Writes limits.lb, limits.ub and limits.h; nothing if no motion is stored. The next command of

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn.robot.payload import Payload, make_payload
 from iiwa_dnn.robot.start import best_start
 from iiwa_dnn.robot.tools import Tool, ToolShapes, make_tool
 from iiwa_dnn.robot.urdf import read_geometry
@@ -51,6 +52,8 @@ class Robot:
         path: The URDF file, where the robot came from one; it is read once, on loading.
         urdf: Text of the URDF as it was read.
         tools: Tools and held objects at the tip, the innermost first.
+        payload: Body of uncertain mass that a frame carries, for `TorqueLimits`; None: there is
+            none.
         tip_id: Pinocchio's index of the tip frame.
 
     Raises:
@@ -68,6 +71,7 @@ class Robot:
     path: Path | None = None
     urdf: str | None = None
     tools: tuple[Tool, ...] = ()
+    payload: Payload | None = None
     tip_id: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -243,6 +247,57 @@ class Robot:
         model.addFrame(pin.Frame(name, tip.parentJoint, self.tip_id, pose, pin.FrameType.OP_FRAME))
         fixed = make_tool(name, self.tip, tool.copy(), tool_shapes)
         return replace(self, model=model, tip=name, tools=(*self.tools, fixed))
+
+    def with_payload(
+        self,
+        mass: ArrayLike,
+        center: ArrayLike = (0.0, 0.0, 0.0),
+        inertia: ArrayLike | None = None,
+    ) -> Robot:
+        """Return the same robot with a payload at the tip, in place of the one that it carries.
+
+        `TorqueLimits` hold for every mass in the range, so it may be grasped and released in motion
+        if the range begins at 0. It has no shape: `with_tool` states one.
+
+        Args:
+            mass: Its mass, or the smallest and the largest one [kg], (2,).
+            center: Its centre of mass in the frame of the tip [m], (3,).
+            inertia: Its inertia about the centre along the axes of that frame, at the largest mass
+                and in proportion to it at others [kg m^2], (3, 3); None: a point mass.
+
+        Raises:
+            InvalidInputError: The range, the centre or the inertia is none.
+        """
+        return replace(self, payload=make_payload(self.tip, mass, center, inertia))
+
+    def with_armature(self, armature: ArrayLike) -> Robot:
+        """Return the same robot with other rotor inertias, seen through the gears.
+
+        Args:
+            armature: Inertia that each joint has beside the links' [kg m^2], one number or (n,).
+
+        Raises:
+            InvalidInputError: It is negative, no number or of a wrong length.
+        """
+        own = checks.finite_array("armature", armature, np.shape(armature) and (self.dof,))
+        if (own < 0.0).any():
+            raise InvalidInputError("armature", "must not be negative", armature)
+        model = self.model.copy()
+        model.armature = np.full(self.dof, own)
+        return replace(self, model=model)
+
+    def with_gravity(self, gravity: ArrayLike) -> Robot:
+        """Return the same robot in other gravity, as on a wall, a ceiling or a tilted base.
+
+        Args:
+            gravity: Acceleration of gravity along the axes of the base [m/s^2], (3,).
+
+        Raises:
+            InvalidInputError: It has another shape or is not finite.
+        """
+        model = self.model.copy()
+        model.gravity.linear = checks.finite_array("gravity", gravity, (3,)).copy()
+        return replace(self, model=model)
 
     def start_posture(self) -> checks.Array:
         """Return joint positions (n,) [rad] to start from, inside the limits.

@@ -37,3 +37,4 @@ from iiwa_dnn.schemes.tasks import (
     RemoteCenterTask as RemoteCenterTask,
 )
 from iiwa_dnn.schemes.tip_speed import TipSpeedLimit as TipSpeedLimit
+from iiwa_dnn.schemes.torque import TorqueLimits as TorqueLimits

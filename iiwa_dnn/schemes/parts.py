@@ -305,9 +305,12 @@ class Limit(Part):
     Attributes:
         rows_suffice: Whether the rows of a step always leave a command after which those of the
             next one do, so that by itself the limit needs no test of a motion to rest.
+        slower_helps: Whether a motion to rest that takes longer may keep the limit where one from
+            the same command does not.
     """
 
     rows_suffice: ClassVar[bool] = False
+    slower_helps: ClassVar[bool] = False
 
     @property
     def title(self) -> str:
@@ -321,6 +324,13 @@ class Limit(Part):
         "inequalities": ("G", "h"),
         "bounds": ("lb", "ub"),
     }
+
+    def check_start(self, robot: Robot, q: Vector) -> None:
+        """Refuse joint positions q (n,) [rad] to start from; by default accept all.
+
+        Raises:
+            InvalidInputError: The limit does not hold at rest there.
+        """
 
     def row_names(self, robot: Robot) -> list[str]:
         """Return a name in words for each inequality row; by default none: rows are numbered."""

@@ -1,0 +1,405 @@
+r"""Limit of the joints' torques for every payload in a range, at every step and until rest.
+
+A command :math:`x_k` at positions q, after :math:`x_{k-1}`, takes the torques
+
+.. math::  \tau = M(q)\,(x_k - x_{k-1}) / dt + h(q, x_{k-1})
+
+of a rigid arm that goes on by :math:`q + dt\,x_k`. They are affine in the mass of the payload, so
+both ends of its range suffice, and linear in :math:`x_k`: a step has a row for each joint, sign and
+end. A row that no command within the acceleration limits reaches is idle.
+
+Along a motion to rest with velocities linear in time, the torques of the periods are samples of
+
+.. math::  -A(q)/T + w^2 B(q) + g(q), \qquad A_i = \sum_j M_{ij} x_j, \quad
+    B_i = \sum_{jk} \Gamma_{ijk} x_j x_k
+
+where w falls from 1 to 0 and q moves on a straight line. M is a trigonometric polynomial of degree
+2 in each angle after its joints, g one of degree 1, so Bernstein's inequality bounds the second
+derivatives by bounds on M and g, which follow from masses and lengths. Between two periods that are
+tested a torque exceeds the larger of both by no more than that; the interval is halved until the
+bound is enough. If velocities are cubic in time, or a joint slides, every period is tested.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from iiwa_dnn import checks
+from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.compiling.records import Record, part
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.dense import row_dot
+from iiwa_dnn.qp.layout import copied
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot.kinematics import Placement
+from iiwa_dnn.schemes.dynamics import Dynamics, Link, dynamics_of, write_torques
+from iiwa_dnn.schemes.parts import Limit
+from iiwa_dnn.schemes.rest import Motion, displacement_after, velocity_at
+from iiwa_dnn.schemes.step import StepViews
+
+ROUNDING = 1e-9
+"""Relative excess over a torque limit that counts as rounding."""
+
+RESERVE = 1e-6
+"""Part of a torque limit that the rows of a step leave to the tolerance of their solution."""
+
+DEPTH = 32
+"""Largest number of nested halvings of an interval."""
+
+
+class TorqueConstants(Record):
+    """Constants of `TorqueLimits` for n joints.
+
+    Attributes:
+        lightest: Smallest mass of the payload [kg].
+        heaviest: Its largest mass [kg].
+        slides: Whether a joint slides.
+        limit: Largest torque of each joint [N m], (n,).
+        acceleration: Largest acceleration of each joint [rad/s^2], (n,).
+        inertia: Square root of a bound on each diagonal entry of the inertia matrix, (n,).
+        weight: Bound on each torque of gravity [N m], (n,).
+        dynamics: `Dynamics` of the robot.
+    """
+
+    lightest: float
+    heaviest: float
+    slides: bool
+    limit: Vector = part()
+    acceleration: Vector = part()
+    inertia: Vector = part()
+    weight: Vector = part()
+    dynamics: Vector = part("dynamics")
+
+
+@compiled
+def torque_rows(
+    step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
+) -> None:
+    """Write G (2 n or 4 n, n) and h of `TorqueLimits`; lb and ub (n,) stay.
+
+    Without a control period the rows are idle. `constants` are `TorqueConstants`.
+    """
+    n = step.q.size
+    own = TorqueConstants.of(constants, n)
+    h[:] = np.inf
+    if not step.rate < np.inf:
+        return
+    arm = Dynamics.of(own.dynamics)
+    inertia = np.empty((n, n))
+    slopes = np.empty((n, n))
+    bias = np.empty(n)
+    slope = np.empty(n)
+    rest = np.zeros(n)
+    unit = np.zeros(n)
+    write_torques(arm, 1.0, step.q, step.last, rest, bias, slope)
+    for j in range(n):
+        unit[j] = 1.0
+        write_torques(arm, 0.0, step.q, rest, unit, inertia[j], slopes[j])
+        unit[j] = 0.0
+    for row in range(h.size):
+        i = row // 2 % n
+        sign = 1.0 - 2.0 * (row % 2)
+        mass = own.heaviest if row < 2 * n else own.lightest
+        torque = sign * (bias[i] + mass * slope[i])
+        most = torque
+        length = 0.0
+        for j in range(n):
+            entry = sign * (inertia[j, i] + mass * slopes[j, i])
+            G[row, j] = entry
+            length += entry * entry
+            most += abs(entry) * own.acceleration[j]
+        if most <= own.limit[i]:
+            G[row, :] = 0.0
+            continue
+        length = math.sqrt(length)
+        for j in range(n):
+            G[row, j] /= length
+        room = own.limit[i] * (1.0 - RESERVE) - torque
+        h[row] = row_dot(G, row, step.last) + room / (step.rate * length)
+
+
+@compiled
+def write_loads(own: TorqueConstants, q: Vector, v: Vector, a: Vector, load: Vector) -> float:
+    """Write the larger size of each torque with both ends of the payload [N m], load (n,).
+
+    Args:
+        own: The limit.
+        q: Joint positions [rad], (n,).
+        v: Joint velocities [rad/s], (n,).
+        a: Joint accelerations [rad/s^2], (n,).
+        load: The torques, (n,), overwritten.
+
+    Returns:
+        The largest ratio of a torque and its limit.
+    """
+    slope = np.empty(q.size)
+    write_torques(Dynamics.of(own.dynamics), 1.0, q, v, a, load, slope)
+    largest = 0.0
+    for i in range(q.size):
+        lightest = abs(load[i] + own.lightest * slope[i])
+        load[i] = max(lightest, abs(load[i] + own.heaviest * slope[i]))
+        largest = max(largest, load[i] / own.limit[i])
+    return largest
+
+
+@compiled
+def _load_in_period(
+    step: StepViews, own: TorqueConstants, motion: Motion, k: int, load: Vector
+) -> float:
+    """Write `write_loads` of a motion to rest as period k ends, from 1; k = 0 is its command's."""
+    n = step.q.size
+    q = np.empty(n)
+    v = np.empty(n)
+    a = np.empty(n)
+    M = max(motion.periods, 1.0)
+    for i in range(n):
+        x = motion.first[i]
+        b = motion.coefficient[i]
+        q[i] = step.q[i] + displacement_after(motion, x, b, min(k, M))
+        v[i] = step.last[i]
+        if k > 0:
+            v[i] = velocity_at(x, b, min((k - 1.0) / M, 1.0), motion.cubic)
+        after = velocity_at(x, b, min(k / M, 1.0), motion.cubic)
+        a[i] = step.rate * (after - v[i])
+    return write_loads(own, q, v, a, load)
+
+
+@compiled
+def keeps_torque(step: StepViews, constants: Vector, motion: Motion) -> bool:
+    """Test whether a command and its motion to rest keep all torques, rest included.
+
+    `constants` are `TorqueConstants`.
+    """
+    n = step.q.size
+    own = TorqueConstants.of(constants, n)
+    load = np.empty(n)
+    last = int(max(math.ceil(motion.periods), 0.0))
+    most = 1.0 + ROUNDING
+    if _load_in_period(step, own, motion, 1, load) > most:  # that is exceeded most often
+        return False
+    if _load_in_period(step, own, motion, 0, load) > most:
+        return False
+    samples = motion.cubic or own.slides
+    for k in range(2 if samples else last, last + 2):  # the last one is rest
+        if _load_in_period(step, own, motion, max(k, 1), load) > most:
+            return False
+    return samples or _keeps_between(step, own, motion, last)
+
+
+@compiled
+def _keeps_between(step: StepViews, own: TorqueConstants, motion: Motion, last: int) -> bool:
+    """Test the torques of a motion linear in time, those in periods 1 and `last` excepted."""
+    n = step.q.size
+    if last <= 2:
+        return True
+    bends = np.empty((n, 3))
+    _write_bends(own, motion, bends)
+    left = 1
+    load = np.empty(n)
+    _load_in_period(step, own, motion, left, load)
+    loads = np.empty((DEPTH, n))
+    ends = np.empty(DEPTH)
+    _load_in_period(step, own, motion, last, loads[0])
+    ends[0] = last
+    count = 1
+    while count > 0:
+        right = int(ends[count - 1])
+        if right - left <= 1 or _is_below(own, bends, load, loads[count - 1], left, right, last):
+            left = right
+            copied(load, loads[count - 1])
+            count -= 1
+            continue
+        middle = (left + right) // 2
+        ends[count] = middle
+        if _load_in_period(step, own, motion, middle, loads[count]) > 1.0 + ROUNDING:
+            return False
+        count += 1
+    return True
+
+
+@compiled
+def _is_below(
+    own: TorqueConstants,
+    bends: Matrix,
+    load: Vector,
+    other: Vector,
+    left: int,
+    right: int,
+    last: int,
+) -> bool:
+    """Test whether all torques surely keep their limits between two periods.
+
+    Args:
+        own: The limit.
+        bends: Coefficients of `_write_bends`, (n, 3).
+        load: Torques in the first of the periods [N m], (n,).
+        other: Torques in the second one [N m], (n,).
+        left: The first period.
+        right: The second one.
+        last: Number of periods of the motion.
+    """
+    slower = 1.0 - (left - 1.0) / last
+    square = slower * slower
+    width = (right - left) / last
+    for i in range(load.size):
+        bend = bends[i, 0] + square * (bends[i, 1] + square * bends[i, 2])
+        if max(load[i], other[i]) + width * width / 8.0 * bend > own.limit[i] * (1.0 + ROUNDING):
+            return False
+    return True
+
+
+@compiled
+def _write_bends(own: TorqueConstants, motion: Motion, bends: Matrix) -> None:
+    r"""Write a bound on the second derivative of each torque by the fraction u of a motion.
+
+    With w = 1 - u, T the motion's time and :math:`\sigma` the sum of the angles that a polynomial
+    depends on, each times its degree, a polynomial P adds at most :math:`|P| (\sigma^2 w^2 +
+    \sigma)`, and w^2 P, for the velocities, :math:`|P| (2 + 5 \sigma w^2 + \sigma^2 w^4)`. `bends`
+    (n, 3) are the coefficients of 1, w^2 and w^4 [N m].
+    """
+    n = motion.first.size
+    T = motion.periods * motion.period
+    after = np.zeros(n + 1)
+    speed = 0.0
+    for k in range(n):
+        j = n - 1 - k
+        after[j] = after[j + 1] + abs(motion.first[j]) * T
+        speed += own.inertia[j] * abs(motion.first[j])
+    turn = 2.0 * after[1]
+    for i in range(n):
+        # |Gamma_ijk| <= M_ij + M_ik + M_jk, each at most the product of two roots.
+        quick = 2.0 * own.inertia[i] * speed * after[0] / T + speed * speed
+        bends[i, 0] = own.weight[i] * after[0] + 2.0 * quick
+        bends[i, 1] = own.weight[i] * after[0] * after[0] + 5.0 * quick * turn
+        bends[i, 2] = quick * turn * turn
+        for k in range(n):
+            angle = 2.0 * after[min(i, k) + 1]
+            slow = own.inertia[i] * own.inertia[k] * abs(motion.first[k]) / T
+            bends[i, 0] += slow * angle
+            bends[i, 1] += slow * angle * angle
+
+
+def not_negative_torques(argument: str, value: ArrayLike) -> float | tuple[float, ...]:
+    """Return a number of at least 0, or several as a tuple; refuse any other value."""
+    given = [checks.not_negative(argument, each) for each in np.ravel(value).tolist()]
+    return tuple(given) if np.ndim(value) else given[0]
+
+
+@dataclass(frozen=True)
+class TorqueLimits(Limit):
+    """Limits of the joints' torques for every payload of the robot's range, until the arm rests.
+
+    Without a payload (`Robot.with_payload`) it is the robot's own masses. The robot is rigid and
+    follows its commands, whose period is constant. With a jerk limit each period of a motion to
+    rest is tested. Torques alone would admit thousands of rad/s^2 at a wrist whose file has no
+    rotor inertia (`Robot.with_armature`), so the scheme needs acceleration limits of all joints.
+
+    Attributes:
+        fraction: Part of the torque limits of the robot's file that may be used, in (0, 1].
+        friction: Torque that friction takes from each joint [N m], one number or (n,).
+    """
+
+    kernel = staticmethod(torque_rows)
+    rest_kernel = staticmethod(keeps_torque)
+    slower_helps = True
+    _checks: ClassVar[checks.Checks] = {
+        "fraction": checks.positive,
+        "friction": not_negative_torques,
+    }
+    fraction: float = 0.95
+    friction: ArrayLike = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.fraction > 1.0:
+            raise InvalidInputError("fraction", "must be at most 1", self.fraction)
+
+    def row_count(self, robot: Robot) -> int:
+        """Return 2 n, or 4 n for a range of payloads."""
+        return 2 * robot.dof * len(_masses(robot))
+
+    def row_names(self, robot: Robot) -> list[str]:
+        """Return joint and payload of each row."""
+        held = [f", with {mass:g} kg" * (robot.payload is not None) for mass in _masses(robot)]
+        joints = np.repeat(np.arange(1, robot.dof + 1), 2)
+        return [f"joint {joint} torque{mass}" for mass in held for joint in joints]
+
+    def largest(self, robot: Robot) -> Vector:
+        """Return the largest torque of each joint [N m], (n,).
+
+        Raises:
+            InvalidInputError: The robot's file gives a joint none, or friction leaves nothing.
+        """
+        friction = checks.array("friction", self.friction, np.shape(self.friction) and (robot.dof,))
+        effort = np.array(robot.model.effortLimit)
+        left: Vector = self.fraction * effort - friction
+        for name, given, own in zip(robot.joint_names, effort, left, strict=True):
+            if not (0.0 < given < np.inf and own > 0.0):
+                why = "leaves nothing of" if given > 0.0 else "needs"
+                problem = f"joint {name!r}: TorqueLimits {why} its torque limit of {given:g} N m"
+                raise InvalidInputError("effort", problem, effort)
+        return left
+
+    def constants(self, robot: Robot) -> TorqueConstants:
+        """Return `TorqueConstants`; raise InvalidInputError as `largest` does."""
+        dynamics = dynamics_of(robot)
+        masses = _masses(robot)
+        inertia, weight = _bounds(robot, dynamics, masses[0])
+        return TorqueConstants.make(
+            lightest=masses[-1],
+            heaviest=masses[0],
+            slides=bool(robot.slides),
+            limit=self.largest(robot),
+            acceleration=robot.ddq_max,
+            inertia=np.sqrt(inertia),
+            weight=weight,
+            dynamics=dynamics.numbers,
+        )
+
+    def check_start(self, robot: Robot, q: Vector) -> None:
+        """Raise InvalidInputError if a posture q (n,) [rad] takes more torque to be held."""
+        own = self.constants(robot)
+        load = np.empty(robot.dof)
+        rest = np.zeros(robot.dof)
+        if write_loads(own, q, rest, rest, load) > 1.0:
+            ratio = load / own.limit
+            i = int(ratio.argmax())
+            problem = f"takes {ratio[i]:.3g} of the torque limit of joint {i + 1} to be held"
+            raise InvalidInputError("q", problem, q)
+
+
+def _masses(robot: Robot) -> list[float]:
+    """Return the ends of the range of payloads [kg], the largest first; one if both are equal."""
+    ends = (0.0, 0.0) if robot.payload is None else robot.payload.mass.tolist()
+    return sorted({*ends}, reverse=True)
+
+
+def _bounds(robot: Robot, dynamics: Dynamics, mass: float) -> tuple[Vector, Vector]:
+    """Bound the diagonal of the inertia matrix [kg m^2] and the torques of gravity [N m], (n,).
+
+    A body is no farther from an axis than the lengths between them allow. With sliding joints,
+    where they are not needed, they are none.
+    """
+    n = robot.dof
+    inertia = np.zeros(n)
+    weight = np.zeros(n)
+    pull = float(np.linalg.norm(dynamics.gravity))
+    links = [Link.of(numbers) for numbers in dynamics.links]
+    bodies = [(j, 1.0, link.body) for j, link in enumerate(links)]
+    for carrier, amount, body in [*bodies, (dynamics.carrier - 1, mass, dynamics.payload)]:
+        largest = amount * max(float(np.linalg.eigvalsh(body.inertia)[-1]), 0.0)
+        at = body.center
+        beyond = 0.0
+        joint = carrier
+        while joint >= 0:
+            distance = float(np.hypot(at[0], at[1])) + beyond
+            inertia[joint] += largest + amount * body.mass * distance**2
+            weight[joint] += amount * body.mass * pull * distance
+            beyond += float(np.linalg.norm(at))
+            at = Placement.of(links[joint].placement.numbers).position
+            joint = int(links[joint].parent) - 1
+    return inertia + np.array([link.armature for link in links]), weight

@@ -1,0 +1,204 @@
+"""Limits of torques: rows and motions to rest beside Pinocchio, closed loops, and refusals."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from numpy.testing import assert_allclose
+
+import iiwa_dnn as d
+from helpers_kinematics import Array
+from helpers_simulation import rows_of
+from iiwa_dnn.control.arms import motion_of
+from iiwa_dnn.control.stopping import least_periods, write_cubic_coefficients
+from iiwa_dnn.schemes import AccelerationLimits, JerkLimits
+from iiwa_dnn.schemes.rate_limits import MotionLimits
+from iiwa_dnn.schemes.rest import Motion, velocity_at
+from iiwa_dnn.schemes.torque import TorqueLimits, keeps_torque
+
+DT = 2e-3
+CENTER = np.array([0.0, 0.0, 0.1])
+RANGE = (0.0, 3.0)
+PANDA = d.load_robot("panda").with_limits(jerk=np.inf).with_payload(RANGE, CENTER)
+EFFORT = np.array(PANDA.model.effortLimit)
+
+
+def carrying(robot: d.Robot, mass: float) -> tuple[pin.Model, pin.Data]:
+    """Pinocchio's model and data of a robot whose tip carries a point mass."""
+    model = robot.model.copy()
+    frame = model.frames[robot.tip_id]
+    body = pin.Inertia(mass, CENTER, np.zeros((3, 3)))
+    model.appendBodyToJoint(frame.parentJoint, body, frame.placement)
+    return model, model.createData()
+
+
+CARRYING = [carrying(PANDA, mass) for mass in (0.0, 3.0, 1.1)]
+
+
+def load(q: Array, v: Array, x: Array, dt: float = DT, models: list = CARRYING) -> float:
+    """The largest part of a torque limit that the command x after v takes at q."""
+    torques = [pin.rnea(*own, q, v, (x - v) / dt) for own in models]
+    return float((np.abs(torques) / models[0][0].effortLimit).max())
+
+
+def instant(robot: d.Robot, limit: TorqueLimits, q: Array, last: Array):
+    program = d.Scheme(limits=[limit]).program(robot)
+    return program.step_at(q, last, last, np.zeros((0, 18)), DT, 0.0, np.zeros(0))
+
+
+def test_the_rows_are_the_torques_with_the_lightest_and_the_heaviest_payload() -> None:
+    random = np.random.default_rng(0)
+    robot = PANDA.with_limits(acceleration=1e9)  # no row is idle
+    limit = TorqueLimits(0.9, friction=0.5)
+    names = limit.row_names(robot)
+    assert [names[0], names[-1]] == ["joint 1 torque, with 3 kg", "joint 7 torque, with 0 kg"]
+    for q in robot.draw(random, 10):
+        last, x = 0.3 * random.standard_normal((2, 7))
+        qp = rows_of(limit, d.Configuration(robot, q), dt=DT, dq=last)
+        left = (qp.h - qp.G @ x).reshape(2, 7, 2)
+        assert_allclose(np.linalg.norm(qp.G, axis=1), 1.0)
+        for own, found in zip((CARRYING[1], CARRYING[0]), left, strict=True):
+            torque = pin.rnea(*own, q, last, (x - last) / DT)
+            there = 0.9 * EFFORT * (1.0 - 1e-6) - 0.5
+            bound = np.transpose([there - torque, there + torque])
+            inertia = pin.crba(own[0], own[1], q)
+            size = np.linalg.norm(inertia, axis=1) / DT
+            assert_allclose(found * size[:, np.newaxis], bound, atol=1e-4)
+
+
+def test_rows_that_no_command_reaches_are_idle() -> None:
+    qp = rows_of(TorqueLimits(), d.Configuration(PANDA, PANDA.start_posture()), dt=DT)
+    idle = np.isinf(qp.h)
+    assert 0 < np.count_nonzero(idle) < 28
+    assert not qp.G[idle].any()
+
+
+@pytest.mark.parametrize("jerk", [np.inf, 500.0])
+def test_a_motion_to_rest_that_agrees_keeps_all_torques_and_one_that_is_far_below_agrees(
+    jerk: float,
+) -> None:
+    """Beside the torques of each period, its command's and those at rest, by Pinocchio."""
+    random = np.random.default_rng(3)
+    cubic = jerk < np.inf
+    robot = PANDA.with_limits(jerk=jerk)
+    rates = (AccelerationLimits(), JerkLimits())[: 1 + cubic]
+    limits = MotionLimits(rates).constants(robot)
+    needless = []
+    for q in robot.draw(random, 40):
+        x = random.uniform(0.05, 1.0) * robot.dq_max * random.uniform(-1.0, 1.0, 7)
+        last = x - DT * random.uniform(-3.0, 3.0, 7)
+        periods = float(round(2.0 * least_periods(x, last, limits, DT, cubic, False)))
+        b = np.zeros(7)
+        if cubic:
+            write_cubic_coefficients(x, last, periods, False, b)
+        motion = Motion(x, b, periods, DT, cubic, False, False)
+        at, v = q, last
+        largest = 0.0
+        for k in range(int(periods) + 2):
+            u = min(k / periods, 1.0)
+            after = np.array([velocity_at(x[i], b[i], u, cubic) for i in range(7)])
+            largest = max(largest, load(at, v, after))
+            at, v = at + DT * after, after
+        if largest > 1.0:
+            continue
+        low, high = 0.5 * largest, 1.0
+        for _ in range(25):
+            middle = 0.5 * (low + high)
+            limit = TorqueLimits(middle)
+            constants = limit.constants(robot).numbers
+            if keeps_torque(instant(robot, limit, q, last), constants, motion):
+                high = middle
+            else:
+                low = middle
+        assert high >= largest * (1.0 - 1e-8)
+        needless.append(high / largest)
+    assert len(needless) >= 10
+    assert np.max(needless) < 1.0 + 1e-6
+
+
+@pytest.mark.parametrize(("jerk", "dt"), [(np.inf, 2e-3), (2000.0, 2e-3), (np.inf, 1e-3)])
+def test_no_request_takes_a_command_or_a_motion_to_rest_beyond_the_torques(
+    jerk: float, dt: float
+) -> None:
+    """Without the limit the commands take up to three times the torques."""
+    random = np.random.default_rng(1)
+    robot = PANDA.with_limits(jerk=jerk)
+    shield = d.Shield(robot, dt=dt)
+    shield.limits += (TorqueLimits(1.0),)
+    q, v = robot.start_posture(), np.zeros(7)
+    largest, resting, reasons = 0.0, 0.0, set()
+    for k in range(1200):
+        if k % 75 == 0:
+            request = robot.dq_max * random.uniform(-1.2, 1.2, 7)
+        command = shield.step(q, request)
+        largest = max(largest, load(q, v, command.dq, dt))
+        reasons |= set(command.active_limits)
+        q, v = command.next_q, command.dq
+        if k % 20 == 0:
+            motion = motion_of(command.layout.plan, command.state)
+            periods = motion.stopping_periods
+            assert periods > 0.0
+            rest = np.array(q)
+            x, before = np.array(v), np.array(motion.before)
+            b = np.zeros(7)
+            if jerk < np.inf:
+                write_cubic_coefficients(x, before, periods, False, b)
+            last = x
+            for i in range(1, int(periods) + 2):
+                u = min(i / periods, 1.0)
+                after = np.array([velocity_at(x[j], b[j], u, jerk < np.inf) for j in range(7)])
+                resting = max(resting, load(rest, last, after, dt))
+                rest, last = rest + dt * after, after
+    assert 0.99 < largest <= 1.0 + 1e-9
+    assert resting <= 1.0 + 1e-9
+    assert any("torque, with 3 kg" in reason for reason in reasons)
+
+
+def test_a_posture_that_the_motors_cannot_hold_is_refused_and_never_entered() -> None:
+    robot = PANDA.with_payload((0.0, 5.0), CENTER)
+    models = [carrying(robot, 5.0)]
+    far = np.array([0.0, 1.5, 0.0, -0.3, 0.0, 1.8, 0.0])
+    shield = d.Shield(robot, dt=DT)
+    shield.limits += (TorqueLimits(1.0),)
+    heavy = load(far, np.zeros(7), np.zeros(7), models=models)
+    problem = f"q: takes {heavy:.3g} of the torque limit of joint 2 to be held"
+    for _ in range(2):
+        with pytest.raises(d.InvalidInputError, match=problem):
+            shield.step(far, np.zeros(7))
+    q = PANDA.start_posture()
+    v = np.zeros(7)
+    for _ in range(1000):
+        command = shield.step(q, position=far)
+        assert load(q, v, command.dq, models=models) <= 1.0 + 1e-9
+        q, v = command.next_q, command.dq
+    assert load(q, np.zeros(7), np.zeros(7), models=models) > 0.9
+    for _ in range(2500):
+        command = shield.step(q, position=PANDA.start_posture())
+        q = command.next_q
+    assert np.abs(q - PANDA.start_posture()).max() < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("robot", "limit", "problem"),
+    [
+        (PANDA, lambda: TorqueLimits(1.1), "fraction: must be at most 1"),
+        (PANDA, lambda: TorqueLimits(friction=-1.0), "friction"),
+        (PANDA, lambda: TorqueLimits(friction=12.0), "'panda_joint5': TorqueLimits leaves nothing"),
+        (d.load_robot("ur5"), TorqueLimits, "limits: of torques need limits of all accelerations"),
+    ],
+)
+def test_limits_that_do_not_fit_are_refused(robot: d.Robot, limit, problem: str) -> None:
+    with pytest.raises(d.InvalidInputError, match=problem):
+        d.Shield(robot).limits += (limit(),)
+
+
+def test_a_joint_without_a_torque_limit_is_refused_by_its_name() -> None:
+    model = PANDA.model.copy()
+    model.effortLimit = np.where(np.arange(7) == 3, 0.0, EFFORT)
+    object.__setattr__(robot := PANDA.with_limits(), "model", model)
+    with pytest.raises(d.InvalidInputError, match="joint 'panda_joint4': TorqueLimits needs"):
+        d.Shield(robot).limits += (TorqueLimits(),)
+
+
+def test_periods_that_vary_are_refused() -> None:
+    with pytest.raises(d.InvalidInputError, match="longest_period: is no part of what"):
+        d.Shield(PANDA, longest_period=2e-3).limits += (TorqueLimits(),)
