@@ -75,6 +75,17 @@ class TorqueConstants(Record):
     dynamics: Vector = part("dynamics")
 
 
+class Bend(Record):
+    """Bound on a torque's second derivative by the part u of a motion, 1 - u = w [N m].
+
+    It is always + square w^2 + fourth w^4.
+    """
+
+    always: float
+    square: float
+    fourth: float
+
+
 @compiled
 def torque_rows(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
@@ -196,16 +207,17 @@ def _keeps_between(step: StepViews, own: TorqueConstants, motion: Motion, last: 
     n = step.q.size
     if last <= 2:
         return True
-    bends = np.empty((n, 3))
+    bends = np.empty((n, Bend.width()))
     _write_bends(own, motion, bends)
     left = 1
     load = np.empty(n)
     _load_in_period(step, own, motion, left, load)
     loads = np.empty((DEPTH, n))
     ends = np.empty(DEPTH)
-    _load_in_period(step, own, motion, last, loads[0])
-    ends[0] = last
-    count = 1
+    count = 0
+    _load_in_period(step, own, motion, last, loads[count])
+    ends[count] = last
+    count += 1
     while count > 0:
         right = int(ends[count - 1])
         if right - left <= 1 or _is_below(own, bends, load, loads[count - 1], left, right, last):
@@ -235,7 +247,7 @@ def _is_below(
 
     Args:
         own: The limit.
-        bends: Coefficients of `_write_bends`, (n, 3).
+        bends: `Bend` of each joint, (n, 3).
         load: Torques in the first of the periods [N m], (n,).
         other: Torques in the second one [N m], (n,).
         left: The first period.
@@ -246,8 +258,9 @@ def _is_below(
     square = slower * slower
     width = (right - left) / last
     for i in range(load.size):
-        bend = bends[i, 0] + square * (bends[i, 1] + square * bends[i, 2])
-        if max(load[i], other[i]) + width * width / 8.0 * bend > own.limit[i] * (1.0 + ROUNDING):
+        bend = Bend.of(bends[i])
+        second = bend.always + square * (bend.square + square * bend.fourth)
+        if max(load[i], other[i]) + width * width / 8.0 * second > own.limit[i] * (1.0 + ROUNDING):
             return False
     return True
 
@@ -259,28 +272,33 @@ def _write_bends(own: TorqueConstants, motion: Motion, bends: Matrix) -> None:
     With w = 1 - u, T the motion's time and :math:`\sigma` the sum of the angles that a polynomial
     depends on, each times its degree, a polynomial P adds at most :math:`|P| (\sigma^2 w^2 +
     \sigma)`, and w^2 P, for the velocities, :math:`|P| (2 + 5 \sigma w^2 + \sigma^2 w^4)`. `bends`
-    (n, 3) are the coefficients of 1, w^2 and w^4 [N m].
+    (n, 3) has the `Bend` of each joint.
     """
     n = motion.first.size
     T = motion.periods * motion.period
     after = np.zeros(n + 1)
+    beyond = 0.0
+    whole = 0.0
     speed = 0.0
     for k in range(n):
         j = n - 1 - k
-        after[j] = after[j + 1] + abs(motion.first[j]) * T
+        beyond = after[j + 1]  # in the end, all angles but the first
+        whole = beyond + abs(motion.first[j]) * T
+        after[j] = whole
         speed += own.inertia[j] * abs(motion.first[j])
-    turn = 2.0 * after[1]
+    turn = 2.0 * beyond
     for i in range(n):
         # |Gamma_ijk| <= M_ij + M_ik + M_jk, each at most the product of two roots.
-        quick = 2.0 * own.inertia[i] * speed * after[0] / T + speed * speed
-        bends[i, 0] = own.weight[i] * after[0] + 2.0 * quick
-        bends[i, 1] = own.weight[i] * after[0] * after[0] + 5.0 * quick * turn
-        bends[i, 2] = quick * turn * turn
+        quick = 2.0 * own.inertia[i] * speed * whole / T + speed * speed
+        bend = Bend.of(bends[i])
+        bend.always = own.weight[i] * whole + 2.0 * quick
+        bend.square = own.weight[i] * whole * whole + 5.0 * quick * turn
+        bend.fourth = quick * turn * turn
         for k in range(n):
             angle = 2.0 * after[min(i, k) + 1]
             slow = own.inertia[i] * own.inertia[k] * abs(motion.first[k]) / T
-            bends[i, 0] += slow * angle
-            bends[i, 1] += slow * angle * angle
+            bend.always += slow * angle
+            bend.square += slow * angle * angle
 
 
 def not_negative_torques(argument: str, value: ArrayLike) -> float | tuple[float, ...]:

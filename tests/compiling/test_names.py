@@ -17,6 +17,10 @@ SPATIAL = {
     "references/shapes.py": {"target.position", "target.linear_velocity"},
     "robot/kinematics_kernel.py": {"axes", "v", "moved.axes", "start.axes", "placed"},
     "schemes/collisions.py": {"Body.of(scene.bodies[pair.second]).half"},
+    "schemes/dynamics.py": {
+        *("A", "here.axes", "link.placement.axes", "wrench.force", "wrench.moment"),
+        *("here.rate", "here.change", "here.linear"),
+    },
     "schemes/scene.py": {"half", "x", "side", "Body.of(scene.bodies[body]).half", "place.axes"},
     "schemes/step.py": {"axis", "placement.axes"},
     "schemes/tasks.py": {"axes", "target.rotation"},
