@@ -139,7 +139,8 @@ def write_torques(
     motions = np.zeros((n + 1, LinkMotion.width()))
     own = np.zeros((n + 1, Wrench.width()))
     held = np.zeros((n + 1, Wrench.width()))
-    base = LinkMotion.of(motions[0])
+    world = 0  # the place of the base
+    base = LinkMotion.of(motions[world])
     for i in range(3):
         base.linear[i] = -gravity * arm.gravity[i]
     for j in range(n):
