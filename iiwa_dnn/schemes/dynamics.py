@@ -189,15 +189,14 @@ def _move(link: Link, below: LinkMotion, joint: Vector3, here: LinkMotion) -> No
         here.rate[i] = dot(axis, rate)
         here.change[i] = dot(axis, change)
         here.linear[i] = dot(axis, linear)
-    x_rate = here.rate[0]
-    y_rate = here.rate[1]
-    here.change[0] += turns * v * y_rate
-    here.change[1] -= turns * v * x_rate
-    here.change[2] += turns * a
-    here.rate[2] += turns * v
-    here.linear[0] += 2.0 * slides * v * y_rate
-    here.linear[1] -= 2.0 * slides * v * x_rate
-    here.linear[2] += slides * a
+    own = (0.0, 0.0, 1.0)
+    across = cross(triple(here.rate), own)
+    spin = combined(turns * v, across, turns * a, own)
+    slip = combined(2.0 * slides * v, across, slides * a, own)
+    for i in range(3):
+        here.rate[i] += turns * v * own[i]
+        here.change[i] += spin[i]
+        here.linear[i] += slip[i]
 
 
 @compiled
@@ -219,14 +218,19 @@ def _accelerate(body: Mass, motion: LinkMotion, wrench: Wrench) -> None:
 @compiled
 def _times(A: Matrix, v: Vector3) -> Vector3:
     """Multiply a symmetric matrix (3, 3) by a vector."""
-    return dot(triple(A[0]), v), dot(triple(A[1]), v), dot(triple(A[2]), v)
+    product = (0.0, 0.0, 0.0)
+    for i in range(3):
+        product = combined(1.0, product, v[i], triple(A[i]))
+    return product
 
 
 @compiled
 def _along(link: Link, wrench: Wrench) -> float:
     """Compute the part of a wrench that the joint's motor bears."""
-    borne: float = link.slides * wrench.force[2] + (1.0 - link.slides) * wrench.moment[2]
-    return borne
+    slides: float = link.slides
+    axis = (0.0, 0.0, 1.0)
+    force = dot(axis, triple(wrench.force))
+    return slides * force + (1.0 - slides) * dot(axis, triple(wrench.moment))
 
 
 @compiled
