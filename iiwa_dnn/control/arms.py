@@ -31,6 +31,7 @@ from iiwa_dnn.control.plan import ControlPlan
 from iiwa_dnn.control.requests import (
     CUT,
     FASTEST,
+    FOLLOW,
     TWIST,
     Reason,
     Request,
@@ -46,7 +47,7 @@ from iiwa_dnn.qp.layout import IntVector, copied
 from iiwa_dnn.robot.kinematics import Twist
 from iiwa_dnn.robot.kinematics_kernel import ModelTables, write_kinematics
 from iiwa_dnn.schemes.periods import SLACK, Periods, periods_of
-from iiwa_dnn.schemes.profiles import Rates, arriving, braking
+from iiwa_dnn.schemes.profiles import Rates, braking
 from iiwa_dnn.schemes.program import ProgramArrays, block_constants, program_views
 from iiwa_dnn.schemes.rate_limits import MotionConstants, joint_rates
 from iiwa_dnn.schemes.scene import Body, scene_views, write_distances
@@ -57,7 +58,7 @@ from iiwa_dnn.schemes.separation import (
     separation_factor,
     separation_views,
 )
-from iiwa_dnn.schemes.viability import joint_bounds
+from iiwa_dnn.schemes.viability import joint_bounds, reaching
 
 TURN = 2.0 * math.pi
 """Turn after which a joint without position limits is at the same place [rad]."""
@@ -413,7 +414,7 @@ def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> None:
     arm.reasons[Reason.PERIOD_REFUSED] = 0.0 if _fits(settings, inputs) else 1.0
     arm.reasons[Reason.PLACE_NOT_FINITE] = 1.0 if arm.is_misplaced else 0.0
     arm.reasons[Reason.FRAME_REFUSED] = 1.0 if arm.seen.is_refused else 0.0
-    periods = _periods(arm, settings, inputs)
+    periods = periods_of_inputs(arm, settings, inputs)
     if inputs.elapsed > 0.0 and arm.reasons[Reason.PERIOD_REFUSED] == 0.0:
         _correct_last_period(arm, motion_of(plan, arm), inputs.elapsed)
     arm.reasons[Reason.PERIOD_EXCEEDED] = 1.0 if periods.exceeded else 0.0
@@ -425,7 +426,7 @@ def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> None:
         arm.reasons[arm.reason] = 1.0
     arm.period = periods.expected
     arm.answered = arm.kind
-    if arm.reason != Reason.NONE or _is_refused(arm):
+    if arm.reason != Reason.NONE or is_refused(arm):
         arm.answered = Request.VELOCITY
     if not arm.has_begun:
         arm.answered = Request.NONE
@@ -446,7 +447,7 @@ def _fits(settings: ArmSettings, inputs: ArmInput) -> bool:
 
 
 @compiled
-def _periods(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> Periods:
+def periods_of_inputs(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> Periods:
     """Return the periods of a step; those that are refused count as not stated."""
     if arm.reasons[Reason.PERIOD_REFUSED] != 0.0:
         return periods_of(settings.dt, settings.longest, 0.0, 0.0)
@@ -454,7 +455,7 @@ def _periods(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> Periods:
 
 
 @compiled
-def _is_refused(arm: ArmState) -> bool:
+def is_refused(arm: ArmState) -> bool:
     """Test whether an arm brakes at this step, whatever its request is."""
     count: float = arm.reasons[Reason.Q_NOT_FINITE] + arm.reasons[Reason.PERIOD_REFUSED]
     count += arm.reasons[Reason.PLACE_NOT_FINITE]
@@ -491,7 +492,7 @@ def _update_positions(plan: ArmPlan, arm: ArmState, measured: Vector, unstated: 
     settings = plan.settings
     q = arm.measured
     copied(q, measured[: q.size])
-    _add_pending(arm, settings.delay, q)
+    add_pending(arm, settings.delay, q)
     if arm.has_begun:
         _add_turns(plan, arm, q)
     far = 0
@@ -542,7 +543,7 @@ def _sent_command(arm: ArmState, k: int) -> SentCommand:
 
 
 @compiled
-def _add_pending(arm: ArmState, delay: float, q: Vector) -> None:
+def add_pending(arm: ArmState, delay: float, q: Vector) -> None:
     """Add the displacement by the commands of the last `delay` [s] to positions q (n,) [rad]."""
     age = 0.0
     for k in range(arm.sent.size // (1 + q.size)):
@@ -597,7 +598,7 @@ def _update_request(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> N
             arm.request[i] = 0.0
         elif i < count:
             arm.request[i] = inputs.request[i]
-    refused = _is_refused(arm)
+    refused = is_refused(arm)
     changes = differing(arm.request, before)
     arm.is_repeated = not refused and changes == 0
 
@@ -688,7 +689,7 @@ def _answer(
     data: Vector,
 ) -> int:
     """Answer the request of an arm by a control step, and keep its results; return the action."""
-    timing = _periods(arm, plan.settings, inputs)
+    timing = periods_of_inputs(arm, plan.settings, inputs)
     base = plan.step.arrays
     arrays = ProgramArrays(
         base.sizes,
@@ -775,7 +776,7 @@ def _slow_down(
     for i in range(n):
         fastest = min(plan.motion.velocity[i], FASTEST)
         excess = max(excess, abs(dq[i]) / fastest)
-        if not request.is_twist and not _is_refused(arm):
+        if not request.is_twist and not is_refused(arm):
             wanted = arm.request[i]
             if arm.answered == Request.POSITION:
                 wanted = _quickest(plan, arm, i, timing.hold)
@@ -836,7 +837,8 @@ def approach_request(
 
     For requested positions each joint takes the largest velocity from which it can still come to
     rest there (`_left`). A joint that cannot reach its requested velocity in this step because of a
-    jerk limit, or whose request is that of the step before, approaches it without overshoot.
+    jerk limit, or whose request is that of the step before, approaches it without overshoot. The
+    velocities of an arm that follows samples are taken as they are: they are within its limits.
 
     Args:
         arm: The arm, with its request.
@@ -847,7 +849,8 @@ def approach_request(
         dq: The velocities, or longer, overwritten.
     """
     reaches = arm.answered == Request.POSITION
-    brakes = _is_refused(arm)
+    follows = arm.answered == FOLLOW
+    brakes = is_refused(arm)
     for i in range(arm.positions.size):
         last = motion.last[i]
         before = motion.before[i]
@@ -858,21 +861,19 @@ def approach_request(
         rates = joint_rates(limits, i)
         most = CUT * min(rates.velocity, FASTEST)
         if reaches:
-            above = left if left >= 0.0 else np.inf
-            below = -left if left < 0.0 else np.inf
             accel = rates.acceleration
             rates = Rates(rates.velocity, accel, rates.jerk, accel, np.inf, 0.0)
-            most = min(most, admitted[i])
-            wanted = min(max(left / periods.hold, -most), most)
-        elif abs(wanted) > most:
+            dq[i] = reaching(last, before, left, min(most, admitted[i]), rates, periods)
+            continue
+        if follows and abs(wanted) <= admitted[i]:
+            dq[i] = wanted
+            continue
+        if abs(wanted) > most:
             wanted = math.copysign(most, wanted)
             arm.reasons[Reason.CUT] = 1.0
         wanted = min(max(wanted, -admitted[i]), admitted[i])
         lower, upper, _, _ = joint_bounds(last, before, above, below, rates, periods)
-        if reaches:
-            wanted = min(max(wanted, lower), upper)
-            wanted = arriving(last, before, left, wanted, rates, periods)
-        elif arm.is_repeated or wanted < lower or wanted > upper:
+        if arm.is_repeated or wanted < lower or wanted > upper:
             wanted += braking(last - wanted, -np.inf, np.inf, limits.jerk[i], periods)
         dq[i] = wanted
 

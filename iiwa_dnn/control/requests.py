@@ -71,6 +71,11 @@ class Request(IntEnum):
     POSITION = 3
 
 
+FOLLOW = len(Request)
+"""Kind that a step answers if the velocities requested are those by which an arm follows samples.
+"""
+
+
 class Reason(IntEnum):
     """Reasons, other than limits, for a command that differs from the request.
 

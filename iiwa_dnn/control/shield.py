@@ -24,7 +24,7 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,6 +36,7 @@ from iiwa_dnn.control.arms import (
     ArmSettings,
     ArmSizes,
     ArmState,
+    add_pending,
     begin_step,
     finish_step,
     halt_arm,
@@ -52,6 +53,20 @@ from iiwa_dnn.control.arms import (
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import ACTION_OF, periods_of_step
 from iiwa_dnn.control.cycle import INVALID, ControlLayout
+from iiwa_dnn.control.following import (
+    KEEPS,
+    STALE,
+    FollowState,
+    Mode,
+    Preview,
+    Rehearsal,
+    checked_samples,
+    follow_of,
+    follow_step,
+    keep_samples,
+    no_samples,
+    velocity_request,
+)
 from iiwa_dnn.control.paths import long_times, setup_warnings, warn_of_bodies
 from iiwa_dnn.control.people import News, separation_in, split_bodies
 from iiwa_dnn.control.policies import Action
@@ -259,23 +274,39 @@ def see(plan: ArmPlan, memory: Vector, news: News) -> None:
         see_body(plan, memory, number, box, news.age)
 
 
+class Kept(NamedTuple):
+    """What a shield keeps from step to step; a step makes new arrays.
+
+    Attributes:
+        memory: Memory of the arm, (k,).
+        frame: Frame of its twists.
+        samples: What it follows, (k,); None: it has a request of another kind.
+    """
+
+    memory: Vector
+    frame: str
+    samples: Vector | None = None
+
+
 class ShieldCommand(Command):
     """Decision of one step of a shield.
 
     Attributes:
         layout: Layout of the arm's step.
         memory: Memory of the arm after the step, (k,).
+        samples: What the arm follows, (k,); None: it has a request of another kind.
     """
 
-    __slots__ = ("layout", "memory")
+    __slots__ = ("layout", "memory", "samples")
 
     def __init__(
-        self, data: Vector, layout: ArmLayout, action: Action, periods: Periods, memory: Vector
+        self, data: Vector, layout: ArmLayout, action: Action, periods: Periods, kept: Kept
     ) -> None:
         """Take what a `Command` takes, and the arm's layout and memory, which are not copied."""
         super().__init__(data, layout.step.log_layout, action, periods)
         self.layout = layout
-        self.memory = memory
+        self.memory = kept.memory
+        self.samples = kept.samples
 
     @property
     def state(self) -> ArmState:
@@ -294,7 +325,28 @@ class ShieldCommand(Command):
     @property
     def reasons(self) -> tuple[str, ...]:
         """Reasons, other than limits, for a command that differs from the request, in words."""
-        return reasons_of(self.state)
+        followed = self._followed
+        stale = (STALE,) if followed is not None and followed.was_stale else ()
+        return reasons_of(self.state) + stale
+
+    @property
+    def _followed(self) -> FollowState | None:
+        """What the arm follows; None: it has a request of another kind."""
+        return None if self.samples is None else follow_of(self.layout.plan, self.samples)
+
+    @property
+    def late(self) -> float:
+        """Time by which the clock of what is followed is behind at the end of the period [s]."""
+        followed = self._followed
+        return float(followed.late) if followed is not None and followed.count else 0.0
+
+    @property
+    def off(self) -> float:
+        """Largest distance of a joint from what is followed, at the end of the period [rad]."""
+        followed = self._followed
+        if followed is None or not followed.count:
+            return 0.0
+        return float(np.abs(self.state.positions - followed.reference).max())
 
     @property
     def active_limits(self) -> tuple[str, ...]:
@@ -407,7 +459,7 @@ class Shield:
         self._unseen = tuple(Request)  # kinds whose first request has warnings
         self._halted = False
         self._is_within = False
-        self._kept: tuple[Vector, str]  # memory of the arm, never overwritten; frame of twists
+        self._kept: Kept
         limits: list[Limit] = [JointLimits(), *own_rate_limits(robot)]
         checks.positive("distance", distance)
         free: list[Obstacle] = []
@@ -453,7 +505,7 @@ class Shield:
     @limits.setter
     def limits(self, limits: Sequence[Limit]) -> None:
         with self._turn():
-            memory, frame = self._kept
+            memory, frame, _ = self._kept
             layout = self.layout(frame)
             if motion_of(layout.plan, layout.state(memory)).last.any():
                 raise InvalidInputError("limits", "are set at rest: halt the arm first", limits)
@@ -513,7 +565,7 @@ class Shield:
             layout = self.layout(tip)
             memory = layout.memory.copy()
             rest_arm(layout.plan, memory, positions)
-            self._kept = (memory, tip)
+            self._kept = Kept(memory, tip)
             self._halted = False
 
     def halt(self) -> None:
@@ -533,10 +585,92 @@ class Shield:
         sent = checks.finite_array("dq", dq, (self.robot.dof,))
         period = self.dt if dt is None else checks.positive("dt", dt)
         with self._turn():
-            memory, frame = self._kept
-            memory = memory.copy()
-            send_arm(self.layout(frame).plan, memory, sent, period)
-            self._kept = (memory, frame)
+            kept = self._kept
+            memory = kept.memory.copy()
+            send_arm(self.layout(kept.frame).plan, memory, sent, period)
+            self._kept = kept._replace(memory=memory)
+
+    @property
+    def time(self) -> float:
+        """Time of the next step since the first one [s], the clock of the chunks to follow."""
+        with self._lock:
+            return float(self._state().time)
+
+    def _state(self) -> ArmState:
+        """State of the arm after the last step, a view."""
+        return self.layout(self._kept.frame).state(self._kept.memory)
+
+    def follow(
+        self,
+        times: ArrayLike,
+        positions: ArrayLike,
+        keep: Literal["time", "path"] = "time",
+        *,
+        now: float | None = None,
+    ) -> None:
+        """Follow a chunk of timed joint positions from the next steps on, which need no request.
+
+        The reference is the cubic spline through them. It replaces what was followed from its first
+        time on; until then one chunk waits. The arm comes to rest at its last sample. A chunk that
+        is all in the past changes nothing: the next command's `reasons` say so.
+
+        Args:
+            times: Time of each sample [s], (m,), rising, m at most 64.
+            positions: Joint positions of each [rad], (m, n). If some are not finite, the arm
+                brakes.
+            keep: What is kept where the samples are too quick for the joints: their ``"time"``, or
+                their ``"path"``, later.
+            now: Present time on the clock of `times` [s]; None: they are on the clock `time`.
+
+        Raises:
+            InvalidInputError: A shape is wrong, times do not rise, or samples are too many. Nothing
+                is then changed.
+        """
+        t, points = checked_samples(times, positions, self.robot.dof)
+        mode = KEEPS[checks.one_of("keep", keep, tuple(KEEPS))]
+        with self._turn():
+            if now is not None:
+                t = t + (self.time - checks.finite("now", now))
+            kept = self._kept
+            plan = self.layout(kept.frame).plan
+            samples = no_samples(plan) if kept.samples is None else kept.samples.copy()
+            keep_samples(plan, samples, t, points, mode, self.time)
+            self._kept = kept._replace(samples=samples)
+
+    def preview(
+        self, times: ArrayLike, positions: ArrayLike, keep: Literal["time", "path"] = "time"
+    ) -> Preview:
+        """Tell what would become of a chunk, by taking its steps without an arm.
+
+        Nothing changes. It takes as long as that many steps (20 to 100 us each); other steps wait
+        for it. Bodies of bounded speed grow older meanwhile, as without news of them.
+
+        Args:
+            times: Time of each sample [s], (m,), as for `follow`.
+            positions: Joint positions of each [rad], (m, n).
+            keep: What is kept where the samples are too quick.
+
+        Raises:
+            InvalidInputError: As for `follow`; or no step has been taken nor a posture `reset` to.
+        """
+        t, points = checked_samples(times, positions, self.robot.dof)
+        with self._turn():
+            kept = self._kept
+            rehearsal = Rehearsal(t, points)
+            dt = None if self.longest_period is None else self.dt
+            try:  # steps that do not count
+                self.follow(t, points, keep)
+                while rehearsal.goes_on:
+                    arm = self._state()
+                    pending = np.zeros(self.robot.dof)
+                    add_pending(arm, self.delay, pending)
+                    command = self.step(arm.positions - pending, dt=dt)
+                    assert command.samples is not None
+                    own = follow_of(command.layout.plan, command.samples)
+                    rehearsal.take(own, arm, command.state, command.active_limits)
+            finally:
+                self._kept = kept
+        return rehearsal.result
 
     def warm_up(self, q: ArrayLike, frames: Sequence[str] = ()) -> None:
         """Lay the programs out ahead, so that the first step is as quick as the others.
@@ -561,6 +695,8 @@ class Shield:
         *,
         twist: ArrayLike | None = None,
         position: ArrayLike | None = None,
+        time: float | None = None,
+        lead: int | None = None,
         frame: str | None = None,
         people: ArrayLike | Sequence[Any] | None = None,
         obstacles: Mapping[str, Any] | None = None,
@@ -579,7 +715,11 @@ class Shield:
             twist: Or the requested linear [m/s] and angular [rad/s] velocity of a frame along the
                 base's axes, (6,).
             position: Or the requested joint positions [rad], (n,). A joint is there where its
-                commanded or its measured position is, or between them.
+                commanded or its measured position is, or between them. With a time or a lead they
+                are those of a stream, which the arm passes through.
+            time: Time at which they were sampled [s], on a clock of their sender; None: now.
+            lead: Samples by which a stream is continued beyond the last one, 0, 1 (also None) or 2:
+                the arm is 2 - lead sampling periods late.
             frame: Name of the twist's frame; None stands for the tip.
             people: All bodies in the field as a sensor saw them: both ends and the radius, with the
                 error of the place, of each [m], tuples (a, b, radius) or (k, 7). [] is nobody in
@@ -601,8 +741,9 @@ class Shield:
         kind, request = one_request((robot.dof,), dq, twist, position)
         measured = self._measured(q)
         with self._lock:
-            memory, last = self._kept
-            memory = memory.copy()
+            kept = self._kept
+            memory = kept.memory.copy()
+            last = kept.frame
             seen = (frame or robot.tip) if kind is Request.TWIST else last
             layout = self._layouts.get(seen) or self.layout(seen)
             plan = layout.plan
@@ -617,23 +758,53 @@ class Shield:
                 halt_arm(plan, memory)
             if people is not None or obstacles is not None:
                 see(plan, memory, News(separation_in(self._limits), people, obstacles, age))
+            samples, kind, request = self._followed(kind, request, time, lead)
             inputs = ArmInput(measured, kind, request, dt or 0.0, elapsed or 0.0)
-            begin_step(plan, memory, inputs)
-            kinematics = step.program.kinematics
-            positions = memory[layout.positions]
-            kinematics.update(positions)
-            if layout.asks:
-                self._call_parts(layout, memory, periods)
-            data = np.empty(plan.width)
-            action = finish_step(
-                plan, memory, inputs, kinematics.jacobian, kinematics.placements, data
-            )
-            if action == INVALID:
-                checks.joint_positions("q", positions, robot.dof)
-            command = ShieldCommand(data, layout, ACTION_OF[action], periods, memory)
+            kept = Kept(memory, seen, samples)
+            data, action = self._answer(layout, kept, inputs, periods)
+            command = ShieldCommand(data, layout, ACTION_OF[action], periods, kept)
             # Last: an interrupted step changes nothing.
-            object.__setattr__(self, "_kept", (memory, seen))
+            object.__setattr__(self, "_kept", kept)
             return command
+
+    def _answer(
+        self, layout: ArmLayout, kept: Kept, inputs: ArmInput, periods: Periods
+    ) -> tuple[Vector, int]:
+        """Take a step of a memory, which is overwritten; return its log and the action."""
+        plan = layout.plan
+        memory = kept.memory
+        begin_step(plan, memory, inputs)
+        if kept.samples is not None:
+            follow_step(plan, memory, inputs, kept.samples)
+        kinematics = layout.step.program.kinematics
+        positions = memory[layout.positions]
+        kinematics.update(positions)
+        if layout.asks:
+            self._call_parts(layout, memory, periods)
+        data = np.empty(plan.width)
+        jacobian = kinematics.jacobian
+        action = finish_step(plan, memory, inputs, jacobian, kinematics.placements, data)
+        if action == INVALID:
+            checks.joint_positions("q", positions, self.robot.dof)
+        return data, action
+
+    def _followed(
+        self, kind: Request, request: Vector, time: float | None, lead: int | None
+    ) -> tuple[Vector | None, Request, Vector]:
+        """Return what the arm follows in a step, a copy or None, and the step's request."""
+        streams = not time is lead is None
+        kept = self._kept
+        if streams and kind is not Request.POSITION:
+            raise InvalidInputError("time, lead", "belong to a position", (time, lead))
+        if not streams and (kept.samples is None or kind is not Request.NONE):
+            return None, kind, request
+        plan = self.layout(kept.frame).plan
+        samples = no_samples(plan) if kept.samples is None else kept.samples.copy()
+        if streams:
+            mode = Mode.STREAM + (1 if lead is None else checks.one_of("lead", lead, (0, 1, 2)))
+            stamp = self.time if time is None else checks.finite("time", time)
+            keep_samples(plan, samples, np.array([stamp]), request[np.newaxis], mode, self.time)
+        return samples, *velocity_request(follow_of(plan, samples))
 
     def _call_parts(self, layout: ArmLayout, memory: Vector, periods: Periods) -> None:
         """Call the limits and obstacles in Python of a step whose kinematics are computed."""
@@ -658,8 +829,7 @@ class Shield:
         """Return measured joint positions (n,); NaN for None, which the first step refuses."""
         if q is not None:
             return checks.joint_positions("q", q, self.robot.dof)
-        memory, frame = self._kept
-        if not self.layout(frame).state(memory).has_begun:
+        if not self._state().has_begun:
             raise InvalidInputError("q", "is needed at the first step")
         return np.full(self.robot.dof, np.nan)
 

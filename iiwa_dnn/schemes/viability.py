@@ -30,12 +30,22 @@ control of robot arms", IEEE Robotics and Automation Letters 3(1), 2018, for the
 third order is derived in docs/theory_limits.md.
 """
 
+import math
+
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.naming import LimitKind
 from iiwa_dnn.schemes.periods import Periods
-from iiwa_dnn.schemes.profiles import ROUNDING, Rates, approach, easing, highest, usable_jerk
+from iiwa_dnn.schemes.profiles import (
+    ROUNDING,
+    Rates,
+    approach,
+    arriving,
+    easing,
+    highest,
+    usable_jerk,
+)
 
 MARGIN = 0.2
 """Distance that is kept free at a position limit, in units of J' dt^3; 1 / sqrt(27) is needed."""
@@ -311,3 +321,52 @@ def _ceiling_below_velocity_limit(
             lb = _ceiling(lb, ub, end, last, own, profile)
         deceleration *= LOWER
     return lb
+
+
+@compiled
+def reaching(
+    last: float, before: float, left: float, most: float, rates: Rates, periods: Periods
+) -> float:
+    """Compute the largest velocity [rad/s] from which a joint can still come to rest at a position.
+
+    Args:
+        last: Last command [rad/s].
+        before: Command before it [rad/s].
+        left: Position less the present one [rad].
+        most: Largest speed that is wanted [rad/s].
+        rates: Limits of the joint, with one deceleration.
+        periods: Periods of the step.
+    """
+    above = left if left >= 0.0 else np.inf
+    below = -left if left < 0.0 else np.inf
+    wanted = min(max(left / periods.hold, -most), most)
+    lower, upper, _, _ = joint_bounds(last, before, above, below, rates, periods)
+    wanted = min(max(wanted, lower), upper)
+    return arriving(last, before, left, wanted, rates, periods)
+
+
+@compiled
+def rest_ahead(v: float, last: float, rates: Rates, periods: Periods) -> float:
+    """Compute the displacement [rad] to where a joint comes to rest that begins to brake after v.
+
+    Args:
+        v: Command [rad/s].
+        last: Command before it [rad/s].
+        rates: Limits of the joint.
+        periods: Periods of the step.
+    """
+    dt = periods.dt
+    accel = rates.acceleration
+    if rates.jerk < np.inf:
+        jerk = usable_jerk(rates, periods.longest)
+        profile = (jerk, min(accel, accel - jerk * periods.longest), np.inf)
+        margin = 0.0 if periods.vary else MARGIN * jerk * dt * dt * dt
+        sign = math.copysign(1.0, v)
+        return sign * (highest(sign * v, sign * last, periods, profile) + margin)
+    if accel == np.inf:
+        return v * periods.hold
+    unit = accel * periods.hold
+    x = abs(v) / unit
+    m = math.floor(x)
+    steps = x + 0.5 * x * x if periods.vary else (m + 1.0) * x - 0.5 * m * (m + 1.0)
+    return math.copysign(steps * unit * periods.hold, v)
