@@ -150,14 +150,19 @@ class ControlLayout:
         if yielding.lengthens.any():
             _check_lengthening(yielding, longest)
         if longest is not None:
-            for k in program.places_of(JointLimits):
-                limits = PositionConstants.of(program.constants_of(k))
-                limits.gain = min(limits.gain, 1.0 / longest)
+            _bound_gains(program, longest)
 
     @property
     def most_solves(self) -> float:
         """Largest number of linear solves of a step, for its own program and all others."""
         return float(self.plan.network.settings.budget) + FALLBACK_BUDGET
+
+
+def _bound_gains(program: ProgramLayout, longest: float) -> None:
+    """Keep a period of length `longest` [s] from carrying a joint beyond its position limit."""
+    for k in program.places_of(JointLimits):
+        limits = PositionConstants.of(program.constants_of(k))
+        limits.gain = min(limits.gain, 1.0 / longest)
 
 
 def _check_lengthening(yielding: Yielding, longest: float | None) -> None:

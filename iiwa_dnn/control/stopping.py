@@ -223,8 +223,8 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector) -> float:
     vary = plan.timing.vary
     before = instant.motion.last.copy()
     coefficient = np.zeros(dq.size)
-    for i in range(dq.size if vary else 0):  # same acceleration, longest period
-        before[i] = dq[i] - ratio * (dq[i] - before[i])
+    if vary:
+        _at_longest(dq, ratio, before)
     rated = limits.lower.size > 0
     periods = least_periods(dq, before, limits, dt, yielding.cubic, vary) if rated else 1.0
     stored = instant.motion.stopping_periods - 1.0
@@ -232,12 +232,7 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector) -> float:
     for k in range(TRIES):
         if periods == np.inf:
             return np.inf
-        if yielding.cubic and periods > 0.0:
-            write_cubic_coefficients(dq, before, periods, vary, coefficient)
-        # If periods vary, the first may be the longest and the others arbitrarily short.
-        skips = plan.timing.fraction < 1.0
-        longest = dt / plan.timing.fraction
-        motion = Motion(dq, coefficient, periods + vary, longest, yielding.cubic, vary, skips)
+        motion = _motion(plan, dq, before, periods, coefficient)
         refusing = _first_refusing(plan, instant, motion)
         if refusing < 0:
             return periods * ratio
@@ -250,6 +245,28 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector) -> float:
         if yielding.cubic:
             periods = rated_periods(dq, before, limits, dt, periods, vary)
     return np.inf
+
+
+@compiled
+def _motion(
+    plan: ControlPlan, dq: Vector, before: Vector, periods: float, coefficient: Vector
+) -> Motion:
+    """Return the motion to rest after a command; its coefficients (n,) are overwritten."""
+    timing = plan.timing
+    cubic = plan.yielding.cubic
+    if cubic and periods > 0.0:
+        write_cubic_coefficients(dq, before, periods, timing.vary, coefficient)
+    # If periods vary, the first may be the longest and the others arbitrarily short.
+    skips = timing.fraction < 1.0
+    longest = timing.longest / timing.fraction
+    return Motion(dq, coefficient, periods + timing.vary, longest, cubic, timing.vary, skips)
+
+
+@compiled
+def _at_longest(dq: Vector, ratio: float, before: Vector) -> None:
+    """Replace the velocities before a command by those of the same acceleration, `ratio` longer."""
+    for i in range(dq.size):
+        before[i] = dq[i] - ratio * (dq[i] - before[i])
 
 
 @compiled

@@ -279,17 +279,26 @@ def keeps_separation(step: StepViews, constants: Vector, motion: Motion) -> bool
                 continue
             contact = body_contact(here, link, body)
             left = contact.distance - needed
-            if left - most >= 0.0:
-                continue
-            change = np.inf
-            for at in range(2):
-                end = here.a if at == 0 else here.b
-                x, b = along(motion, step.jacobian, pair, end, contact.normal)
-                displacement = min(end_displacement(motion, x, b) - bend, 0.0)
-                change = min(change, height_of(end, contact) + displacement)
-            if left + min(change, 0.0) < 0.0:
+            if left < most and left + _change(step, pair, here, contact, motion, bend) < 0.0:
                 return False
     return True
+
+
+@compiled
+def _change(
+    step: StepViews, pair: Pair, here: LinkPlace, contact: Contact, motion: Motion, bend: float
+) -> float:
+    """Bound the change of a link's distance along a motion to rest from below [m], 0 at most.
+
+    `bend` is a bound on what is of second order in the displacements [m].
+    """
+    change = 0.0
+    for at in range(2):
+        end = here.a if at == 0 else here.b
+        x, b = along(motion, step.jacobian, pair, end, contact.normal)
+        displacement = min(end_displacement(motion, x, b) - bend, 0.0)
+        change = min(change, height_of(end, contact) + displacement)
+    return change
 
 
 @compiled
