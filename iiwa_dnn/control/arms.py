@@ -425,11 +425,18 @@ def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> None:
     if arm.reason != Reason.NONE:
         arm.reasons[arm.reason] = 1.0
     arm.period = periods.expected
-    arm.answered = arm.kind
-    if arm.reason != Reason.NONE or is_refused(arm):
-        arm.answered = Request.VELOCITY
+    arm.answered = _answered(arm)
+
+
+@compiled
+def _answered(arm: ArmState) -> int:
+    """Return the kind of request whose program a step answers: that of a velocity if it brakes."""
     if not arm.has_begun:
-        arm.answered = Request.NONE
+        return Request.NONE
+    if arm.reason != Reason.NONE or is_refused(arm):
+        return Request.VELOCITY
+    kind: int = arm.kind
+    return kind
 
 
 @compiled

@@ -471,16 +471,8 @@ class Shield:
         elif obstacles is not None:
             free, others = split_bodies(obstacles)
             limits.append(CollisionAvoidance(others, distance=distance))
-        if free or checks.integer("people", people, 0):
-            if people and field is None:
-                problem = "is needed with people: how far from the base the sensor sees everybody"
-                raise InvalidInputError("field", problem)
-            if contact_speed and longest_period is not None:
-                problem = "needs a constant period, for the time in which an arm is quick"
-                raise InvalidInputError("contact_speed", problem, contact_speed)
-            radius = checks.positive("field", field) if people else math.inf
-            own = (people, people_speed, radius, latency, contact_speed, distance, settings.delay)
-            limits.append(Separation(tuple(free), *own))
+        told = (people, people_speed, field, latency, contact_speed)
+        limits += _separation(tuple(free), told, distance, settings)
         self._limits = tuple(limits)
         self._begin()
         self.reset()
@@ -862,3 +854,31 @@ def check_held(loop: Any, dt: float | None) -> None:
     if loop.longest_period is None and dt is not None and dt > loop.dt * (1.0 + SLACK):
         problem = f"must be at most {loop.dt:g} s, the control period, without a longest_period"
         raise InvalidInputError("dt", problem, dt)
+
+
+def _separation(
+    free: tuple[Obstacle, ...],
+    told: tuple[int, float, float | None, float, float],
+    distance: float,
+    settings: ArmSettings,
+) -> list[Limit]:
+    """Return the limit that keeps away from bodies of bounded speed, if there are any.
+
+    Args:
+        free: Bodies that are named.
+        told: `Shield`'s people, people_speed, field, latency and contact_speed.
+        distance: Distance to keep [m].
+        settings: Settings of the shield.
+    """
+    people, people_speed, field, latency, contact_speed = told
+    if not (checks.integer("people", people, 0) or free):
+        return []
+    if people and field is None:
+        problem = "is needed with people: how far from the base the sensor sees everybody"
+        raise InvalidInputError("field", problem)
+    if contact_speed and settings.longest:
+        problem = "needs a constant period, for the time in which an arm is quick"
+        raise InvalidInputError("contact_speed", problem, contact_speed)
+    radius = checks.positive("field", field) if people else math.inf
+    delay = settings.delay
+    return [Separation(free, people, people_speed, radius, latency, contact_speed, distance, delay)]
