@@ -1,10 +1,10 @@
 """``python -m benchmarks``, a name and options: measure, and print tables in Markdown.
 
 ``loop`` measures steps of every kind, beside PlaCo, Pink and mink; ``solvers`` the network beside
-QP solvers; ``export`` controllers in C; ``shields`` the shield beside other filters, and arrivals
-beside Ruckig's; ``sns`` saturation in the null space; ``cuda`` shields of many arms on a GPU;
-``figures`` all but that, the heart, the paper's tables, the league
-of networks and hostile motion: every figure that the pages quote.
+QP solvers; ``export`` controllers in C; ``arrivals`` a shield's beside Ruckig's; ``sns`` saturation
+in the null space; ``cuda`` shields of many arms on a GPU; ``figures`` all but that, the heart, the
+paper's tables, the league of networks and hostile motion: every figure that the pages quote.
+Filters of commands have `benchmarks.hostile`.
 """
 
 import argparse
@@ -17,10 +17,10 @@ from benchmarks.report import machine
 def main() -> int:
     """Carry out one of the commands; returns the exit code."""
     parser = argparse.ArgumentParser("python -m benchmarks", description=__doc__)
-    commands = ("loop", "solvers", "export", "shields", "sns", "cuda", "figures")
+    commands = ("loop", "solvers", "export", "arrivals", "sns", "cuda", "figures")
     parser.add_argument("command", choices=commands)
     parser.add_argument("--steps", type=int, default=10_000, help="number of steps of a kind")
-    for library in ("placo", "mink", "cbfpy"):
+    for library in ("placo", "mink"):
         words = f"Python interpreter of an environment with {library}"
         parser.add_argument(f"--{library}-python", type=Path, dest=library, help=words)
     options = parser.parse_args()
@@ -40,10 +40,10 @@ def main() -> int:
         from benchmarks import export
 
         export.report(options.steps)
-    if options.command in ("shields", "figures"):
-        from benchmarks import shields
+    if options.command in ("arrivals", "figures"):
+        from benchmarks import arrivals
 
-        shields.report(options.cbfpy)
+        arrivals.report()
     if options.command in ("sns", "figures"):
         from benchmarks import sns
 

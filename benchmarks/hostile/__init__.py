@@ -1,0 +1,1 @@
+"""Hostile requests for filters of commands, and judges; numpy alone."""
