@@ -43,13 +43,13 @@ def describe(name: str, payload: float) -> dict[str, Any]:
             }
         )
     capsules = []
-    for capsule in collision_model(robot).capsules:
-        frame = model.frames[robot.frame_id(capsule.link)]
+    for link, capsule in collision_model(robot).capsules:
+        frame = model.frames[robot.frame_id(link)]
         if frame.parentJoint:
             ends = [frame.placement.act(np.array(end)).tolist() for end in (capsule.a, capsule.b)]
             capsules.append(
                 {
-                    "link": capsule.link,
+                    "link": link,
                     "joint": frame.parentJoint - 1,
                     "a": ends[0],
                     "b": ends[1],

@@ -49,6 +49,7 @@ def main() -> int:
             scores[file.stem] = runs
     for family in options.families:
         show(family, {name: runs[family] for name, runs in scores.items()})
+    summarize(scores, options.families)
     if options.json:
         plain = {
             name: {f: [s._asdict() for s in r] for f, r in x.items()} for name, x in scores.items()
@@ -97,6 +98,19 @@ def show(family: str, scores: dict[str, list[Score]]) -> None:
     print(f"| {' | '.join(columns)} |\n|{' --- |' * len(columns)}")
     for name, runs in scores.items():
         print(f"| {name} | {' | '.join(cells(runs, about.person, about.payload))} |")
+
+
+def summarize(scores: dict[str, dict[str, list[Score]]], families: list[str]) -> None:
+    """Print for all contenders in how many runs of each family something is broken."""
+    print(f"\n## Runs in which something is broken\n\n| family | {' | '.join(scores)} |")
+    print(f"|{' --- |' * (len(scores) + 1)}")
+    for family in families:
+        about = FAMILIES[family]
+        counts = [
+            sum(bool(run.broken(about.person, about.payload)) for run in runs[family])
+            for runs in scores.values()
+        ]
+        print(f"| {family} | {' | '.join(map(str, counts))} |")
 
 
 def cells(runs: list[Score], has_person: bool, has_payload: bool) -> Iterable[str]:
