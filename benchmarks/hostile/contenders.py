@@ -96,13 +96,13 @@ def drive(
     at = smooth(arm, np.random.default_rng(seed)) if family.admissible else None
     rows: dict[str, list[Any]] = {name: [] for name in ("dq", "wanted", "periods", "seconds")}
     path, desired, seen = [q], [at(0.0) if at else arm.start], [centers]
-    frame = centers
+    frame, taken = centers, 0.0
     problem = ""
     for request in islice(requests, steps):
         period = dt * (1.0 + family.jitter * random.uniform(-1.0, 1.0))
-        if int(t / FRAME) != int((t - period) / FRAME):
-            frame = centers  # a camera's frame of the person
-        state = {"q": q, "last": last, "t": t, "spheres": frame}
+        if int(t / FRAME) != int((t - period) / FRAME):  # a camera's frame of the person
+            frame, taken = centers, t
+        state = {"q": q, "last": last, "t": t, "spheres": frame, "age": t - taken}
         told = {
             "state": {name: np.asarray(value).tolist() for name, value in state.items()},
             "request": request and {name: _listed(value) for name, value in request.items()},

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 Filter = Callable[[dict[str, Any], dict[str, Any] | None, float], Any]
-"""state: "q" measured (n,), "last" command (n,), "t" [s], and "spheres" where they are now (s, 3)
-[m]; request as in `benchmarks.hostile.families`; dt: the period of this step [s]."""
+"""state: "q" measured (n,), "last" command (n,), "t" [s], "spheres" as they were seen (s, 3) [m],
+at an "age" [s]; requests as in `benchmarks.hostile.families`; dt: its period [s]."""
 
 
 def serve(make: Callable[[dict[str, Any]], Filter]) -> None:

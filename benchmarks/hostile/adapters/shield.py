@@ -1,32 +1,45 @@
 """The shield of iiwa_dnn."""
 
 import iiwa_dnn
+from benchmarks.hostile.contenders import FRAME, PERSON
+from benchmarks.hostile.families import WALK
 from benchmarks.hostile.serve import serve
+
+FIELD = 2.5
+"""Radius of the ball in which a person is seen [m]."""
 
 
 def make(setup):
     """Return the filter, with the package's own capsules of the arm."""
-    lower, upper, velocity, acceleration, jerk = setup["limits"][:5]
     robot = iiwa_dnn.load_robot(setup["arm"]["name"])
-    robot = robot.with_limits(lower, upper, velocity, acceleration, jerk)
+    robot = robot.with_limits(*setup["limits"][:5])
+    if setup["payload"]:
+        robot = robot.with_payload((0.0, setup["payload"]), center=[0.0, 0.0, 0.0])
     balls = zip(setup["spheres"], setup["radii"], strict=True)
-    spheres = [iiwa_dnn.Sphere(center, radius) for center, radius in balls]
-    avoidance = iiwa_dnn.CollisionAvoidance(spheres, False, distance=setup["distance"])
+    still = [] if setup["person"] else [iiwa_dnn.Sphere(*ball) for ball in balls]
+    avoidance = iiwa_dnn.CollisionAvoidance(still, False, distance=setup["distance"])
     longest = setup["dt"] * (1.0 + setup["jitter"])
+    has_people = {"people": 1, "field": FIELD, "people_speed": WALK, "latency": FRAME}
     made = iiwa_dnn.Shield(
         robot,
         setup["dt"],
-        avoidance if spheres else None,
+        [] if setup["person"] else avoidance if still else None,
         delay=setup["late"],
         longest_period=longest if setup["jitter"] else None,
+        **has_people if setup["person"] else {},
     )
+    if setup["payload"]:
+        made.limits += (iiwa_dnn.TorqueLimits(1.0),)
 
     def act(state, request, dt):
         wanted = request or {}
-        period = {"dt": dt} if setup["jitter"] else {}
+        given = {"dt": dt} if setup["jitter"] else {}
+        if setup["person"]:
+            seen = state["spheres"][0]
+            given |= {"people": [(seen, seen, PERSON)], "age": float(state["age"])}
         if "position" in wanted:
-            return made.step(state["q"], position=wanted["position"], **period).dq
-        return made.step(state["q"], wanted.get("velocity"), **period).dq
+            return made.step(state["q"], position=wanted["position"], **given).dq
+        return made.step(state["q"], wanted.get("velocity"), **given).dq
 
     return act
 
