@@ -106,11 +106,15 @@ def summarize(scores: dict[str, dict[str, list[Score]]], families: list[str]) ->
     print(f"|{' --- |' * (len(scores) + 1)}")
     for family in families:
         about = FAMILIES[family]
-        counts = [
-            sum(bool(run.broken(about.person, about.payload)) for run in runs[family])
-            for runs in scores.values()
-        ]
-        print(f"| {family} | {' | '.join(map(str, counts))} |")
+        row = [letters(runs[family], about.person, about.payload) for runs in scores.values()]
+        print(f"| {family} | {' | '.join(row)} |")
+
+
+def letters(runs: list[Score], has_person: bool, has_payload: bool) -> str:
+    """Count the runs in which something is broken; name what by its first letter."""
+    broken = [run.broken(has_person, has_payload) for run in runs]
+    kinds = sorted({kind[0] for each in broken for kind in each})
+    return f"{sum(map(bool, broken))} {' '.join(kinds)}".strip()
 
 
 def cells(runs: list[Score], has_person: bool, has_payload: bool) -> Iterable[str]:

@@ -31,12 +31,20 @@ def make(setup):
     if setup["payload"]:
         made.limits += (iiwa_dnn.TorqueLimits(1.0),)
 
+    followed = [-1.0]  # first time of the last chunk [s]
+
     def act(state, request, dt):
         wanted = request or {}
         given = {"dt": dt} if setup["jitter"] else {}
         if setup["person"]:
             seen = state["spheres"][0]
             given |= {"people": [(seen, seen, PERSON)], "age": float(state["age"])}
+        if "chunk" in wanted:
+            times, positions = wanted["chunk"]
+            if times[0] > followed[-1]:
+                followed.append(float(times[0]))
+                made.follow(times, positions, now=float(state["t"]))
+            return made.step(state["q"], **given).dq
         if "position" in wanted:
             return made.step(state["q"], position=wanted["position"], **given).dq
         return made.step(state["q"], wanted.get("velocity"), **given).dq
