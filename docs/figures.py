@@ -148,25 +148,34 @@ def limits() -> Figure:
 @figure
 def shield() -> Figure:
     """Draw the same hostile requests through the shield, a clamp and Ruckig."""
-    import hostile
-    from benchmarks import shields
+    from benchmarks.hostile.arms import Arm
+    from benchmarks.hostile.contenders import ADAPTERS, Contender, setup_of
 
     dt = 1e-3
     robot = iiwa_dnn.load_robot("iiwa7").with_limits(acceleration=10.0, jerk=500.0)
-    ball = iiwa_dnn.Sphere([0.4, 0.0, 0.75], 0.1)
-    avoidance = iiwa_dnn.CollisionAvoidance([ball], distance=hostile.DISTANCE)
-    case = hostile.Case(robot, avoidance, dt, 3000, False, "none", "slow")
+    arm = Arm("iiwa7")
+    arm.limits[3:5] = robot.limits[3:5]
+    center, radius = np.array([0.4, 0.0, 0.75]), 0.1
+    ball = iiwa_dnn.Sphere(center, radius)
+    avoidance = iiwa_dnn.CollisionAvoidance([ball], False, distance=0.02)
+    setup = setup_of(arm, dt, center[np.newaxis], np.array([radius]))
     random = np.random.default_rng(12)
     requests = np.repeat(random.uniform(-1.0, 1.0, (6, 7)), 500, axis=0) * robot.dq_max
     scene = avoidance.scene(robot)
     made, axes = panels(3, 1.5, sharex=True)
-    filters = {"clamp": shields.clamp, "Ruckig": shields.with_ruckig, "Shield": shields.shield}
+    filters = {"clamp": "clamp", "Ruckig": "ruckig", "Shield": "shield"}
     t = dt * np.arange(len(requests) + 1)
-    for color, (name, make) in zip((ORANGE, PURPLE, BLUE), filters.items(), strict=True):
-        step = make(case)
+    for color, (name, file) in zip((ORANGE, PURPLE, BLUE), filters.items(), strict=True):
+        contender = Contender(ADAPTERS / f"{file}.py")
+        contender.tell(setup)
         path = [robot.start_posture()]
+        last = [0.0] * robot.dof
         for dq in requests:
-            path.append(path[-1] + dt * step(path[-1], dq, {"dq": dq}))
+            state = {"q": path[-1].tolist(), "last": last}
+            told = {"state": state, "request": {"velocity": dq.tolist()}, "dt": dt}
+            last = contender.tell(told)["dq"]
+            path.append(path[-1] + dt * np.array(last))
+        contender.close()
         driven = np.array(path)
         middle, half = robot.q_upper + robot.q_lower, robot.q_upper - robot.q_lower
         position = 100.0 * np.abs((2.0 * driven - middle) / half).max(axis=1)

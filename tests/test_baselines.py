@@ -65,13 +65,13 @@ def test_without_active_bounds_saturation_is_the_pseudo_inverse() -> None:
 def test_arrival_counts_the_last_period_away_from_the_goal(monkeypatch) -> None:
     pytest.importorskip("ruckig")
     pytest.importorskip("pylibfranka")
-    from benchmarks import shields
+    from benchmarks import arrivals
 
     goal = np.ones(2)
     path = [np.zeros(2), goal, np.array([1.0, 0.99]), goal + 5e-4, goal]
-    assert shields.arrival(path, goal, 0.1) == pytest.approx(0.3)
-    assert shields.arrival([goal], goal, 0.1) == 0.0
+    assert arrivals.arrival(path, goal, 0.1) == pytest.approx(0.3)
+    assert arrivals.arrival([goal], goal, 0.1) == 0.0
     # Nothing is quicker than a time-optimal motion by the same rule.
-    monkeypatch.setattr(shields, "GOALS", 3)
-    found = shields.arrivals("iiwa7")
+    monkeypatch.setattr(arrivals, "GOALS", 3)
+    found = arrivals.arrivals("iiwa7")
     assert 1.0 <= found["least"] <= found["median"] <= found["most"] < 1.02

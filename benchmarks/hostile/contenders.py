@@ -63,6 +63,13 @@ class Contender:
         self._process.communicate()
 
 
+def setup_of(arm: Arm, dt: float, centers: Any, radii: Any, **about: Any) -> dict[str, Any]:
+    """Return what a contender is told at first (`benchmarks.hostile.serve`)."""
+    told: dict[str, Any] = {"arm": arm.data, "urdf": urdf(arm.data), "limits": arm.limits.tolist()}
+    told |= {"dt": dt, "spheres": centers.tolist(), "radii": radii.tolist(), "distance": DISTANCE}
+    return told | {"person": False, "late": 0.0, "jitter": 0.0, "payload": 0.0} | about
+
+
 def drive(
     contender: Contender, arm: Arm, family: Family, seed: int, steps: int, dt: float = 2e-3
 ) -> Run:
@@ -73,22 +80,9 @@ def drive(
     person = arm.tip(arm.start[np.newaxis])[0] + np.array([0.0, 1.2, 0.0])
     centers = person[np.newaxis] if family.person else spheres
     radii = np.full(len(centers), PERSON if family.person else RADIUS)
+    about = {"late": family.late * dt, "jitter": family.jitter, "person": family.person}
     payload = arm.data["payload"] * family.payload
-    contender.tell(
-        {
-            "arm": arm.data,
-            "urdf": urdf(arm.data),
-            "limits": arm.limits.tolist(),
-            "dt": dt,
-            "spheres": centers.tolist(),
-            "radii": radii.tolist(),
-            "distance": DISTANCE,
-            "person": family.person,
-            "late": family.late * dt,
-            "jitter": family.jitter,
-            "payload": payload,
-        }
-    )
+    contender.tell(setup_of(arm, dt, centers, radii, payload=payload, **about))
     q = arm.start.copy()
     last = np.zeros(arm.dof)
     waiting = [last] * family.late
