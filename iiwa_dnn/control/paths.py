@@ -18,7 +18,7 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.collision import TOO_NEAR, collision_model, unwatched_links
 from iiwa_dnn.robot.meetings import CLEARANCE
 from iiwa_dnn.robot.robot import model_limits
-from iiwa_dnn.schemes import Limit, OrientationTask, PoseTask, Scheme
+from iiwa_dnn.schemes import Limit, OrientationTask, PoseTask, Scheme, TorqueLimits
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
@@ -100,6 +100,11 @@ def setup_warnings(
     for coupling in LimitNames(program).conditions(start.q, program.least):
         yield f"{coupling} at the start: they come to it within the limits"
     yield from _gain_warnings(program, dt)
+    if robot.payload is not None and not program.places_of(TorqueLimits):
+        yield (
+            f"the arm carries {robot.payload.words}, and no TorqueLimits are among its limits: it "
+            "may be commanded more than its motors have"
+        )
     if dt > SLOWEST:
         yield f"a control period of {dt:g} s is long: the arm follows each command blindly"
     limits = program.limits

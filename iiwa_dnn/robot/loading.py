@@ -4,7 +4,7 @@ import contextlib
 import os
 import warnings
 import xml.etree.ElementTree as ET
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -47,7 +47,8 @@ def load_robot(
 ) -> Robot:
     """Load a robot by its name, from a URDF file or from a Pinocchio model.
 
-    Limits are the source's. A velocity, acceleration or jerk limit that is 0 or missing is none.
+    Limits are the source's, but for those of `iiwa_dnn.robot.arms`. A velocity, acceleration or
+    jerk limit that is 0 or missing is none.
     Joints that move neither the tip nor one of `frames` are locked; unless the robot is one of a
     known name, a warning says which.
 
@@ -85,9 +86,12 @@ def load_robot(
     idle = _idle_joints(full, (tip, *others, *checks.names("frames", frames)))
     chosen = checks.names("locked", locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
-    limits, position_dependent_velocity = _limits(
-        path, model, root, _rates(name, full, tips or (tip,))
-    )
+    arm = ARMS.get(name)
+    rates = _of_joints(full, tips or (tip,), arm.rates if arm else ())
+    limits, position_dependent_velocity = _limits(path, model, root, rates)
+    for joint, (effort,) in _of_joints(full, tips, (arm.effort,) if arm and tips else ()).items():
+        if joint not in held:
+            model.effortLimit[model.joints[model.getJointId(joint)].idx_v] = effort
     robot = Robot(
         name,
         model,
@@ -202,15 +206,17 @@ def _reduce(model: pin.Model, frozen: list[int], posture: Array) -> pin.Model:
     return reduced
 
 
-def _rates(name: str, model: pin.Model, tips: Iterable[str]) -> dict[str, tuple[float, ...]]:
-    """Return acceleration and jerk limits of a known arm, by the names of the joints before a tip.
+def _of_joints(
+    model: pin.Model, tips: Iterable[str], rows: Sequence[Sequence[float]]
+) -> dict[str, tuple[float, ...]]:
+    """Return numbers of a known arm, (k, n), by the names of its n joints before a tip.
 
     An arm of the same name that has more or fewer joints is another one.
     """
     idle = _idle_joints(model, tips)
     joints = [joint for joint in tuple(model.names)[1:] if joint not in idle]
-    rates = list(zip(*ARMS[name].rates, strict=True)) if name in ARMS else []
-    return dict(zip(joints, rates, strict=True)) if len(rates) == len(joints) else {}
+    columns = list(zip(*rows, strict=True))
+    return dict(zip(joints, columns, strict=True)) if len(columns) == len(joints) else {}
 
 
 def _soft_limits(

@@ -24,6 +24,12 @@ class Payload(NamedTuple):
     center: checks.Array
     inertia: checks.Array
 
+    @property
+    def words(self) -> str:
+        """The mass or the range of masses in words."""
+        least, most = self.mass
+        return f"{most:g} kg" if least == most else f"{least:g} to {most:g} kg"
+
     def settings(self) -> dict[str, Any]:
         """Return frame, mass, centre and inertia per kilogram as values that JSON can hold."""
         arrays = {"mass": self.mass, "center": self.center, "inertia": self.inertia}

@@ -270,21 +270,36 @@ class Robot:
         """
         return replace(self, payload=make_payload(self.tip, mass, center, inertia))
 
-    def with_armature(self, armature: ArrayLike) -> Robot:
+    def with_armature(self, armature: ArrayLike | None = None) -> Robot:
         """Return the same robot with other rotor inertias, seen through the gears.
 
         Args:
-            armature: Inertia that each joint has beside the links' [kg m^2], one number or (n,).
+            armature: Inertia that each joint has beside the links' [kg m^2], one number or (n,);
+                None: that which its maker states (`iiwa_dnn.robot.arms`).
 
         Raises:
-            InvalidInputError: It is negative, no number or of a wrong length.
+            InvalidInputError: It is negative, no number or of a wrong length, or none is known.
         """
+        if armature is None:
+            armature = self._stated("armature")
+            if len(armature) == 0:
+                raise InvalidInputError("armature", f"none is published of {self.name}")
         own = checks.finite_array("armature", armature, np.shape(armature) and (self.dof,))
         if (own < 0.0).any():
             raise InvalidInputError("armature", "must not be negative", armature)
         model = self.model.copy()
         model.armature = np.full(self.dof, own)
         return replace(self, model=model)
+
+    def _stated(self, name: str) -> tuple[float, ...]:
+        """Return what `ARMS` has of the robot's motors, (n,); () without, or with locked joints."""
+        stated: tuple[float, ...] = getattr(ARMS[self.name], name) if self.name in ARMS else ()
+        return stated if len(stated) == self.dof else ()
+
+    @property
+    def friction(self) -> checks.Array:
+        """Bounds on the torque that friction takes from each joint [N m], (n,); 0 if unknown."""
+        return np.array(self._stated("friction") or np.zeros(self.dof))
 
     def with_gravity(self, gravity: ArrayLike) -> Robot:
         """Return the same robot in other gravity, as on a wall, a ceiling or a tilted base.

@@ -35,6 +35,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import copied
 from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot.arms import WRONG_EFFORTS
 from iiwa_dnn.robot.kinematics import Placement
 from iiwa_dnn.schemes.dynamics import Dynamics, Link, dynamics_of, write_torques
 from iiwa_dnn.schemes.parts import Limit
@@ -317,8 +318,11 @@ class TorqueLimits(Limit):
     rotor inertia (`Robot.with_armature`), so the scheme needs acceleration limits of all joints.
 
     Attributes:
-        fraction: Part of the torque limits of the robot's file that may be used, in (0, 1].
-        friction: Torque that friction takes from each joint [N m], one number or (n,).
+        fraction: Part of the torque limits that may be used, in (0, 1].
+        friction: Torque that friction takes from each joint [N m], one number or (n,); None: what
+            is known of it (`Robot.friction`).
+        effort: Torque limits [N m], one number or (n,); None: those of the robot's file, or of its
+            maker (`iiwa_dnn.robot.arms`).
     """
 
     kernel = staticmethod(torque_rows)
@@ -327,9 +331,11 @@ class TorqueLimits(Limit):
     _checks: ClassVar[checks.Checks] = {
         "fraction": checks.positive,
         "friction": not_negative_torques,
+        "effort": not_negative_torques,
     }
     fraction: float = 0.95
-    friction: ArrayLike = 0.0
+    friction: ArrayLike | None = None
+    effort: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -350,10 +356,18 @@ class TorqueLimits(Limit):
         """Return the largest torque of each joint [N m], (n,).
 
         Raises:
-            InvalidInputError: The robot's file gives a joint none, or friction leaves nothing.
+            InvalidInputError: The robot's file gives a joint none, or wrong ones, or friction
+                leaves nothing.
         """
-        friction = checks.array("friction", self.friction, np.shape(self.friction) and (robot.dof,))
+        friction = robot.friction
+        if self.friction is not None:
+            friction = _of_joints("friction", self.friction, robot)
         effort = np.array(robot.model.effortLimit)
+        if self.effort is not None:
+            effort = _of_joints("effort", self.effort, robot)
+        elif effort[0] == WRONG_EFFORTS.get(robot.name, (0.0, ""))[0] > 0.0:
+            problem = f"{robot.name}: {WRONG_EFFORTS[robot.name][1]}: state TorqueLimits(effort=)"
+            raise InvalidInputError("effort", problem, effort)
         left: Vector = self.fraction * effort - friction
         for name, given, own in zip(robot.joint_names, effort, left, strict=True):
             if not (0.0 < given < np.inf and own > 0.0):
@@ -388,6 +402,12 @@ class TorqueLimits(Limit):
             i = int(ratio.argmax())
             problem = f"takes {ratio[i]:.3g} of the torque limit of joint {i + 1} to be held"
             raise InvalidInputError("q", problem, q)
+
+
+def _of_joints(name: str, value: ArrayLike, robot: Robot) -> Vector:
+    """Return a number for each joint, (n,), of one number or (n,)."""
+    own: Vector = checks.array(name, value, np.shape(value) and (robot.dof,))
+    return np.full(robot.dof, own)
 
 
 def _masses(robot: Robot) -> list[float]:

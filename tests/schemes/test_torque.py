@@ -1,5 +1,8 @@
 """Limits of torques: rows and motions to rest beside Pinocchio, closed loops, and refusals."""
 
+import warnings
+import xml.etree.ElementTree as ET
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -20,6 +23,7 @@ CENTER = np.array([0.0, 0.0, 0.1])
 RANGE = (0.0, 3.0)
 PANDA = d.load_robot("panda").with_limits(jerk=np.inf).with_payload(RANGE, CENTER)
 EFFORT = np.array(PANDA.model.effortLimit)
+SO101 = d.load_robot("so101").with_limits(acceleration=10.0)
 
 
 def carrying(robot: d.Robot, mass: float) -> tuple[pin.Model, pin.Data]:
@@ -103,7 +107,7 @@ def test_a_motion_to_rest_that_agrees_keeps_all_torques_and_one_that_is_far_belo
         low, high = 0.5 * largest, 1.0
         for _ in range(25):
             middle = 0.5 * (low + high)
-            limit = TorqueLimits(middle)
+            limit = TorqueLimits(middle, friction=0.0)
             constants = limit.constants(robot).numbers
             if keeps_torque(instant(robot, limit, q, last), constants, motion):
                 high = middle
@@ -123,7 +127,7 @@ def test_no_request_takes_a_command_or_a_motion_to_rest_beyond_the_torques(
     random = np.random.default_rng(1)
     robot = PANDA.with_limits(jerk=jerk)
     shield = d.Shield(robot, dt=dt)
-    shield.limits += (TorqueLimits(1.0),)
+    shield.limits += (TorqueLimits(1.0, friction=0.0),)
     q, v = robot.start_posture(), np.zeros(7)
     largest, resting, reasons = 0.0, 0.0, set()
     for k in range(1200):
@@ -158,7 +162,7 @@ def test_a_posture_that_the_motors_cannot_hold_is_refused_and_never_entered() ->
     models = [carrying(robot, 5.0)]
     far = np.array([0.0, 1.5, 0.0, -0.3, 0.0, 1.8, 0.0])
     shield = d.Shield(robot, dt=DT)
-    shield.limits += (TorqueLimits(1.0),)
+    shield.limits += (TorqueLimits(1.0, friction=0.0),)
     heavy = load(far, np.zeros(7), np.zeros(7), models=models)
     problem = f"q: takes {heavy:.3g} of the torque limit of joint 2 to be held"
     for _ in range(2):
@@ -184,11 +188,58 @@ def test_a_posture_that_the_motors_cannot_hold_is_refused_and_never_entered() ->
         (PANDA, lambda: TorqueLimits(friction=-1.0), "friction"),
         (PANDA, lambda: TorqueLimits(friction=12.0), "'panda_joint5': TorqueLimits leaves nothing"),
         (d.load_robot("ur5"), TorqueLimits, "limits: of torques need limits of all accelerations"),
+        (SO101, TorqueLimits, "effort: so101: its file gives each joint 10 N m"),
     ],
 )
 def test_limits_that_do_not_fit_are_refused(robot: d.Robot, limit, problem: str) -> None:
     with pytest.raises(d.InvalidInputError, match=problem):
         d.Shield(robot).limits += (limit(),)
+
+
+def test_the_makers_efforts_count_where_a_file_has_wrong_ones() -> None:
+    ur3 = d.load_robot("ur3").with_limits(acceleration=10.0)
+    assert_allclose(TorqueLimits(1.0).largest(ur3), [56, 56, 28, 12, 12, 12])
+    locked = d.load_robot("ur3", locked="elbow_joint")
+    assert_allclose(locked.model.effortLimit, [56, 56, 12, 12, 12])
+    assert ur3.path is not None
+    root = ET.parse(ur3.path).getroot()
+    file = d.load_robot(ur3.path, tip="tool0")
+    efforts = [float(each.attrib["effort"]) for each in root.iterfind("joint/limit")]
+    assert_allclose(file.model.effortLimit, efforts)
+    with pytest.raises(d.InvalidInputError, match="ur3: its file gives the torques of a ur10"):
+        TorqueLimits().largest(file)
+    assert_allclose(TorqueLimits(1.0, effort=20.0).largest(file), 20.0)
+    assert_allclose(TorqueLimits(1.0, effort=3.0).largest(SO101), 3.0)
+
+
+def test_friction_and_rotors_are_those_that_are_published() -> None:
+    """Friction exceeds the curves of Gaz and others at every velocity, by no more than 0.01 N m."""
+    size = np.array([0.54615, 0.87224, 0.64068, 1.2794, 0.83904, 0.30301, 0.56489])
+    shift = np.array([0.039533, 0.025882, -0.04607, 0.036194, 0.026226, -0.021047, 0.0035526])
+    slope = np.array([5.1181, 9.0657, 10.136, 5.5903, 8.3469, 17.133, 10.336])
+    dq = np.linspace(-1.0, 1.0, 501)[:, np.newaxis] * PANDA.dq_max
+    curves = size / (1.0 + np.exp(-slope * (dq + shift))) - size / (1.0 + np.exp(-slope * shift))
+    spare = PANDA.friction - np.abs(curves).max(axis=0)
+    assert (spare >= 0.0).all()
+    assert (spare < 0.011).all()
+    assert_allclose(TorqueLimits(1.0).largest(PANDA), EFFORT - PANDA.friction)
+    assert not d.load_robot("fr3").friction.any()
+    for name in ("fr3", "panda"):
+        armature = d.load_robot(name).with_armature().model.armature
+        assert_allclose(armature[[0, 2, 6]], [0.605721456, 0.462474144, 0.205544064])
+    with pytest.raises(d.InvalidInputError, match="armature: none is published of iiwa7"):
+        d.load_robot("iiwa7").with_armature()
+
+
+def test_a_payload_without_limits_of_torques_is_said_at_the_first_step() -> None:
+    shield = d.Shield(PANDA)
+    with pytest.warns(UserWarning, match="carries 0 to 3 kg, and no TorqueLimits are among its li"):
+        shield.step(PANDA.start_posture(), np.zeros(7))
+    shield = d.Shield(PANDA)
+    shield.limits += (TorqueLimits(),)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        shield.step(PANDA.start_posture(), np.zeros(7))
 
 
 def test_a_joint_without_a_torque_limit_is_refused_by_its_name() -> None:

@@ -29,7 +29,7 @@ def make(setup):
         **has_people if setup["person"] else {},
     )
     if setup["payload"]:
-        made.limits += (iiwa_dnn.TorqueLimits(1.0),)
+        made.limits += (iiwa_dnn.TorqueLimits(1.0, friction=0.0),)
 
     followed = [-1.0]  # first time of the last chunk [s]
 
