@@ -1,0 +1,1 @@
+"""Drivers of arms behind a shield, each a module that is imported where it is used."""
