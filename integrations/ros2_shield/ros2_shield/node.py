@@ -16,7 +16,7 @@ import armstep
 import numpy as np
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from geometry_msgs.msg import TwistStamped
+from geometry_msgs.msg import PoseArray, TwistStamped
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
 from rclpy.exceptions import ParameterException
@@ -45,6 +45,7 @@ PARAMETERS = {
     "timeout": 0.1,  # [s]
     "following_error": 0.1,  # [rad]
     "record": "",
+    "people_radii": [0.0],  # [m]
 }
 """Parameters and their defaults."""
 
@@ -104,6 +105,11 @@ class ShieldNode(Node):
         self._recorded: Any = None
         if self._set["record"]:
             self._recorded = shield = armstep.recorded(shield, self._set["record"])
+        self._radii = np.array(self._set["people_radii"], float)
+        if self._radii.size == 0 or not (self._radii >= 0.0).all():
+            raise RefusedError(f"parameter people_radii: {self._radii} are no radii")
+        if self._recorded and self._radii.any():
+            raise RefusedError("parameter record: a recording keeps no frames of people")
         about = (self._takes_velocity, self._set["timeout"], self._set["following_error"])
         try:
             self._drive = armstep.Drive(shield, *about)
@@ -115,6 +121,7 @@ class ShieldNode(Node):
         self._pace = self.get_clock() if is_simulated else steady
         self._states = Newest("joint states", "no joint states")
         self._request = Newest("request", "no request")
+        self._people = Newest("people", "")  # its value is a frame until a period takes it
         self._began = (0.0, time.monotonic())  # the last period, by its clock and a steady one [s]
         self._is_stalled = False  # whether /clock stands still
         for topic, message, read in (
@@ -127,6 +134,10 @@ class ShieldNode(Node):
         # Best effort receives what is reliable, too; another's states do not displace the arm's.
         states = (JointState, "/joint_states", self._on_states, qos_profile_sensor_data)
         self.create_subscription(*states)
+        if self._radii.any():
+            self.create_subscription(
+                PoseArray, "~/people", self._on_people, qos_profile_sensor_data
+            )
         is_trajectory = self._set["command"] == "trajectory"
         sent = JointTrajectory if is_trajectory else Float64MultiArray
         self._commands = self.create_publisher(sent, "~/commands", NEWEST)
@@ -166,6 +177,9 @@ class ShieldNode(Node):
     def _now(self) -> float:
         return float(self._pace.now().nanoseconds * 1e-9)
 
+    def _seconds_since(self, stamp: Time) -> float:
+        return float((self.get_clock().now() - stamp).nanoseconds * 1e-9)
+
     def _age(self, stamp: Time) -> float:
         """Return the age of a message by its stamp [s], 0 without one.
 
@@ -173,7 +187,7 @@ class ShieldNode(Node):
         """
         if stamp.nanoseconds == 0:
             return 0.0
-        age = float((self.get_clock().now() - stamp).nanoseconds * 1e-9)
+        age = self._seconds_since(stamp)
         if abs(age) > self._set["timeout"]:
             raise RefusedError(f"stamped in the {'past' if age > 0.0 else 'future'}")
         return max(age, -self._tables.dt)
@@ -209,6 +223,32 @@ class ShieldNode(Node):
             if self._recorded:
                 self._recorded.measured = self._states.value["q"]
 
+    def _on_people(self, message: PoseArray) -> None:
+        """Keep a frame of all people for the next period, unless a newer one came.
+
+        What has no meaning is no frame: the last one grows older, and the arm rests in time.
+        """
+        people = self._people
+        stamp = Time.from_msg(message.header.stamp)
+        if 0 < stamp.nanoseconds <= people.stamp:
+            return
+        places = np.array([[p.x, p.y, p.z] for p in (each.position for each in message.poses)])
+        places = places.reshape(-1, 3)
+        if stamp.nanoseconds == 0:
+            people.problem = "frame of people without a stamp"
+        elif self._seconds_since(stamp) < -self._tables.dt:
+            people.problem = "frame of people stamped in the future"
+        elif message.header.frame_id not in ("", self._set["base_frame"]):
+            people.problem = f"frame of people in frame {message.header.frame_id!r}"
+        elif not np.isfinite(places).all():
+            people.problem = "frame of people not finite"
+        else:
+            last = len(self._radii) - 1
+            radii = [self._radii[min(k, last)] for k in range(len(places))]
+            people.problem = ""
+            people.stamp = stamp.nanoseconds
+            people.value = {"stamp": stamp, "capsules": np.column_stack([places, places, radii])}
+
     # ---- Periods
 
     def _on_timer(self) -> None:
@@ -237,6 +277,11 @@ class ShieldNode(Node):
         self._began = (now, time.monotonic())
         before = self._drive.fault
         reasons = (fault, *(each.fault(now, timeout) for each in (self._states, self._request)))
+        frame = self._people.value
+        if frame and self._drive.has_begun:
+            age = self._seconds_since(frame["stamp"])
+            self._drive.shield.see(frame["capsules"], max(age, 0.0))  # or it came before the tick
+            self._people.value = {}
         command = self._drive.step(now, elapsed, self._request.value, *reasons)
         if command is not None:
             self._send(command)
@@ -269,6 +314,7 @@ class ShieldNode(Node):
         if response.success:
             self._drive.reset()
             self._request.problem = "no request"
+            self._people = Newest("people", "")
         return response
 
     def come_to_rest(self, executor: Any) -> str:
@@ -299,6 +345,8 @@ class ShieldNode(Node):
                 "active limits": "; ".join(limits),
                 "margin of joints [rad]": f"{margin.joint:.6g}",
                 "margin of distances [m]": f"{margin.distance:.6g}",
+                "margin of separation [m]": f"{margin.separation:.6g}",
+                "people": self._people.problem,
                 "stopping time [s]": f"{command.stopping_time:.6g}",
                 "longest period [s]": f"{self._drive.worst:.6g}",
             }

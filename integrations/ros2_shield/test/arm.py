@@ -4,8 +4,9 @@ It runs in the environment of the node. ``simulated``: /clock waits for the node
 velocities, so that a judge's verdict does not depend on the machine; a period lasts one control
 period, or several. ``timed``: both go by the machine's clock, and the arm takes positions and shows
 them late. ``near`` and ``remote``: simulated, no faults but those of a bad network of the latter.
-``moving``: simulated, of an arm that moves before the node begins. FILE gets the start, and periods
-and velocities.
+``moving``: simulated, of an arm that moves before the node begins. ``people``: simulated, beside a
+person who approaches, and is seen over a bad network. FILE gets the start, periods and velocities,
+and where the person was.
 """
 
 import sys
@@ -16,7 +17,7 @@ import numpy as np
 import rclpy
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import TwistStamped
+from geometry_msgs.msg import Point, Pose, PoseArray, TwistStamped
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
@@ -35,7 +36,12 @@ TOPICS = {
     TwistStamped: "/shield/delta_twist_cmds",
     Float64MultiArray: "/shield/velocity_cmds",
     JointTrajectory: "/shield/position_cmds",
+    PoseArray: "/shield/people",
 }
+FRAME = 8  # periods between two frames of people
+HOME = np.array([2.2, 0.3, 0.6])  # of a person [m]
+NEAR = np.array([0.45, 0.15, 0.6])  # where the person goes [m]
+WALK = 1.6  # [m/s]
 
 
 def stamp(ns):
@@ -47,7 +53,7 @@ class Arm(Node):
 
     def __init__(self, tables, mode):
         super().__init__("arm")
-        self.is_remote = mode == "remote"
+        self.is_remote = mode in ("remote", "people")
         self.on_its_way = []  # messages and the times of their arrival
         self.random = np.random.default_rng(0)
         self.names = list(tables.joint_names)
@@ -220,6 +226,58 @@ def rove(arm, seconds):
     assert not any("does not follow" in words for words in arm.said)
 
 
+def visit(arm, seconds):
+    """Let a person come until the arm has rested for a while, and go, for a number of seconds.
+
+    Frames come late, unordered, twice or not; some have no meaning. Return the person's places
+    before and after each period, and the arm's positions and velocities in it, (k, 6 + 2 n).
+    """
+    random = np.random.default_rng(1)
+    place, goal = HOME, NEAR
+    places = []
+    rested = 0
+    moves = [0, 0]  # periods in motion with the person there, and gone
+    end = arm.t + seconds
+    while arm.t < end:
+        if len(places) % 60 == 0:
+            signs = random.choice([-1.0, 1.0], 7)
+            request = Float64MultiArray(data=(0.5 * signs * arm.limits["velocity"]).tolist())
+        if len(places) % FRAME == 0:
+            x, y, z = place.tolist()
+            frame = PoseArray(poses=[Pose(position=Point(x=x, y=y, z=z))])
+            frame.header.stamp = stamp(arm.now())
+            arm.publish(random.choice([frame, frame, *nonsense(arm)], p=[0.4, 0.4] + 4 * [0.05]))
+        held = [*arm.path[-1], *arm.dq]
+        assert arm.turn(request)
+        way = goal - place
+        step = min(WALK * arm.dt, np.linalg.norm(way))
+        last, place = place, place + step * way / max(np.linalg.norm(way), 1e-9)
+        places.append([*last, *place, *held])
+        rested = rested + 1 if arm.rests() else 0
+        is_gone = int(goal is HOME and step == 0.0)
+        moves[is_gone] += not arm.rests()
+        if rested > 100 and goal is NEAR:
+            goal = HOME
+        elif is_gone and random.random() < 0.005:
+            goal = NEAR
+    assert min(moves) > 100, moves
+    arm.ask(request, 1000, arm.rests)
+    assert arm.rests(), "goes on without news of people"
+    assert any("separation" in words for words in arm.said), set(arm.said)
+    return places
+
+
+def nonsense(arm):
+    """Return frames of people that are none: nobody there, if they counted."""
+    frames = [PoseArray() for _ in range(4)]
+    now = arm.now()
+    for frame, at in zip(frames, (0, now + 10**9, now, now), strict=True):
+        frame.header.stamp = stamp(at)
+    frames[2].poses = [Pose(position=Point(x=np.nan))]
+    frames[3].header.frame_id = "camera"
+    return frames
+
+
 def begin_in_motion(arm):
     """Check that a node waits for an arm to move steadily, and brakes from its velocity."""
     steady = 0.3 * arm.limits["velocity"] * np.sign(-START - 1e-3)
@@ -325,11 +383,12 @@ if __name__ == "__main__":
         arm.log = arm.log[-1:]
     if mode in ("near", "remote"):
         rove(arm, float(seconds))
+    places = visit(arm, 4.0 * float(seconds)) if mode == "people" else []
     if mode in ("simulated", "timed"):
         drive(arm, float(seconds))
         check_reasons(arm)
         check_held(arm)
-    np.savez(file, start=arm.path[0], log=arm.log)
+    np.savez(file, start=arm.path[0], log=arm.log, places=places)
     if mode == "simulated":
         check_clock(arm)
     if arm.is_timed:

@@ -54,17 +54,18 @@ def start(python: Path, *words: Any, **options: Any) -> subprocess.Popen[str]:
     return subprocess.Popen(words, env=os.environ | own, text=True, **options)
 
 
-def start_node(python: Path, *settings: str) -> subprocess.Popen[str]:
+def start_node(python: Path, *settings: str, tables: Path | None = None) -> subprocess.Popen[str]:
     """Start the node with parameters beside its shield."""
-    words = [word for each in (f"shield:={tables_of(python)}", *settings) for word in ("-p", each)]
+    shield = f"shield:={tables or tables_of(python)}"
+    words = [word for each in (shield, *settings) for word in ("-p", each)]
     program = ("-m", "ros2_shield.node", "--ros-args")
     return start(python, *program, *words, stderr=subprocess.PIPE)
 
 
-def run(python: Path, folder: Path, mode: str, *settings: str) -> Any:
+def run(python: Path, folder: Path, mode: str, *settings: str, tables: Path | None = None) -> Any:
     """Run the node and an arm, end the node in motion, and return what the arm has written."""
-    node = start_node(python, *settings)
-    words = (HERE / "arm.py", tables_of(python), folder / "run.npz", SECONDS, mode)
+    node = start_node(python, *settings, tables=tables)
+    words = (HERE / "arm.py", tables or tables_of(python), folder / "run.npz", SECONDS, mode)
     arm = start(python, *words, stdout=subprocess.PIPE)
     try:
         for line in arm.stdout:
@@ -102,6 +103,32 @@ def test_a_bad_network_breaks_no_limit_and_slows_the_arm_little(
     assert ways[1] >= 0.9 * ways[0]
 
 
+def test_a_link_is_at_rest_before_a_person_is_there_whatever_the_network_does(
+    python: Path, tmp_path: Path
+) -> None:
+    """The project's judge of people: distances every 0.1 ms, kinematics of its own."""
+    judge_people = pytest.importorskip("judge_people", reason="numba compiles the judge")
+    about = {"people": 1, "people_speed": 1.6, "field": 2.5, "latency": 0.0}
+    shield = iiwa_dnn.Shield(
+        ROBOT, 4e-3, [], DISTANCE, tracking_error=0.05, longest_period=0.02, **about
+    )
+    iiwa_dnn.export.tables(shield, tmp_path / "people.json")
+    settings = (*SIMULATED, "people_radii:=[0.1]")
+    found = run(python, tmp_path, "people", *settings, tables=tmp_path / "people.json")
+    begun, ended, q, dq = np.split(found["places"], [3, 6, 13], axis=1)
+    arm = judge_people.skeleton_of(ROBOT)
+    least = np.inf
+    for k in np.flatnonzero(dq.any(axis=1)):
+        person = [np.tile(each[k], (1, 2, 1)) for each in (begun, ended)]
+        near, _ = judge_people.judge(
+            arm, q[k], dq[k], *person, (shield.dt, 0.1, 1.6, DISTANCE, 0.0), 1.0
+        )
+        least = min(least, near)
+    moving = dq.any(axis=1).mean()
+    print(f"{len(dq)} periods, moving in {moving:.3f}, least distance {1e3 * least:.3f} mm")
+    assert DISTANCE - 1e-9 <= least < 1.0
+
+
 def judge(start: np.ndarray, log: np.ndarray) -> None:
     """Judge periods [s] and the velocities [rad/s] held for them, (k, 1 + n), from a start."""
     periods = log[:, :1]
@@ -122,7 +149,13 @@ def judge(start: np.ndarray, log: np.ndarray) -> None:
 
 
 def test_parameters_are_refused_by_name(python: Path) -> None:
-    for setting in ("shield:=numpy", "shield:=./arm", "command:=torque", "timeout:=1"):
+    for setting in (
+        "shield:=numpy",
+        "shield:=./arm",
+        "command:=torque",
+        "timeout:=1",
+        "people_radii:=[-0.1]",
+    ):
         node = start_node(python, setting)
         said = node.communicate(timeout=60)[1]
         assert node.returncode == 2
