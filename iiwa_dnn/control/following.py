@@ -42,7 +42,7 @@ from iiwa_dnn.control.state import MotionState, change_spacing
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
-from iiwa_dnn.qp.layout import copied
+from iiwa_dnn.qp.layout import IntVector, copied
 from iiwa_dnn.schemes.periods import Periods
 from iiwa_dnn.schemes.profiles import Rates
 from iiwa_dnn.schemes.rate_limits import MotionConstants
@@ -221,11 +221,11 @@ KEEPS = {"time": Mode.TIME, "path": Mode.PATH}
 """Modes of a chunk by what it keeps."""
 
 
-def checked_samples(times: ArrayLike, positions: ArrayLike, dof: int) -> tuple[Vector, Matrix]:
-    """Return times (m,) [s] and positions (m, dof) [rad] of a chunk, which may be NaN.
+def checked_times(times: ArrayLike) -> Vector:
+    """Return the times (m,) [s] of a chunk, which may be NaN.
 
     Raises:
-        InvalidInputError: They have another shape, times do not rise, or samples are too many.
+        InvalidInputError: They are no list, do not rise, or are too many.
     """
     t = checks.array("times", times, (-1,))
     if not 1 <= t.size <= SAMPLES:
@@ -235,7 +235,7 @@ def checked_samples(times: ArrayLike, positions: ArrayLike, dof: int) -> tuple[V
         k = int(np.argmax(steps < SHORTEST))
         problem = f"must rise: {t[k + 1]:g} s comes after {t[k]:g} s"
         raise InvalidInputError("times", problem, times)
-    return t, checks.array("positions", positions, (t.size, dof))
+    return t
 
 
 def no_samples(plan: ArmPlan) -> Vector:
@@ -260,7 +260,8 @@ class Preview(NamedTuple):
     """What would become of a chunk, as `Shield.preview` finds it before the arm moves.
 
     Attributes:
-        sample: Number of the first sample that is more than `MISSED` off; None: all are reached.
+        sample: Number of the first sample that is more than `MISSED` off, or of a pose that is left
+            out; None: all are reached.
         active_limits: What kept the arm off until then, in words; none: they are too quick.
         late: Largest time by which a sample is reached after its own [s].
         off: Largest distance of a joint from each sample when it is due by the clock, which may be
@@ -271,6 +272,17 @@ class Preview(NamedTuple):
     active_limits: tuple[str, ...]
     late: float
     off: Vector
+
+    def among(self, places: IntVector, left_out: dict[int, str]) -> Preview:
+        """Return the preview of all poses, from that of those at some places among them."""
+        off = np.full(len(places) + len(left_out), np.nan)
+        off[places] = self.off
+        sample = None if self.sample is None else int(places[self.sample])
+        whole = self._replace(sample=sample, off=off)
+        first = min(left_out, default=off.size)
+        if first < (off.size if sample is None else sample):
+            return whole._replace(sample=first, active_limits=(left_out[first],))
+        return whole
 
 
 class Rehearsal:
@@ -283,7 +295,7 @@ class Rehearsal:
 
     def __init__(self, times: Vector, positions: Matrix) -> None:
         """Take times (m,) [s] and positions (m, n) [rad] of the samples."""
-        self.goes_on = True
+        self.goes_on = times.size > 0
         self.result = Preview(None, (), 0.0, np.full(times.size, np.nan))
         self._times = times
         self._positions = positions

@@ -30,12 +30,15 @@ from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.naming import LimitKind, active_limits, describe
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Solution, Vector
+from iiwa_dnn.qp.layout import IntVector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.obstacles import Obstacle
@@ -65,6 +68,15 @@ _STILL = 1e-7
 
 _ACTS = 1e-3
 """Least ratio of a multiplier to the error for which a limit counts as active."""
+
+REACHED = 1e-4
+"""Distance [m] and angle [rad] from a pose of a chunk up to which it counts as reached."""
+
+_CLOSE = 1e-6
+"""The same that its search ends at."""
+
+_UNIT_WITHIN = 0.01
+"""Difference of a quaternion's norm from 1 that is forgiven: rounding to few digits."""
 
 _SECOND = 1e-2
 """Weight of the orientation error if the pose is not reached [m/rad]."""
@@ -179,7 +191,97 @@ def solve_pose(
     )
 
 
-def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -> ProgramLayout:
+class PoseChunk(NamedTuple):
+    """Joint positions of timed poses, as `solve_poses` finds them.
+
+    Attributes:
+        times: Times of the poses that are reached [s], (k,).
+        positions: Their joint positions [rad], (k, n).
+        places: Their numbers among all poses, (k,).
+        left_out: Number of each pose that is left out, and why.
+    """
+
+    times: Vector
+    positions: Matrix
+    places: IntVector
+    left_out: dict[int, str]
+
+
+def solve_poses(
+    robot: Robot, times: Vector, poses: ArrayLike, q0: Vector, frame: str | None
+) -> PoseChunk:
+    """Find joint positions for timed poses in turn, each from those of the one before.
+
+    Two kinds of poses are left out: those from which the frame stays more than `REACHED` away, but
+    for the orientation of an arm of less than six joints; and those to which a joint would have to
+    move faster than its velocity limit since the last pose that was not, as beside a singular one.
+
+    Args:
+        robot: The robot, n joints.
+        times: Time of each pose [s], (m,), rising.
+        poses: Position [m] of each, (m, 3), or also its quaternion w, x, y, z, (m, 7), or a
+            homogeneous matrix, (m, 4, 4). One that is not finite has NaN as joint positions.
+        q0: Joint positions before them [rad], (n,).
+        frame: Name of the frame; None stands for the tip.
+
+    Raises:
+        InvalidInputError: The poses have another shape, or are no rotations.
+        NotFoundError: The robot has no frame of that name.
+    """
+    goals, weight = _goals(times.size, poses)
+    program = _program(robot, (), frame)
+    descend = partial(_descend, program, DNNSolver(tol=1e-12))
+    q = np.clip(q0, robot.q_lower, robot.q_upper)
+    last = -np.inf
+    found: dict[int, Vector] = {}
+    left_out: dict[int, str] = {}
+    for k, (t, goal) in enumerate(zip(times.tolist(), goals[:, np.newaxis], strict=True)):
+        if not np.isfinite(goal).all():
+            found[k] = np.full(robot.dof, np.nan)
+            continue
+        end = descend(goal, _CLOSE, q, weight)
+        if robot.dof < goal.size // 3 and end.far > _CLOSE:
+            end = descend(goal, _CLOSE, descend(goal, _CLOSE, end.q, _SECOND).q, 0.0)
+        ratio = np.abs(end.q - q) / ((t - last) * robot.dq_max)
+        if end.far > REACHED:
+            limits = _active_limits(program, DNNSolver(tol=1e-12), end, weight)
+            left_out[k] = ", ".join(["out of reach", *limits])
+        elif ratio.max() > 1.0:
+            left_out[k] = f"joint {1 + int(ratio.argmax())} too fast, as beside a singular posture"
+        else:
+            found[k] = q = end.q
+            last = t
+    places = np.array([*found], dtype=np.int64)
+    positions = np.array([*found.values()]).reshape(-1, robot.dof)
+    return PoseChunk(times[places], positions, places, left_out)
+
+
+def _goals(count: int, poses: ArrayLike) -> tuple[Matrix, float]:
+    """Return targets (m, 18), or NaN, of m poses, and the weight of their orientations."""
+    shapes = {2: (count, 7), 3: (count, 4, 4)}
+    shape = (count, 3) if np.shape(poses)[1:] == (3,) else shapes.get(np.ndim(poses), (count, 7))
+    own = checks.array("poses", poses, shape)
+    goals = np.full((count, len(Target(np.zeros(3)).data)), np.nan)
+    for k in np.flatnonzero(np.isfinite(own.reshape(count, -1)).all(axis=1)):
+        goals[k] = _goal(own[k]).data
+    return goals, float(shape[1] != 3)
+
+
+def _goal(pose: Vector | Matrix) -> Target:
+    """Return a position (3,), with a quaternion w, x, y, z (7,), or a matrix (4, 4) as a target."""
+    if pose.ndim == 2:
+        return Target(pose[:3, 3], pose[:3, :3])
+    if pose.size == 3:
+        return Target(pose)
+    w, x, y, z = pose[3:]
+    if not abs(math.hypot(w, x, y, z) - 1.0) <= _UNIT_WITHIN:
+        raise InvalidInputError("poses", "must have quaternions w, x, y, z of norm 1", pose)
+    return Target(pose[:3], pin.Quaternion(w, x, y, z).normalized().matrix())
+
+
+def _program(
+    robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance, frame: str | None = None
+) -> ProgramLayout:
     """Lay out the program of an iteration, in which velocities are changes of the joints."""
     slowed = robot.with_limits(velocity=_STEP * _units(robot))
     limits: list[Limit] = [JointLimits(gain=1.0)]
@@ -188,7 +290,7 @@ def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -
     if isinstance(obstacles, CollisionAvoidance):
         rows = ENDS * len(obstacles.scene(slowed).pairs)
         limits.append(replace(obstacles, gain=1.0, nearest=rows))
-    return Scheme([], [PoseTask(gain=1.0)], limits).program(slowed)
+    return Scheme([], [PoseTask(gain=1.0, frame=frame)], limits).program(slowed)
 
 
 def _units(robot: Robot) -> Vector:

@@ -60,7 +60,7 @@ from iiwa_dnn.control.following import (
     Mode,
     Preview,
     Rehearsal,
-    checked_samples,
+    checked_times,
     follow_of,
     follow_step,
     keep_samples,
@@ -70,6 +70,7 @@ from iiwa_dnn.control.following import (
 from iiwa_dnn.control.paths import long_times, setup_warnings, warn_of_bodies
 from iiwa_dnn.control.people import News, separation_in, split_bodies
 from iiwa_dnn.control.policies import Action
+from iiwa_dnn.control.posing import PoseChunk, solve_poses
 from iiwa_dnn.control.requests import (
     CUT,
     FASTEST,
@@ -595,11 +596,13 @@ class Shield:
     def follow(
         self,
         times: ArrayLike,
-        positions: ArrayLike,
+        positions: ArrayLike | None = None,
         keep: Literal["time", "path"] = "time",
         *,
+        poses: ArrayLike | None = None,
+        frame: str | None = None,
         now: float | None = None,
-    ) -> None:
+    ) -> dict[int, str]:
         """Follow a chunk of timed joint positions from the next steps on, which need no request.
 
         The reference is the cubic spline through them. It replaces what was followed from its first
@@ -612,25 +615,70 @@ class Shield:
                 brakes.
             keep: What is kept where the samples are too quick for the joints: their ``"time"``, or
                 their ``"path"``, later.
+            poses: Or a frame's positions [m], (m, 3), with quaternions w, x, y, z, (m, 7), or as
+                homogeneous matrices, (m, 4, 4). Joint positions are found from those of the pose
+                before, in about 1 ms each.
+            frame: Name of the poses' frame; None stands for the tip.
             now: Present time on the clock of `times` [s]; None: they are on the clock `time`.
 
+        Returns:
+            Numbers of the poses that are left out, and why: out of reach, or from the one before
+            too fast for a joint's velocity limit.
+
         Raises:
-            InvalidInputError: A shape is wrong, times do not rise, or samples are too many. Nothing
-                is then changed.
+            InvalidInputError: A shape is wrong, times do not rise, samples are too many, or poses
+                come before the first step and `reset`. Nothing is then changed.
+            NotFoundError: The robot has no frame of that name.
         """
-        t, points = checked_samples(times, positions, self.robot.dof)
         mode = KEEPS[checks.one_of("keep", keep, tuple(KEEPS))]
+        chunk = self._chunk(times, positions, poses, frame)
+        if poses is None:
+            self._warn_of_degrees(chunk.positions[np.abs(chunk.positions).max(axis=1).argmax()])
         with self._turn():
             if now is not None:
-                t = t + (self.time - checks.finite("now", now))
-            kept = self._kept
-            plan = self.layout(kept.frame).plan
-            samples = no_samples(plan) if kept.samples is None else kept.samples.copy()
-            keep_samples(plan, samples, t, points, mode, self.time)
-            self._kept = kept._replace(samples=samples)
+                ahead = self.time - checks.finite("now", now)
+                chunk = chunk._replace(times=chunk.times + ahead)
+            self._keep(chunk, mode)
+        return chunk.left_out
+
+    def _chunk(
+        self,
+        times: ArrayLike,
+        positions: ArrayLike | None,
+        poses: ArrayLike | None,
+        frame: str | None,
+    ) -> PoseChunk:
+        """Return the samples of a chunk as joint positions; those of poses are solved for."""
+        t = checked_times(times)
+        if positions is not None and poses is None:
+            points = checks.array("positions", positions, (t.size, self.robot.dof))
+            return PoseChunk(t, points, np.arange(t.size), {})
+        if positions is not None or poses is None:
+            raise InvalidInputError("positions, poses", "pass exactly one", (positions, poses))
+        arm = self._state()
+        if not arm.has_begun:
+            problem = "need a step, or a reset to a posture, before"
+            raise InvalidInputError("poses", problem, poses)
+        return solve_poses(self.robot, t, poses, arm.positions.copy(), frame)
+
+    def _keep(self, chunk: PoseChunk, mode: int) -> None:
+        """Keep the samples of a chunk, if there are any, for the next steps."""
+        if chunk.times.size == 0:
+            return
+        kept = self._kept
+        plan = self.layout(kept.frame).plan
+        samples = no_samples(plan) if kept.samples is None else kept.samples.copy()
+        keep_samples(plan, samples, chunk.times, chunk.positions, mode, self.time)
+        self._kept = kept._replace(samples=samples)
 
     def preview(
-        self, times: ArrayLike, positions: ArrayLike, keep: Literal["time", "path"] = "time"
+        self,
+        times: ArrayLike,
+        positions: ArrayLike | None = None,
+        keep: Literal["time", "path"] = "time",
+        *,
+        poses: ArrayLike | None = None,
+        frame: str | None = None,
     ) -> Preview:
         """Tell what would become of a chunk, by taking its steps without an arm.
 
@@ -641,17 +689,21 @@ class Shield:
             times: Time of each sample [s], (m,), as for `follow`.
             positions: Joint positions of each [rad], (m, n).
             keep: What is kept where the samples are too quick.
+            poses: Or the poses of a frame, as for `follow`.
+            frame: Name of the frame.
 
         Raises:
             InvalidInputError: As for `follow`; or no step has been taken nor a posture `reset` to.
+            NotFoundError: The robot has no frame of that name.
         """
-        t, points = checked_samples(times, positions, self.robot.dof)
+        mode = KEEPS[checks.one_of("keep", keep, tuple(KEEPS))]
+        chunk = self._chunk(times, positions, poses, frame)
         with self._turn():
             kept = self._kept
-            rehearsal = Rehearsal(t, points)
+            rehearsal = Rehearsal(chunk.times, chunk.positions)
             dt = None if self.longest_period is None else self.dt
             try:  # steps that do not count
-                self.follow(t, points, keep)
+                self._keep(chunk, mode)
                 while rehearsal.goes_on:
                     arm = self._state()
                     pending = np.zeros(self.robot.dof)
@@ -662,7 +714,7 @@ class Shield:
                     rehearsal.take(own, arm, command.state, command.active_limits)
             finally:
                 self._kept = kept
-        return rehearsal.result
+        return rehearsal.result.among(chunk.places, chunk.left_out)
 
     def warm_up(self, q: ArrayLike, frames: Sequence[str] = ()) -> None:
         """Lay the programs out ahead, so that the first step is as quick as the others.
@@ -838,15 +890,21 @@ class Shield:
             start = Configuration(self.robot, measured)
             program = self.layout(self.robot.tip).step.program
             found += setup_warnings(program, start, 0.0, self.dt, "converged")
-            self._unseen = (Request.POSITION,)
+            self._unseen = tuple({Request.POSITION} & {*self._unseen})
             found += long_times({"timeout": self.settings.timeout, "delay": self.delay})
-        if kind is Request.POSITION:
-            self._unseen = self._unseen[:-1]
-            problem = self.robot.outside(request)
-            if problem and self.robot.in_degrees(request):
-                found.append(f"the requested posture {problem}")
         for message in found:
             warn_caller(message)
+        if kind is Request.POSITION:
+            self._warn_of_degrees(request)
+
+    def _warn_of_degrees(self, request: Vector) -> None:
+        """Warn of requested joint positions (n,) if they are the first, and likely in degrees."""
+        if Request.POSITION not in self._unseen:
+            return
+        self._unseen = tuple({*self._unseen} - {Request.POSITION})
+        problem = self.robot.outside(request)
+        if problem and self.robot.in_degrees(request):
+            warn_caller(f"the requested posture {problem}")
 
 
 def check_held(loop: Any, dt: float | None) -> None:
