@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import sys
 from collections import deque
-from dataclasses import dataclass, field
+from collections.abc import Set
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from numba import njit
 
 import iiwa_dnn
 from iiwa_dnn.robot.collision import collision_model
+from iiwa_dnn.schemes.separation import Separation
 
 MODES = (
     "pursuit",
@@ -37,6 +39,9 @@ SAMPLE = 1e-4
 
 ROUNDING = 1e-9
 """Distance that rounding may cost [m]."""
+
+NO_SHARE = 1e9
+"""Part of the separation into which a stop has to fit by which no request is scaled."""
 
 FASTEST = 3.0
 """Bound on the distance of a point of an arm from a joint's axis [m]."""
@@ -169,8 +174,9 @@ class Scene:
     contact_speed: float = 0.0
     modes: tuple[int, ...] = tuple(range(len(MODES)))
     requests: str = "dq"
-    lies: frozenset[str] = field(default_factory=frozenset)
-    """What the shield is not told: ``age``, ``error``, ``speed``, ``missing``, ``field``."""
+    lies: Set[str] = frozenset()
+    """What the shield is not told: ``age``, ``error``, ``speed``, ``missing``, ``field``; ``still``
+    is that people move; ``""`` is nothing: requests are not scaled, as beside the others."""
 
     @property
     def every(self) -> int:
@@ -192,6 +198,7 @@ class Verdict(NamedTuple):
     least: float  # of links in motion [m]
     moving: float  # share of steps
     tail: Any  # share of the last quarter, (N,)
+    trapped: int  # arms that rest in the last quarter, though a frame says that all have left
     tip: float  # mean speed of the last capsule's end [m/s]
     rates: tuple[float, float]  # acceleration and jerk, in units of their limits
     quickest: float  # point of a link that is touched [m/s]
@@ -203,7 +210,7 @@ class Verdict(NamedTuple):
         return (
             f"{self.steps} steps: {self.contacts} contacts in motion ({self.touching} steps), "
             f"least {1e3 * self.least:.3f} mm, moving {self.moving:.3f}, trapped "
-            f"{int((self.tail == 0.0).sum())} of {self.tail.size}, tip {self.tip:.3f} m/s, rates "
+            f"{self.trapped} of {self.tail.size}, tip {self.tip:.3f} m/s, rates "
             f"{self.rates[0]:.6f} {self.rates[1]:.6f}, touched at {self.quickest:.3f} m/s"
         )
 
@@ -341,8 +348,12 @@ class Attack:
         scene = self.scene
         self.rested = np.where(moves, 0.0, self.rested + scene.dt)
         self.leaves |= (self.rested > 0.7) & (least < 0.15)
-        back = self.leaves & (np.abs(self.ends - self.home).max(axis=(1, 2, 3)) < 0.05)
+        back = self.leaves & self.have_left(self.ends)
         self.leaves &= ~(back & (self.mode != LEAVE) & (self.random.random(scene.count) < 2e-3))
+
+    def have_left(self, ends: Any) -> Any:
+        """Test for each arm whether all bodies with these ends (N, P, 2, 3) [m] are at home."""
+        return np.abs(ends - self.home).max(axis=(1, 2, 3)) < 0.05 + self.scene.error
 
     def look(self, k: int) -> tuple[int, Any, Any, Any] | None:
         """Take a frame if one is due; return the one that arrives: step, ends, seen, arms."""
@@ -388,6 +399,7 @@ def run(scene: Scene, steps: int, seed: int, drive: Any) -> Verdict:
     least, quickest, tip = 1e300, 0.0, 0.0
     contacts = touched = moving = refused = 0
     tail = np.zeros(N)
+    told = np.zeros(N, dtype=bool)
     accel, jerk = 0.0, 0.0
     tips = np.empty((2, *arm.ends.shape))
     for k in range(steps):
@@ -408,6 +420,8 @@ def run(scene: Scene, steps: int, seed: int, drive: Any) -> Verdict:
         moving += int(moves.sum())
         refused += int(np.sum(differs))
         tail += moves & (k >= 0.75 * steps)
+        if frame is not None and k >= 0.75 * steps:
+            told |= frame[3] & attack.have_left(frame[1])
         least = min(least, float(out[:, 0].min()))
         quickest = max(quickest, float(out[:, 1].max()))
         hit = out[:, 0] < scene.distance - ROUNDING
@@ -423,9 +437,10 @@ def run(scene: Scene, steps: int, seed: int, drive: Any) -> Verdict:
             tip += float(np.linalg.norm(tips[1, -1, 1] - tips[0, -1, 1]))
         before, last, q = last, dq, q + dt * dq
     total = N * steps
+    trapped = int((told & (tail == 0.0)).sum())
     of_tail = tail / (steps - int(np.ceil(0.75 * steps)))
     rates = (accel, jerk)
-    share = (moving / total, of_tail, tip / (total * dt))
+    share = (moving / total, of_tail, trapped, tip / (total * dt))
     return Verdict(total, contacts, touched, least, *share, rates, quickest, refused / total)
 
 
@@ -466,11 +481,16 @@ def told(scene: Scene, **settings: Any) -> Any:
         "people": scene.people,
         "field": scene.reach if np.isfinite(scene.reach) and "field" not in lies else 1e3,
         "people_speed": speed,
-        "latency": (scene.late + scene.every) * scene.dt,
+        "latency": 0.0 if "age" in lies else (scene.late + scene.every) * scene.dt,
         "contact_speed": scene.contact_speed,
         "obstacles": [],
     }
     shield = iiwa_dnn.Shield(scene.robot, **(kept | settings))
+    if lies:  # no smooth motion hides them
+        shield.limits = tuple(
+            replace(part, share=NO_SHARE) if isinstance(part, Separation) else part
+            for part in shield.limits
+        )
     shields = iiwa_dnn.Shields(shield, scene.count, threads=1)
     radius = scene.radius + (0.0 if "error" in lies else scene.error)
     memory: dict[int, Any] = {}

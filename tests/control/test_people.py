@@ -44,7 +44,8 @@ def driven(shield: Any, steps: int, q: Any = None, **own: Any) -> Any:
 
 
 def hostile(**own: Any) -> Any:
-    return judge_people.Scene(ROBOT, **({"count": 9, "error": 0.0, "modes": (0, 1, 3)} | own))
+    made = {"robot": ROBOT, "count": 9, "error": 0.0, "modes": (0, 1, 3)}
+    return judge_people.Scene(**(made | own))
 
 
 def test_no_link_in_motion_is_touched() -> None:
@@ -61,10 +62,30 @@ def test_the_shield_of_moving_obstacles_alone_is_touched() -> None:
     assert judge_people.run(scene, 1500, 0, judge_people.today(scene)).contacts > 0
 
 
-@pytest.mark.parametrize("lie", ["still", "missing"])
-def test_what_is_not_told_is_missed(lie: str) -> None:
-    scene = hostile(lies=frozenset({lie}))
-    assert judge_people.run(scene, 2500, 2, judge_people.told(scene)).contacts > 0
+@pytest.mark.parametrize("lie", ["age", "error", "speed", "still", "missing", "field"])
+def test_what_is_not_told_is_missed_and_what_is_told_is_just_enough(lie: str) -> None:
+    """The test of the motion to rest alone, whose least distance is within a millimetre."""
+    own: Any = {"count": 6, "error": 0.03 if lie == "error" else 0.0}
+    if lie == "field":
+        slow = ROBOT.with_limits(acceleration=4.0)
+        own |= {"robot": slow, "speed": 2.0, "reach": 1.6}
+    for told in (lie, ""):
+        scene = hostile(**own, lies={told})
+        found = judge_people.run(scene, 2500, 2, judge_people.told(scene))
+        assert (found.contacts > 0) == (told == lie)
+    if lie != "error":  # of 30 mm, in any direction
+        assert scene.distance - 1e-9 <= found.least < scene.distance + 1e-3
+
+
+@pytest.mark.parametrize("lost", [0.3, 0.97])
+def test_arms_go_on_when_a_frame_says_that_all_have_left(lost: float) -> None:
+    """Of arms that never come to know it, those at rest are no traps: people grow older."""
+    robot = ROBOT.with_limits(jerk=500.0)
+    scene = hostile(robot=robot, count=14, modes=(judge_people.LEAVE,), lost=lost, error=0.03)
+    found = judge_people.run(scene, 6000, 3, judge_people.told(scene))
+    assert found.contacts == found.trapped == 0
+    assert (found.tail == 0.0).any() == (lost > 0.9)
+    assert found.tail.mean() > (0.4 if lost > 0.9 else 0.95)
 
 
 def test_shields_answer_as_a_shield_does() -> None:
