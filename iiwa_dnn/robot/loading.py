@@ -22,6 +22,7 @@ from iiwa_dnn.errors import (
     warn_caller,
 )
 from iiwa_dnn.robot.arms import ARMS, robots_folder
+from iiwa_dnn.robot.mjcf import read_mjcf
 from iiwa_dnn.robot.robot import Robot, frame_id, model_limits
 from iiwa_dnn.robot.tools import ToolShapes
 from iiwa_dnn.robot.urdf import build_model, number_of, read_urdf
@@ -45,7 +46,7 @@ def load_robot(
     frames: str | Iterable[str] = (),
     tool_shapes: ToolShapes = None,
 ) -> Robot:
-    """Load a robot by its name, from a URDF file or from a Pinocchio model.
+    """Load a robot by its name, from a URDF or an MJCF file or from a Pinocchio model.
 
     Limits are the source's, but for those of `iiwa_dnn.robot.arms`. A velocity, acceleration or
     jerk limit that is 0 or missing is none.
@@ -53,9 +54,9 @@ def load_robot(
     known name, a warning says which.
 
     Args:
-        source: A name out of `available_robots`, the path of a file (a `Path`, or a string that
-            ends in ``.urdf`` or has a separator in it), or a Pinocchio model, which has no shapes,
-            collisions and physics.
+        source: A name out of `available_robots`, the path of a URDF or, in ``.xml``, of an MJCF (a
+            `Path`, or a string that ends so or has a separator in it), or a Pinocchio model, which
+            has no shapes, collisions and physics.
         tip: Frame that follows references. Default: that of the name (`iiwa_dnn.robot.arms`), or
             the link at the end of the chain, for a robot that has only one end.
         locked: Names of joints to freeze, each at its zero position or at the limit nearest to it.
@@ -67,14 +68,15 @@ def load_robot(
 
     Raises:
         NotFoundError: If there is no such robot, frame or joint; the error lists those that exist.
-        FileError: If the file cannot be read, is not a URDF, or its limits make no sense.
+        FileError: If the file cannot be read, is no URDF or MJCF, or its limits make no sense.
         InvalidInputError: If the robot has several ends and no ``tip`` is given, names are none, or
             a joint that is left free has no axis, more or less than one coordinate, or follows
             another.
-        MissingDependencyError: If the arm of that name is in a package that is not installed.
+        MissingDependencyError: If the arm of that name is in a package that is not installed, or
+            the file is an MJCF, and MuJoCo is not.
     """
     path, tips = _find(source)
-    root = ET.Element("robot") if path is None else read_urdf(path)
+    root = ET.Element("robot") if path is None else _read(path)
     text = ET.tostring(root, encoding="unicode")  # of the tree that was checked
     built: Any = (source, []) if path is None else build_model(path, root, text)
     full, left_out = built
@@ -108,6 +110,11 @@ def load_robot(
     for message in _load_warnings(robot, still, left_out):
         warnings.warn(message, stacklevel=2)
     return _hold(robot, tool, tool_shapes)
+
+
+def _read(path: Path) -> ET.Element:
+    """Read a file of a robot as the URDF of it."""
+    return read_mjcf(path) if path.suffix == ".xml" else read_urdf(path)
 
 
 def _hold(robot: Robot, tool: pin.SE3 | ArrayLike | None, shapes: ToolShapes) -> Robot:
@@ -144,7 +151,7 @@ def _find(source: Any) -> tuple[Path | None, tuple[str, ...]]:
     if not isinstance(source, str | os.PathLike):
         raise InvalidInputError("source", "must be a name, a file or a pinocchio.Model", source)
     name = os.fspath(source)
-    is_file = isinstance(source, os.PathLike) or name.endswith((".urdf", ".xacro"))
+    is_file = isinstance(source, os.PathLike) or name.endswith((".urdf", ".xacro", ".xml"))
     if is_file or os.sep in name:
         return Path(name), ()
     if name not in ARMS:

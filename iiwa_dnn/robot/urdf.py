@@ -18,6 +18,9 @@ import pinocchio as pin
 from iiwa_dnn.errors import FileError, warn_caller
 from iiwa_dnn.files import one_line
 
+ENDLESS = ("-1e308", "1e308")
+"""Range of a joint without position limits, as the parser takes it."""
+
 _UTF_16 = (b"\xfe\xff", b"\xff\xfe")
 _UNREAD = re.compile(r"<\?xml\s.*?\?>|<!--.*?-->", re.DOTALL)
 # One sentence of it: what follows two spaces is advice.
@@ -63,7 +66,7 @@ def read_urdf(path: Path) -> ET.Element:
             joint.set("type", "revolute")
             if limit is None:
                 limit = ET.SubElement(joint, "limit", velocity="0")
-            limit.attrib.update(lower="-1e308", upper="1e308")
+            limit.attrib.update(zip(("lower", "upper"), ENDLESS, strict=True))
         if limit is not None:
             number_of(path, joint, limit, "velocity")
             if limit.get("effort", "-").startswith("-"):
