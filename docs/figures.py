@@ -197,6 +197,51 @@ def shield() -> Figure:
     return made
 
 
+# A visit ---------------------------------------------------------------------------------------
+
+
+@figure
+def visit() -> Figure:
+    """Draw separation and speed of an arm while somebody comes, stands beside it and goes."""
+    dt, frames, late, walk = 2e-3, 17, 50, 1.2  # a camera of 30 Hz, 0.1 s behind
+    robot = iiwa_dnn.load_robot("iiwa7").with_limits(acceleration=10.0, jerk=500.0)
+    about: Any = {"people": 1, "field": 3.0, "people_speed": 1.6, "latency": 0.134}
+    guard, alone = iiwa_dnn.Shield(robot, dt, [], **about), iiwa_dnn.Shield(robot, dt)
+    ruler = iiwa_dnn.Shield(robot, dt, [], **about)
+    t = dt * np.arange(3000)
+    out = np.interp(t, [0.0, 1.5, 3.0, 5.5], [2.6, 0.85, 0.85, 2.6])  # [m]
+    assert np.abs(np.diff(out)).max() <= walk * dt
+    q = other = robot.start_posture()
+    tip = iiwa_dnn.Configuration(robot, q).position
+    x, y = tip[:2] / np.linalg.norm(tip[:2])
+    person = lambda at: [([at * x, at * y, 0.3], [at * x, at * y, 1.6], 0.2)]  # noqa: E731
+    request = np.sin(3.5 * t)[:, np.newaxis] * np.array([1.5, 0.9, 0.0, 0.9, 0.0, 0.9, 0.0])
+    kept = []
+    for k, own in enumerate(request):
+        seen: Any = {} if k % frames else {"people": person(out[max(k - late, 0)]), "age": 0.1}
+        command = guard.step(q, own, **seen)
+        there = ruler.step(q, 0.0 * own, people=person(out[k]), age=0.0).margin.separation
+        free = alone.step(other, own)
+        speeds = []
+        for posture, each in ((q, command), (other, free)):
+            jacobian = iiwa_dnn.Configuration(robot, posture).jacobian
+            speeds.append(np.linalg.norm(jacobian[:3] @ each.dq))
+        kept.append((there + 0.02, command.margin.separation, *speeds))
+        q, other = command.next_q, free.next_q
+    apart, separation, speed, undisturbed = np.array(kept).T
+    made, axes = panels(2, 1.7, sharex=True)
+    axes[0].plot(t, apart, color=BLUE, label="nearest link from the person")
+    axes[0].plot(t, separation, color=ORANGE, lw=1.1, label="margin.separation")
+    axes[0].axhline(0.0, color=RED, lw=1.4, ls="--")
+    axes[0].set(ylabel="distance [m]")
+    axes[1].plot(t, undisturbed, color=GREY, lw=1.1, ls="--", label="nobody there")
+    axes[1].plot(t, speed, color=BLUE, label="beside the person")
+    axes[1].set(ylabel="tip [m/s]", xlabel="time [s]", xlim=(0.0, t[-1]))
+    for panel in axes:
+        put_legend(panel, 2)
+    return made
+
+
 # Noise -----------------------------------------------------------------------------------------
 
 GAINS = tuple(np.geomspace(2.0, 800.0, 9))
