@@ -1,9 +1,13 @@
-"""Step of a shield as kernels over the memory of an arm: at the desk, for many arms, and in C.
+"""Step of an arm as kernels over its memory: of shields and controllers, at the desk and in C.
 
 `begin_step` takes positions, request and periods into the state of the arm; `finish_step` computes
-the command from the kinematics at the commanded positions. Between them `Shield` has Pinocchio
-compute the kinematics; `step_arm`, for `Shields` and in C, calls the kernel `write_kinematics`. The
-state holds what can be asked about the last step: active limits, margin, stopping time.
+the command from the kinematics at the arm's positions. Between them `Shield` has Pinocchio compute
+the kinematics; `step_arm`, for many arms and in C, calls the kernel `write_kinematics`. The state
+holds what can be asked about the last step: active limits, margin, stopping time.
+
+A shield answers requests, from the positions that it commands. A controller answers targets of
+frames, which are given or sampled from its paths, from the positions that are measured: Pinocchio
+computes their kinematics before `step_measured`.
 """
 
 from __future__ import annotations
@@ -18,7 +22,7 @@ from iiwa_dnn.compiling.library import compiled, released
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.command import StepLog, log_of
-from iiwa_dnn.control.cycle import INVALID, take_step
+from iiwa_dnn.control.cycle import INVALID, sample_targets, take_step
 from iiwa_dnn.control.people import (
     grow_older,
     is_newer,
@@ -28,6 +32,7 @@ from iiwa_dnn.control.people import (
     write_bodies,
 )
 from iiwa_dnn.control.plan import ControlPlan
+from iiwa_dnn.control.policies import ProgramKind
 from iiwa_dnn.control.requests import (
     CUT,
     FASTEST,
@@ -40,7 +45,8 @@ from iiwa_dnn.control.requests import (
 )
 from iiwa_dnn.control.state import MotionState, change_spacing, count_as_sent
 from iiwa_dnn.control.stopping import brake_blindly, least_periods
-from iiwa_dnn.control.yielding import NONE
+from iiwa_dnn.control.yielding import NOMINAL, NONE
+from iiwa_dnn.networks.integrators.base import AnswerSettings, CompiledAnswer
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
 from iiwa_dnn.qp.layout import IntVector, copied
@@ -75,7 +81,7 @@ FOLLOWING = 1e-12
 
 
 class ArmSettings(Record):
-    """Settings of a shield.
+    """Settings of the steps of an arm; of a controller's the periods alone count.
 
     Attributes:
         dt: Control period [s].
@@ -113,6 +119,7 @@ class ArmSizes(NamedTuple):
     motion: int
     network: int
     fallback: int
+    twist_fallback: int
     obstacles: int
     limiting: int
     sent: int
@@ -137,8 +144,10 @@ class ArmState(Record):
     """State of an arm between steps, with the results of the last step.
 
     Attributes:
-        time: Time since the arm's first step [s].
+        time: Time since the arm's first step [s]; of a controller the time of its steps.
         period: Time for which the last command is held [s].
+        fraction: Fraction of it by which the paths' clock goes on.
+        program: `ProgramKind` of the program that the last step answered.
         age: Time since the last request came [s].
         reason: `Reason` for which the request is replaced by zero velocity; `NONE`: it counts.
         kind: `Request` of the last request.
@@ -148,16 +157,17 @@ class ArmState(Record):
         is_repeated: Whether the request is that of the step before.
         is_clipped: Whether the last command differs from the request.
         is_misplaced: Whether the place of an obstacle is not known.
-        positions: Commanded joint positions [rad], (n,).
+        positions: Joint positions at the end of the last command's period [rad], (n,).
         measured: Measured ones [rad], (n,), with the displacement that the delay hides, and with
             the turns of `positions`.
         wraps: 1 for each joint whose readings have skipped whole turns, (n,).
-        request: The request that counts, (max(n, 6),); zero without one.
+        request: The request that counts, (max(n, 6),), zero without one; (0,) of a controller.
         reasons: 1 for each `Reason` of the last step, else 0.
         motion: `MotionState`.
-        network: State of the network that answers twists.
-        fallback: States of the networks of fallback programs, for requests of joints.
-        twist_fallback: The same for twists.
+        network: State of the network that answers twists or targets; that of a `Controller` is its
+            solver's.
+        fallback: States of the networks of fallback programs, for requests of joints or targets.
+        twist_fallback: The same for twists; (0,) of a controller.
         obstacles: Centres that the obstacles had, or would have had, at time 0 [m], (k, 3).
         limiting: Active bounds and rows of the last step, as in `StepLog`, (n + m,).
         sent: A `SentCommand` for each command of the last `delay` seconds, the last first,
@@ -168,6 +178,8 @@ class ArmState(Record):
 
     time: float
     period: float
+    fraction: float
+    program: int
     age: float
     reason: int
     kind: int
@@ -184,7 +196,7 @@ class ArmState(Record):
     motion: Vector = part("motion")
     network: Vector = part("network")
     fallback: Vector = part("fallback")
-    twist_fallback: Vector = part("fallback")
+    twist_fallback: Vector = part("twist_fallback")
     obstacles: Matrix = part("obstacles", 3)
     limiting: Vector = part("limiting")
     sent: Vector = part("sent")
@@ -193,15 +205,17 @@ class ArmState(Record):
 
 
 class ArmPlan(NamedTuple):
-    """Layout and settings of the steps of a shield's arms.
+    """Layout and settings of the steps of the arms of a shield or a controller.
 
     Attributes:
         robot: Tables of the robot, n joints.
         step: Layout of the control step.
-        request: Number of the program's block that holds the request.
-        scene: Number of the program's block that holds the watched pairs; -1: none are watched.
+        request: Number of the program's block that holds the request; -1: targets are tracked.
+        scene: Number of the program's block that holds the watched pairs; -1: none are watched, or
+            obstacles move in a way of their own.
         separation: Number of that of bodies of bounded speed; -1: there are none.
         width: Length of the log of a step.
+        lag: Network time of a step per control period in continuous mode; 0 if the network solves.
         motion: Limits of the joints' motion.
         fastest: Largest entry of a twist [m/s], [rad/s]; a larger twist is scaled down to it.
         lower: Lower position limits [rad], (n,).
@@ -217,6 +231,7 @@ class ArmPlan(NamedTuple):
     scene: int
     separation: int
     width: int
+    lag: float
     motion: MotionConstants
     fastest: float
     lower: Vector
@@ -232,9 +247,11 @@ class ArmInput(NamedTuple):
     Attributes:
         q: Measured joint positions [rad], (n,).
         kind: Kind of the new request; `Request.NONE`: there is none.
-        request: Numbers of the new request, at least (n,) or (6,).
+        request: Numbers of the new request, at least (n,) or (6,); or the targets of a controller's
+            frames, (18 frames,), empty for those of its paths.
         dt: Period for which the command will be held [s]; 0: not stated.
         elapsed: Time since the last step [s]; 0: not stated.
+        t: Time of a controller's step [s].
     """
 
     q: Vector
@@ -242,6 +259,7 @@ class ArmInput(NamedTuple):
     request: Vector
     dt: float
     elapsed: float
+    t: float
 
 
 @compiled
@@ -254,11 +272,18 @@ def arm_state(plan: ArmPlan, memory: Vector) -> ArmState:
         plan.sizes.motion,
         plan.sizes.network,
         plan.sizes.fallback,
+        plan.sizes.twist_fallback,
         plan.sizes.obstacles,
         plan.sizes.limiting,
         plan.sizes.sent,
         plan.sizes.bodies,
     )
+
+
+@compiled
+def _tracks(plan: ArmPlan) -> bool:
+    """Test whether the arms are a controller's: they track targets, and have no requests."""
+    return plan.request < 0
 
 
 @compiled
@@ -281,7 +306,8 @@ def rest_arm(plan: ArmPlan, memory: Vector, q: Vector) -> None:
     for k in range(len(centers)):
         copied(arm.obstacles[k], centers[k])
     arm.period = plan.settings.dt
-    arm.reason = Reason.NO_REQUEST
+    arm.fraction = 1.0
+    arm.reason = Reason.NONE if _tracks(plan) else Reason.NO_REQUEST
     arm.positions[:] = np.nan
     if plan.separation >= 0:
         own = separation_views(block_constants(plan.step.arrays, plan.separation))
@@ -360,11 +386,21 @@ def halt_arm(plan: ArmPlan, memory: Vector) -> None:
 
 
 @compiled
-def send_arm(plan: ArmPlan, memory: Vector, dq: Vector, period: float) -> None:
-    """Count a velocity dq (n,) [rad/s] as sent for a period [s], in place of a step's command."""
+def send_arm(plan: ArmPlan, memory: Vector, dq: Vector, period: float, fraction: float) -> None:
+    """Count a velocity as sent, in place of a step's command.
+
+    Args:
+        plan: Layout of the steps.
+        memory: The arm's memory, (k,), overwritten.
+        dq: The velocity [rad/s], (n,).
+        period: Time for which it is held [s].
+        fraction: Fraction of it by which the paths' clock goes on.
+    """
     arm = arm_state(plan, memory)
     motion = motion_of(plan, arm)
     count_as_sent(motion, dq, period)
+    motion.path_lag += period * (1.0 - fraction)
+    arm.fraction = fraction
     arm.age += arm.period
     arm.period = period
     _advance(arm, plan.settings, motion)
@@ -375,57 +411,113 @@ def brake_arm(plan: ArmPlan, memory: Vector) -> None:
     """Take the next command of an arm's motion to rest, in place of a step that is refused."""
     arm = arm_state(plan, memory)
     motion = motion_of(plan, arm)
-    brake_blindly(motion, plan.motion, plan.step.yielding.cubic)
     arm.age += arm.period
     arm.period = plan.settings.dt
-    arm.is_clipped = True
+    _brake_blindly(plan, arm, motion)
     _advance(arm, plan.settings, motion)
 
 
 @compiled
 def step_arm(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> int:
-    """Take a step of a shield; its command is then the last one of `motion_of` the arm.
+    """Take a step of an arm; its command is then the last one of `motion_of` the arm.
 
     Returns:
-        The first `Reason` of the step.
+        Of a shield the first `Reason` of the step. Of a controller the `Action` that was taken; or
+        `INVALID` if an input is not valid: the arm has then taken the next command of its motion to
+        rest.
     """
     begin_step(plan, memory, inputs)
     arm = arm_state(plan, memory)
     base = plan.step.arrays
-    jacobian = np.empty((arm.positions.size, 6))
-    placements = np.empty((base.placements.shape[0], 12))
-    write_kinematics(plan.robot, arm.positions, jacobian, placements, base.inertia)
+    arrays = ProgramArrays(
+        base.sizes,
+        base.table,
+        base.constants.copy(),
+        np.empty((arm.positions.size, 6)),
+        np.empty((base.placements.shape[0], 12)),
+        base.support,
+        np.empty((base.inertia.shape[0], base.inertia.shape[1])),
+        base.tip,
+    )
+    write_kinematics(plan.robot, arm.positions, arrays.jacobian, arrays.placements, arrays.inertia)
     data = np.empty(plan.width)
-    finish_step(plan, memory, inputs, jacobian, placements, data)
-    return first_reason(arm)
+    action = _finish(plan, arm, inputs, arrays, data, arm.network)
+    return action if _tracks(plan) else first_reason(arm)
+
+
+@compiled
+def step_measured(
+    plan: ArmPlan,
+    memory: Vector,
+    next_memory: Vector,
+    q: Vector,
+    targets: Vector,
+    clock: Vector3,
+    data: Vector,
+    network: Vector,
+) -> int:
+    """Take a step of a controller whose kinematics at the measured positions are known.
+
+    Args:
+        plan: Layout of the step, with the kinematics.
+        memory: The arm's memory, (k,).
+        next_memory: That after the step, (k,), overwritten.
+        q: Measured joint positions [rad], (n,).
+        targets: Targets of the tracked frames, (18 frames,); or none: those of the paths.
+        clock: The time, and `dt` and `elapsed` of `ArmInput` [s].
+        data: The log of the control step, overwritten, (width,).
+        network: State of the network, (size,).
+
+    Returns:
+        The `Action` that was taken, or `INVALID`.
+    """
+    t, dt, elapsed = clock
+    copied(next_memory, memory)
+    inputs = ArmInput(q, Request.NONE, targets, dt, elapsed, t)
+    begin_step(plan, next_memory, inputs)
+    return finish_step(plan, next_memory, inputs, data, network)
 
 
 @compiled
 def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> None:
     """Take the inputs of a step into an arm's state: the part of a step before the kinematics.
 
-    An input that has no meaning is a `Reason`, with which the arm brakes along the commanded
-    positions: measured positions beyond `LARGEST`, an unknown kind of request, a period that is
-    negative, not finite, above that of a shield whose periods are constant, or stated twice.
+    An input that has no meaning is a `Reason`, with which the arm brakes: measured positions beyond
+    `LARGEST`, an unknown kind of request, a period that is negative, not finite, above that of a
+    shield whose periods are constant, or stated twice.
     """
     arm = arm_state(plan, memory)
     settings = plan.settings
     arm.reasons[:] = 0.0
-    arm.reasons[Reason.PERIOD_REFUSED] = 0.0 if _fits(settings, inputs) else 1.0
+    arm.reasons[Reason.PERIOD_REFUSED] = 0.0 if _fits(plan, inputs) else 1.0
     arm.reasons[Reason.PLACE_NOT_FINITE] = 1.0 if arm.is_misplaced else 0.0
     arm.reasons[Reason.FRAME_REFUSED] = 1.0 if arm.seen.is_refused else 0.0
     periods = periods_of_inputs(arm, settings, inputs)
     if inputs.elapsed > 0.0 and arm.reasons[Reason.PERIOD_REFUSED] == 0.0:
         _correct_last_period(arm, motion_of(plan, arm), inputs.elapsed)
     arm.reasons[Reason.PERIOD_EXCEEDED] = 1.0 if periods.exceeded else 0.0
-    stated = inputs.dt + inputs.elapsed
-    unstated = arm.reasons[Reason.PERIOD_REFUSED] != 0.0 or stated == 0.0
-    _update_positions(plan, arm, inputs.q, unstated and settings.longest > 0.0)
-    _update_request(arm, settings, inputs)
+    if _tracks(plan):
+        _measure(arm, inputs)
+    else:
+        stated = inputs.dt + inputs.elapsed
+        unstated = arm.reasons[Reason.PERIOD_REFUSED] != 0.0 or stated == 0.0
+        _update_positions(plan, arm, inputs.q, unstated and settings.longest > 0.0)
+        _update_request(arm, settings, inputs)
     if arm.reason != Reason.NONE:
         arm.reasons[arm.reason] = 1.0
     arm.period = periods.expected
     arm.answered = _answered(arm)
+
+
+@compiled
+def _measure(arm: ArmState, inputs: ArmInput) -> None:
+    """Set the positions and the time of a controller's arm to the measured ones."""
+    arm.time = inputs.t
+    if largest_entry(inputs.q) <= LARGEST:
+        arm.has_begun = True
+        copied(arm.positions, inputs.q)
+    else:
+        arm.reasons[Reason.Q_NOT_FINITE] = 1.0
 
 
 @compiled
@@ -440,8 +532,9 @@ def _answered(arm: ArmState) -> int:
 
 
 @compiled
-def _fits(settings: ArmSettings, inputs: ArmInput) -> bool:
+def _fits(plan: ArmPlan, inputs: ArmInput) -> bool:
     """Test whether the stated periods of a step have a meaning, and are not above the limits."""
+    settings = plan.settings
     dt = inputs.dt
     elapsed = inputs.elapsed
     stated = max(dt, elapsed)
@@ -450,7 +543,8 @@ def _fits(settings: ArmSettings, inputs: ArmInput) -> bool:
     if stated > 0.0 and stated < SHORTEST:
         return False
     longest: float = settings.longest
-    return longest > 0.0 or (elapsed == 0.0 and dt <= settings.dt * (1.0 + SLACK))
+    most = LONGEST if _tracks(plan) else settings.dt * (1.0 + SLACK)
+    return longest > 0.0 or (elapsed == 0.0 and dt <= most)
 
 
 @compiled
@@ -471,7 +565,8 @@ def is_refused(arm: ArmState) -> bool:
 
 @compiled
 def _correct_last_period(arm: ArmState, motion: MotionState, elapsed: float) -> None:
-    """Correct positions and time for a last command that was held for `elapsed` [s]."""
+    """Correct positions, time and path lag for a last command that was held for `elapsed` [s]."""
+    motion.path_lag += (1.0 - arm.fraction) * (elapsed - arm.period)
     for i in range(motion.last.size):
         arm.positions[i] += (elapsed - arm.period) * motion.last[i]
     arm.time = arm.time + elapsed - arm.period
@@ -629,33 +724,52 @@ def differing(values: Vector, others: Vector) -> int:
 
 @compiled
 def finish_step(
-    plan: ArmPlan,
-    memory: Vector,
-    inputs: ArmInput,
-    jacobian: Matrix,
-    placements: Matrix,
-    data: Vector,
+    plan: ArmPlan, memory: Vector, inputs: ArmInput, data: Vector, network: Vector
 ) -> int:
     """Compute the command of a step, and advance the arm by it: the part after the kinematics.
 
     Args:
-        plan: Layout of the step.
+        plan: Layout of the step, with the kinematics at the arm's positions.
         memory: The arm's memory after `begin_step`, (k,); the command, and positions and time after
             it, are written to it.
         inputs: The inputs of the step.
-        jacobian: `Kinematics.jacobian` at the commanded positions, (n, 6).
-        placements: `Kinematics.placements` there, (frames, 12).
         data: The log of the control step, overwritten, (width,).
+        network: State of the network, (size,), of a controller's solver; empty: that in the memory.
 
     Returns:
         The `Action` that was taken; `NONE`, without a log, if the positions are not known;
-        `INVALID`, without a log, if they are beyond `LARGEST`: the arm brakes.
+        `INVALID`, without a log, if an input is not valid: the arm brakes.
     """
     arm = arm_state(plan, memory)
+    base = plan.step.arrays
+    arrays = ProgramArrays(
+        base.sizes,
+        base.table,
+        base.constants.copy(),
+        base.jacobian,
+        base.placements,
+        base.support,
+        base.inertia,
+        base.tip,
+    )
+    return _finish(plan, arm, inputs, arrays, data, network if network.size > 0 else arm.network)
+
+
+@compiled
+def _finish(
+    plan: ArmPlan,
+    arm: ArmState,
+    inputs: ArmInput,
+    arrays: ProgramArrays,
+    data: Vector,
+    network: Vector,
+) -> int:
+    """Compute a step's command as `finish_step`, by arrays with constants that are overwritten."""
     action = NONE
-    if arm.answered != Request.NONE:
-        action = _answer(plan, arm, inputs, jacobian, placements, data)
-    _advance(arm, plan.settings, motion_of(plan, arm))
+    motion = motion_of(plan, arm)
+    if arm.answered != Request.NONE or _tracks(plan):
+        action = _answer(plan, arm, motion, inputs, arrays, data, network)
+    _advance(arm, plan.settings, motion)
     return action
 
 
@@ -690,35 +804,98 @@ def first_reason(arm: ArmState) -> int:
 def _answer(
     plan: ArmPlan,
     arm: ArmState,
+    motion: MotionState,
     inputs: ArmInput,
-    jacobian: Matrix,
-    placements: Matrix,
+    arrays: ProgramArrays,
     data: Vector,
+    network: Vector,
 ) -> int:
-    """Answer the request of an arm by a control step, and keep its results; return the action."""
+    """Answer an arm's request or targets by a control step; keep its results; return the action."""
     timing = periods_of_inputs(arm, plan.settings, inputs)
-    base = plan.step.arrays
-    arrays = ProgramArrays(
-        base.sizes,
-        base.table,
-        base.constants.copy(),
-        jacobian,
-        placements,
-        base.support,
-        base.inertia,
-        base.tip,
-    )
     if plan.scene >= 0:
         _place_obstacles(plan, arm, arm.time, block_constants(arrays, plan.scene))
-    motion = motion_of(plan, arm)
     change_spacing(motion, timing.dt)
-    log = log_of(data, base.sizes)
-    log.targets.reshape(log.targets.size)[:] = 0.0
+    log = log_of(data, arrays.sizes)
     is_twist = arm.answered == Request.TWIST
-    state = arm.network if is_twist else np.zeros(arm.network.size)
+    state = network if is_twist or _tracks(plan) else np.zeros(network.size)
+    is_valid = True
+    if _tracks(plan):
+        motion.halts = arm.reason == Reason.HALTED or arm.is_misplaced
+        refused = arm.reasons[Reason.PERIOD_REFUSED] + arm.reasons[Reason.Q_NOT_FINITE]
+        lag = motion.path_lag
+        is_valid = refused == 0.0 and _take_targets(plan, inputs, lag, timing.expected, log.targets)
+    else:
+        log.targets.reshape(log.targets.size)[:] = 0.0
+        _take_request(plan, arm, arrays, timing, state)
+    own = plan.step.network
+    settings = AnswerSettings.of(own.settings.numbers.copy())
+    settings.duration = plan.lag * timing.expected
+    step = ControlPlan(
+        arrays,
+        CompiledAnswer(own.address, own.rates, settings),
+        plan.step.paths,
+        plan.step.yielding,
+        arm.twist_fallback if is_twist else arm.fallback,
+        plan.step.policy,
+        timing,
+    )
+    next_motion_state = np.empty(arm.motion.size)
+    action = INVALID
+    if is_valid:
+        action = take_step(
+            data, step, arm.positions, arm.motion, next_motion_state, state, arm.time
+        )
+    if action == INVALID:
+        arm.reasons[Reason.Q_NOT_FINITE] = 1.0
+        _brake_blindly(plan, arm, motion)
+        return action
+    copied(arm.motion, next_motion_state)
+    arm.fraction = log.fraction
+    arm.program = log.kind
+    copied(arm.limiting, log.limiting)
+    if _tracks(plan):
+        _note_targets(arm)
+    else:
+        motion.yields = False  # the next step tries the request again
+        _note_request(plan, arm, arrays, log)
+    return action
+
+
+@compiled
+def _take_targets(plan: ArmPlan, inputs: ArmInput, lag: float, dt: float, targets: Matrix) -> bool:
+    """Write the targets of a controller's step, (frames, 18); return if there are any.
+
+    Args:
+        plan: Layout of the step.
+        inputs: Inputs of the step.
+        lag: Time by which the clock of the paths is behind [s].
+        dt: Period over which a velocity is the mean one, with feed-forward [s].
+        targets: The targets, overwritten.
+    """
+    paths = plan.step.paths
+    if inputs.request.size > 0:
+        copied(targets.reshape(targets.size), inputs.request)
+    else:
+        sample_targets(paths, inputs.t - lag, dt, targets)
+    return inputs.request.size + len(paths.table) > 0
+
+
+@compiled
+def _take_request(
+    plan: ArmPlan, arm: ArmState, arrays: ProgramArrays, timing: Periods, state: Vector
+) -> None:
+    """Write the request of a shield's step, as its limits admit it.
+
+    Args:
+        plan: Layout of the step.
+        arm: The arm.
+        arrays: Arrays of the step; request and bodies are written to the constants.
+        timing: Periods of the step.
+        state: State of the network, (size,); where it begins for a request of joints is written.
+    """
     request = RequestConstants.of(block_constants(arrays, plan.request))
-    request.is_twist = is_twist
-    if is_twist:
+    request.is_twist = arm.answered == Request.TWIST
+    if request.is_twist:
         excess = max(largest_entry(arm.request[: Twist.width()]) / plan.fastest, 1.0)
         arm.reasons[Reason.CUT] = 1.0 if excess > 1.0 else 0.0
         for i in range(TWIST):
@@ -727,31 +904,9 @@ def _answer(
     admitted[:] = np.inf
     if plan.separation >= 0:
         _slow_down(plan, arm, arrays, timing, request, admitted)
-    if not is_twist:
-        approach_request(arm, motion, plan.motion, timing, admitted, state)
+    if not request.is_twist:
+        approach_request(arm, motion_of(plan, arm), plan.motion, timing, admitted, state)
         copied(request.velocity, state[: arm.positions.size])
-    step = ControlPlan(
-        arrays,
-        plan.step.network,
-        plan.step.paths,
-        plan.step.yielding,
-        arm.twist_fallback if is_twist else arm.fallback,
-        plan.step.policy,
-        False,
-        timing,
-    )
-    next_motion_state = np.empty(arm.motion.size)
-    action = take_step(data, step, arm.positions, arm.motion, next_motion_state, state, arm.time)
-    if action == INVALID:
-        _brake_blindly(plan, arm, motion)
-        return action
-    copied(arm.motion, next_motion_state)
-    motion.yields = False  # the next step tries the request again
-    qp = program_views(log.program, base.sizes)
-    if is_twist and falls_short(qp, request.velocity):
-        arm.reasons[Reason.SINGULAR] = 1.0
-    _note_limits(arm, log)
-    return action
 
 
 @compiled
@@ -815,9 +970,12 @@ def _quickest(plan: ArmPlan, arm: ArmState, i: int, hold: float) -> float:
 
 @compiled
 def _brake_blindly(plan: ArmPlan, arm: ArmState, motion: MotionState) -> None:
-    """Advance an arm whose positions have no kinematics by a command of a motion to rest."""
-    arm.reasons[Reason.Q_NOT_FINITE] = 1.0
+    """Command the next velocity of a motion to rest, for a step that no program can answer."""
     brake_blindly(motion, plan.motion, plan.step.yielding.cubic)
+    motion.path_lag += arm.period
+    arm.fraction = 0.0
+    arm.program = ProgramKind.STOPPED
+    arm.is_clipped = True
 
 
 @compiled
@@ -905,12 +1063,23 @@ def _left(arm: ArmState, i: int) -> float:
 
 
 @compiled
-def _note_limits(arm: ArmState, log: StepLog) -> None:
-    """Note the active bounds and rows of a step, and whether its command differs from the request.
+def _note_targets(arm: ArmState) -> None:
+    """Note whether a controller's command does less than its tasks ask, and if no limit is why."""
+    arm.is_clipped = arm.program != NOMINAL
+    if arm.program == ProgramKind.RELAXED and largest_entry(arm.limiting) == 0.0:
+        arm.reasons[Reason.SINGULAR] = 1.0
+
+
+@compiled
+def _note_request(plan: ArmPlan, arm: ArmState, arrays: ProgramArrays, log: StepLog) -> None:
+    """Note whether the command of a step differs from the request.
 
     A command for a twist or for positions differs if a limit is active or there is a `Reason`.
     """
-    copied(arm.limiting, log.limiting)
+    request = RequestConstants.of(block_constants(arrays, plan.request))
+    qp = program_views(log.program, arrays.sizes)
+    if request.is_twist and falls_short(qp, request.velocity):
+        arm.reasons[Reason.SINGULAR] = 1.0
     reason = first_reason(arm)
     arm.is_clipped = largest_entry(log.limiting) > 0.0 or reason != Reason.NONE
     if arm.answered == Request.VELOCITY and reason == Reason.NONE:
@@ -1004,5 +1173,5 @@ def step_arms(
     for k in range(first, last):
         q = inputs.q[k * n : (k + 1) * n]
         request = inputs.request[k * width : (k + 1) * width]
-        own = ArmInput(q, kinds[k], request, inputs.dt, inputs.elapsed)
+        own = ArmInput(q, kinds[k], request, inputs.dt, inputs.elapsed, inputs.t)
         step_arm(plan, memories[k], own)

@@ -3,17 +3,33 @@
 from __future__ import annotations
 
 import copy
+import math
 import threading
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
+from iiwa_dnn.checks import Vector3
+from iiwa_dnn.control.arms import (
+    LONGEST,
+    SHORTEST,
+    ArmInput,
+    ArmPlan,
+    ArmSettings,
+    begin_step,
+    halt_arm,
+    motion_of,
+    send_arm,
+    step_measured,
+)
 from iiwa_dnn.control.command import EXCEEDED, Command
-from iiwa_dnn.control.cycle import INVALID, ControlLayout, take_step
+from iiwa_dnn.control.cycle import INVALID, ControlLayout
+from iiwa_dnn.control.layout import ArmLayout, lay_out_arm
 from iiwa_dnn.control.paths import (
     References,
     beyond_reach,
@@ -24,9 +40,9 @@ from iiwa_dnn.control.paths import (
     target_warnings,
     warn_of_bodies,
 )
-from iiwa_dnn.control.plan import ControlPlan, Instant
+from iiwa_dnn.control.plan import Instant
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
-from iiwa_dnn.control.state import ControllerState, MotionState, count_as_sent
+from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.stopping import periods_to_rest
 from iiwa_dnn.errors import InvalidInputError, warn_caller
 from iiwa_dnn.networks.solver import DNNSolver
@@ -44,8 +60,50 @@ MODES: tuple[Mode, ...] = ("converged", "continuous")
 
 _FLOAT = np.dtype(np.float64)
 
+NOTHING = np.zeros(0)
+"""No targets, for those of the paths; no state, of a network in Python."""
+
 ACTION_OF = {int(action): action for action in Action}
 """Actions by their codes: a table is quicker than `Action(code)`."""
+
+
+class Kept(NamedTuple):
+    """State of a controller that a layout for other settings takes over.
+
+    Attributes:
+        motion: Numbers of the `MotionState`, (k,).
+        pairs: Names and least distance of each watched pair.
+        period: Time for which the last command is held [s].
+        fraction: Fraction of it by which the reference's clock goes on.
+        robot: The robot whose limits a verified stopping motion keeps.
+        scheme: The scheme whose limits it keeps.
+    """
+
+    motion: Vector
+    pairs: list[Any]
+    period: float
+    fraction: float
+    robot: Robot
+    scheme: Scheme
+
+
+@dataclass(slots=True)
+class Arm:
+    """Layout and memories of a controller's arm, (k,) each.
+
+    Attributes:
+        layout: Layout of a step.
+        plan: Its plan.
+        last: Memory after the last step.
+        spare: That which the next computation overwrites.
+        computed: That of the two which was computed last.
+    """
+
+    layout: ArmLayout
+    plan: ArmPlan
+    last: Vector
+    spare: Vector
+    computed: Vector
 
 
 class Controller:
@@ -102,8 +160,11 @@ class Controller:
             InvalidInputError: An argument is out of range; the message names it.
         """
         self._lock = threading.RLock()
-        self._state = ControllerState(0)
-        self._derived: ControlLayout | None
+        self._warned: set[str] = set()  # "start", and warnings that are not given again
+        self._halted = False
+        self._kept: Kept | None = None
+        self._arm: Any = None  # an `Arm`, if it is laid out
+        self._ready: ControlLayout | None = None  # if nothing is left to do before a step
         self._anchored: Scheme | None = None
         self.mode = mode
         self.policy = policy
@@ -134,23 +195,29 @@ class Controller:
             checked_longest(own["longest_period"], own["dt"])
         # A number of numpy's names its type where it is written into C.
         number = float(value) if name in ("dt", "longest_period") and value is not None else value
+        self._kept = self._state()
         object.__setattr__(self, name, number)
-        self._derived = None
-        if name == "robot" and self._state.sizes[0] != value.dof:
-            self._state = ControllerState(value.dof)
-        # A verified stopping motion keeps the limits of before.
-        if name in ("robot", "scheme") and value is not before:
-            self._state.motion.stopping_periods = 0.0
-            if "scheme" in vars(self):  # the robot is set before
-                warn_of_bodies(self.robot, self.scheme.limits, self._state.warned)
+        self._arm = self._ready = None
+        if name in ("robot", "scheme") and value is not before and "scheme" in vars(self):
+            warn_of_bodies(self.robot, self.scheme.limits, self._warned)
+
+    def _state(self) -> Kept | None:
+        """Return the state for another layout; None before the first one."""
+        if self._arm is None:
+            return self._kept
+        layout = self._arm.layout
+        arm = layout.state(self._arm.last)
+        own = (arm.motion.copy(), layout.step.program.pairs, arm.period, arm.fraction)
+        return Kept(*own, layout.step.program.robot, self.scheme)
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
-            own = {"_state": copy.deepcopy(self._state), "solver": copy.deepcopy(self.solver)}
-            return {**vars(self), **own, "_lock": None, "_derived": None}
+            own = {"_kept": self._state(), "_warned": {*self._warned}}
+            none = dict.fromkeys(("_lock", "_arm", "_ready"))
+            return {**vars(self), **own, "solver": copy.deepcopy(self.solver), **none}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state, _lock=threading.RLock(), _derived=None)
+        vars(self).update(state, _lock=threading.RLock())
 
     def _turn(self) -> threading.RLock:
         """Return the lock of the kinematics and the state, which is not held yet.
@@ -167,7 +234,13 @@ class Controller:
     @property
     def path_lag(self) -> float:
         """Time by which a policy has slowed the reference's clock [s]."""
-        return self._state.motion.path_lag
+        return self._motion.path_lag
+
+    @property
+    def _motion(self) -> MotionState:
+        """State of the motion, a view."""
+        layout = self.arm_layout
+        return motion_of(layout.plan, layout.state(self._arm.last))
 
     def step(
         self,
@@ -202,25 +275,25 @@ class Controller:
                 `t` is no number; or there is neither reference nor target; or a period is not above
                 0; or both are given, or `elapsed` without a `longest_period`.
         """
-        state = self._state
-        before = state.numbers
-        after = before
+        arm = None
+        before: Vector = NOTHING
+        after: Vector = NOTHING
         if self._lock._is_owned():  # type: ignore[attr-defined]
             self._turn()
         try:
             with self._lock:
-                before = state.numbers
                 command = self._compute(q, t, target, dt, elapsed)
-                after = state.next_numbers
-                state.numbers = after
-                if self.longest_period is not None:
-                    state.slowed = 1.0 - command.fraction
-                    state.booked = self.dt if dt is None else dt
+                arm = self._arm
+                before = arm.last
+                after = arm.spare
+                arm.last = after
+                arm.spare = before
                 return command
         except BaseException as error:
             with self._lock:
-                if state.numbers is after:  # interrupted before anybody got the command
-                    state.numbers = before
+                if arm and arm.last is after:  # interrupted before anybody got the command
+                    arm.last = before
+                    arm.spare = after
             if isinstance(error, TypeError | InvalidInputError):
                 checks.finite("t", t)
             raise
@@ -249,12 +322,13 @@ class Controller:
         sent = checks.finite_array("dq", dq, (self.robot.dof,))
         fraction = checks.not_negative("fraction", fraction)
         with self._turn():
-            state = self._state
-            motion = state.next_motion.duplicate()
-            motion.last[:] = state.motion.last
-            count_as_sent(motion, sent, self.dt)
-            motion.path_lag = state.motion.path_lag + self.dt * (1.0 - fraction)
-            state.numbers = motion.numbers
+            layout = self.arm_layout
+            memory = self._arm.computed.copy()
+            motion = motion_of(layout.plan, layout.state(memory))
+            motion.last[:] = self._motion.last
+            motion.path_lag = self._motion.path_lag
+            send_arm(layout.plan, memory, sent, self.dt, fraction)
+            self._arm.last[:] = memory
 
     def _compute(
         self,
@@ -264,50 +338,67 @@ class Controller:
         dt: float | None,
         elapsed: float | None,
     ) -> Command:
-        control_layout = self._derived
-        state = self._state
-        if control_layout is None or "start" not in state.warned:
-            control_layout = self._prepare(q, t, target is None)
-        plan = control_layout.plan if target is None else control_layout.given
-        if control_layout.varies or not dt is elapsed is None:
-            plan = self._vary(control_layout, plan, dt, elapsed)
-        periods = plan.timing
-        log_layout = control_layout.log_layout
-        program = control_layout.program
-        if not _is_plain(q, control_layout.shape):
+        """Compute a command, and the memory after it."""
+        step = self._ready
+        if step is None:
+            step = self._prepare(q, t, target is None)
+        program = step.program
+        periods = step.timing
+        clock = (t, 0.0, 0.0)
+        if step.varies or not dt is elapsed is None:
+            periods = periods_of_step(self, self._warned, dt, elapsed)
+            clock = (t, dt or 0.0, elapsed or 0.0)
+        if not _is_plain(q, step.shape):
             q = checks.joint_positions("q", q, self.robot.dof)
         program.kinematics.update(q)
-        data = np.empty(log_layout.width)
-        numbers = state.numbers
-        if not plan.samples:
-            found = self.targets(t - state.motion.path_lag, target, periods.expected)
-            data[-found.size :] = found.ravel()  # the last numbers of a log
-        if program.refreshed:
-            last = state.motion.last
-            program.refresh(q, last, log_layout.targets(data), t, periods.expected)
-        next_numbers = np.empty(control_layout.width)
-        if state.halted:
-            motion = state.motion.duplicate()
-            motion.halts = True
-            numbers = motion.numbers
-        network = self.solver.state_for(program.sizes) if control_layout.has_network else data[:0]
-        action = take_step(data, plan, q, numbers, next_numbers, network, t)
+        arm = self._arm
+        if self._halted:
+            halt_arm(arm.plan, arm.last)
+        targets: Vector = NOTHING
+        if step.asks or target is not None:
+            targets = self._ask(q, clock, target, periods.expected)
+        data = np.empty(step.width)
+        network = self.solver.state_for(program.sizes) if step.has_network else NOTHING
+        action = step_measured(arm.plan, arm.last, arm.spare, q, targets, clock, data, network)
         if action == INVALID:
             checks.finite("t", t)
             checks.joint_positions("q", q, self.robot.dof)
-            checks.finite_array("target", log_layout.targets(data), (-1, TARGET_SIZE))
-        state.next_numbers = next_numbers
-        return Command(data, log_layout, ACTION_OF[action], periods)
+            checks.finite_array("target", step.log_layout.targets(data), (-1, TARGET_SIZE))
+            problem = f"must be from {SHORTEST:g} to {LONGEST:g} s"
+            raise InvalidInputError("dt or elapsed", problem, (dt, elapsed))
+        arm.computed = arm.spare
+        return Command(data, step.log_layout, ACTION_OF[action], periods)
 
-    def _vary(
-        self, layout: ControlLayout, plan: ControlPlan, dt: float | None, elapsed: float | None
-    ) -> ControlPlan:
-        """Return the plan of a step with stated periods; correct the path lag by `elapsed` [s]."""
-        timing = periods_of_step(self, self._state.warned, dt, elapsed)
-        plan.network.settings.duration = timing.expected * layout.lag
-        if elapsed is not None:
-            self._state.book(elapsed)
-        return plan._replace(timing=timing)
+    def _ask(
+        self,
+        q: Vector,
+        clock: Vector3,
+        target: Target | Mapping[str, Target] | None,
+        dt: float,
+    ) -> Vector:
+        """Call what is in Python for a step; return its targets, (18 k,).
+
+        Args:
+            q: Joint positions [rad], (n,).
+            clock: As that of `step_measured`.
+            target: Targets in place of the reference's.
+            dt: Period that is expected [s].
+
+        Returns:
+            The targets; none if the compiled paths have them.
+        """
+        layout = self.arm_layout
+        t, _, elapsed = clock
+        memory = self._arm.last.copy()
+        begin_step(layout.plan, memory, ArmInput(q, 0, NOTHING, 0.0, elapsed, t))
+        motion = motion_of(layout.plan, layout.state(memory))
+        targets = NOTHING
+        if target is not None or not layout.step.samples:
+            targets = self.targets(t - motion.path_lag, target, dt).ravel()
+        if layout.step.program.refreshed:
+            found = targets.reshape(-1, TARGET_SIZE)
+            layout.step.program.refresh(q, motion.last, found, t, dt)
+        return targets
 
     def is_clear(self, q: Vector, dq: Vector) -> bool:
         """Test whether a velocity brings no watched pair nearer than its least distance.
@@ -323,13 +414,19 @@ class Controller:
             if control_layout.program.rate_limits is not None:
                 return True
             plan = control_layout.plan
-            rest = MotionState.zeros(*self._state.sizes)
-            least = self._state.next_motion.least
+            least = self._least
+            rest = MotionState.zeros(dq.size, least.size)
             targets = np.zeros((0, TARGET_SIZE))
             step = control_layout.program.step_at(
                 q, rest.last, rest.before, targets, self.dt, 0.0, least
             )
             return bool(periods_to_rest(plan, Instant(step, rest, rest), dq) < np.inf)
+
+    @property
+    def _least(self) -> Vector:
+        """Distance that each pair has to keep after the last computation [m], (pairs,), a copy."""
+        layout = self.arm_layout
+        return motion_of(layout.plan, layout.state(self._arm.computed)).least.copy()
 
     def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlLayout:
         """Anchor the scheme at q (n,), warn of the start at the first step; return the layout.
@@ -339,34 +436,62 @@ class Controller:
         checks.finite("t", t)
         start = Configuration(self.robot, checks.joint_positions("q", q, self.robot.dof))
         self.anchor(start)
-        if "start" not in self._state.warned:
+        if "start" not in self._warned:
             self.warn_of_start(start, t, own)
-        return self.control_layout
+        step = self.control_layout
+        self._ready = step
+        return step
 
     @property
     def control_layout(self) -> ControlLayout:
         """Layout of the control step for the present settings."""
-        control_layout = self._derived
-        if control_layout is not None:
-            return control_layout
+        return self.arm_layout.step
+
+    @property
+    def arm_layout(self) -> ArmLayout:
+        """Layout of the arm's step for the present settings."""
+        if self._arm is not None:
+            return self._arm.layout  # type: ignore[no-any-return]
         with self._lock:
             program = self.scheme.program(self.robot)
             policy = int(Action[self.policy.upper()])
             paths = self._seen(by_frame(self.reference, self.robot.tip), self.dt)
             longest = self.longest_period
-            control_layout = ControlLayout(
+            step = ControlLayout(
                 program, paths, self.solver, self.dt, policy, longest, self.mode == "continuous"
             )
-            self._state.watch([names for names, _ in program.pairs])
-            if self._anchored is self.scheme:  # else the next step gives the scheme its home
-                self._derived = control_layout
-            return control_layout
+            settings = ArmSettings.make(
+                dt=self.dt, longest=longest or 0.0, timeout=math.inf, tracking_error=0.0, delay=0.0
+            )
+            layout = lay_out_arm(step, self.solver, settings)
+            memory = self._taken_over(layout)
+            self._arm = Arm(layout, layout.plan, memory, memory.copy(), memory)
+            return layout
+
+    def _taken_over(self, layout: ArmLayout) -> Vector:
+        """Return the memory of an arm for a layout, with the state that is kept.
+
+        If the watched pairs are others, the distances of all of them are set to 0, so that the next
+        step initialises them. A stopping motion that was verified for other limits is none.
+        """
+        memory = layout.memory.copy()
+        kept = self._kept
+        if kept is not None and kept.robot.dof == self.robot.dof:
+            arm = layout.state(memory)
+            arm.period = kept.period
+            arm.fraction = kept.fraction
+            alike = dict(kept.pairs).keys() == dict(layout.step.program.pairs).keys()
+            count = kept.motion.size - (0 if alike else len(kept.pairs))
+            arm.motion[:count] = kept.motion[:count]
+            if kept.robot is not self.robot or kept.scheme is not self.scheme:
+                motion_of(layout.plan, arm).stopping_periods = 0.0
+        return memory
 
     @property
     def positions(self) -> Vector:
         """Joint positions of the last step [rad], (n,); before the first, the robot's start."""
         with self._lock:
-            own = self._state.motion.q if self._anchored else self.robot.start_posture()
+            own = self._motion.q if self._anchored else self.robot.start_posture()
             return np.array(own)
 
     @property
@@ -376,7 +501,7 @@ class Controller:
 
     def halt(self) -> None:
         """Brake at every step from now on."""
-        self._state.halted = True  # no array: a step that goes on may replace it
+        self._halted = True  # no array: a step that goes on may replace it
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the scheme's home, if it has none."""
@@ -385,7 +510,7 @@ class Controller:
             if scheme is not self.scheme:
                 self._set("scheme", scheme)
             self._anchored = scheme
-            self._state.motion.q[:] = start.q
+            self._motion.q[:] = start.q
 
     def warn_of_start(self, start: Configuration, t: float, own: bool) -> None:
         """Warn of settings, a start posture or a first target that are most likely wrong, once.
@@ -395,7 +520,7 @@ class Controller:
             t: Time at which it begins [s].
             own: Whether the targets are the reference's.
         """
-        self._state.warned.add("start")
+        self._warned.add("start")
         program = self.program
         found = [*setup_warnings(program, start, t, self.dt, self.mode)]
         if own:
@@ -410,8 +535,8 @@ class Controller:
         """Reset the network's state, the last commands, the path lag and a halt; the home stays."""
         with self._turn():
             self.solver.reset()
-            self._state.rest()
-            self._derived = None
+            self._halted = False
+            self._kept = self._arm = self._ready = None
 
     def warm_up(self, q: ArrayLike) -> None:
         """Lay the program out before the first step, which is then as quick as the others.
@@ -422,7 +547,6 @@ class Controller:
         """
         with self._turn():
             self.anchor(Configuration(self.robot, q))
-            self._derived = self.control_layout
 
     def targets(
         self,
@@ -466,9 +590,9 @@ class Controller:
     def program_at(self, q: Vector, targets: Matrix, t: float) -> QP:
         """Build the program at joint positions q (n,) [rad] for targets (k, 18)."""
         with self._turn():
-            motion = self._state.motion
-            least = self._state.next_motion.least.copy()
-            return self.program.qp_at(q, motion.last, motion.before, targets, self.dt, t, least)
+            motion = self._motion
+            last, before = motion.last, motion.before
+            return self.program.qp_at(q, last, before, targets, self.dt, t, self._least)
 
 
 def periods_of_step(

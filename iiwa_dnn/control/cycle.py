@@ -1,4 +1,4 @@
-"""Control step in one compiled call: sample the targets, build the program and solve it.
+"""Control step in one compiled call: build the program of the targets and solve it.
 
 For seven joints the call of compiled code from Python takes a large part of a step's time, so there
 is one call per step.
@@ -75,13 +75,15 @@ class ControlLayout:
         program: The scheme laid out for the robot.
         log_layout: Layout of the step logs.
         shape: Shape of joint positions, (dof,).
-        width: Number of floats in a `MotionState`.
+        width: Number of floats in a log.
+        timing: Periods of a step where none is stated.
         varies: Whether the settings of a step depend on its period: periods vary, or the network
             advances by the period (continuous mode).
         lag: Network time of a step per control period in continuous mode; 0 if the network solves.
-        plan: Constants and work arrays of a step. It samples the targets if all references are
-            compiled and no part of the scheme reads targets in Python.
-        given: `plan` for steps whose targets are given, which sample none.
+        plan: Constants and work arrays of a step. It has paths if all references are compiled and
+            no part of the scheme reads targets in Python.
+        samples: Whether it has.
+        asks: Whether Python is called before a step, for targets or for parts in numpy.
         has_network: Whether the network is compiled.
     """
 
@@ -116,8 +118,9 @@ class ControlLayout:
         arrays = program.arrays
         sizes = arrays.sizes
         self.shape = (sizes.joints,)
-        self.width = MotionState.width(sizes.joints, sizes.pairs)
+        self.timing = constant_periods(dt)
         self.log_layout = lay_out_log(sizes, LimitNames(program))
+        self.width = self.log_layout.width
         # A subclass that solves in a way of its own is asked, not bypassed.
         own = (
             solver.compiled_answer(program.sizes, lags * dt) if type(solver) is DNNSolver else None
@@ -129,8 +132,10 @@ class ControlLayout:
         if program.rate_limits is not None:
             # A program that a few linear solves do not solve most likely has no solution.
             network.settings.budget = min(network.settings.budget, FEASIBLE_BUDGET)
-        paths = _compiled_paths(references, program.target_frames, dt)
-        samples = paths is not None and not program.reads_targets
+        seen = {} if program.reads_targets else references
+        paths = _compiled_paths(seen, program.target_frames, dt)
+        self.samples = paths is not None
+        self.asks = bool(program.refreshed) | (paths is None)
         yielding = make_yielding(program, solver.tol, self.has_network)
         fallback = np.zeros(fallback_size(program.sizes))
         none = Paths(np.zeros((0, len(PathColumn)), dtype=np.int64), np.zeros(0))
@@ -141,10 +146,8 @@ class ControlLayout:
             yielding,
             fallback,
             BRAKE if lags else policy,
-            samples,
-            constant_periods(dt),
+            self.timing,
         )
-        self.given = self.plan._replace(samples=False)
         if program.rate_limits is not None:
             check_ranges(yielding.limits, 1.0 / (longest or dt))
         if yielding.lengthens.any():
@@ -255,11 +258,10 @@ def take_step(
     """Take a control step: answer the nominal program, else a fallback program, else brake.
 
     If a policy acted at the last step, or the arm is halted, the nominal program is not answered.
-    If targets or time are not finite, or joint positions beyond 2^20 rad, nothing but the sampled
-    targets is written.
+    If targets or time are not finite, or joint positions beyond 2^20 rad, nothing is written.
 
     Args:
-        data: The step's log, (width,), overwritten; with the targets unless they are sampled.
+        data: The step's log with its targets, (width,), overwritten.
         plan: Constants, settings and work arrays; network states of fallback programs are changed.
         q: Joint positions of the kinematics [rad], (dof,).
         numbers: Numbers of the `MotionState`, (k,); q is written to it, and it is converted to the
@@ -277,8 +279,6 @@ def take_step(
     log = log_of(data, sizes)
     motion_state = MotionState.of(numbers, sizes.joints, sizes.pairs)
     next_motion_state = MotionState.of(next_numbers, sizes.joints, sizes.pairs)
-    if plan.samples:
-        sample_targets(plan.paths, t - motion_state.path_lag, timing.expected, log.targets)
     if not is_valid(t, q, data, data.size - log.targets.size):
         return INVALID
     copied(motion_state.q, q)

@@ -13,7 +13,6 @@ from iiwa_dnn.control.command import log_sizes
 from iiwa_dnn.control.fallback import Yielding
 from iiwa_dnn.control.plan import ControlPlan, PathColumn
 from iiwa_dnn.control.requests import RequestConstants
-from iiwa_dnn.control.tracking import TrackingPlan
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot.kinematics_kernel import ModelTables
@@ -38,26 +37,18 @@ LINK = 12
 
 
 @compiled
-def shield_scratch(plan: ArmPlan) -> int:
+def arm_scratch(plan: ArmPlan) -> int:
     """Count the numbers that a call takes for itself: twice what the package's kernels do."""
     base = plan.step.arrays
     n = base.sizes.n
-    taken = 8 * n * (n + base.sizes.m + 10) + 2 * plan.width + 2 * base.constants.size
+    taken = 8 * n * (n + base.sizes.m + base.sizes.p + 10) + 2 * plan.width
+    taken += 2 * (base.constants.size + base.inertia.size + plan.step.network.settings.numbers.size)
     return taken + 12 * (base.placements.shape[0] + 4 * n)
 
 
 @compiled
-def controller_scratch(plan: TrackingPlan) -> int:
-    """Count the numbers that a call takes for itself: twice what the package's kernels do."""
-    base = plan.step.arrays
-    n = base.sizes.n
-    taken = 8 * n * (n + base.sizes.m + base.sizes.p + 10)
-    return taken + 2 * (12 * base.placements.shape[0] + base.inertia.size + plan.sizes.motion)
-
-
-@compiled
-def shield_fits(plan: ArmPlan, collisions: int, separation: int) -> bool:
-    """Test whether the plan of a shield holds together.
+def arm_fits(plan: ArmPlan, collisions: int, separation: int) -> bool:
+    """Test whether the plan of a shield or a controller holds together.
 
     Args:
         plan: The plan.
@@ -84,25 +75,16 @@ def _state_fits(plan: ArmPlan) -> bool:
     sizes = plan.step.arrays.sizes
     own = plan.sizes
     n = sizes.joints
-    if sizes.frames != 1 or own.n != n or own.request != max(n, 6):
+    asks = plan.request >= 0
+    if own.n != n or own.request != (max(n, 6) if asks else 0) or (asks and sizes.frames != 1):
+        return False
+    if own.twist_fallback != (own.fallback if asks else 0):
         return False
     if own.motion != _motion_width(sizes) or own.limiting != sizes.n + sizes.m:
         return False
     if own.obstacles != len(plan.velocities) or not _is_within(own.sent, 0, MOST * (1 + n)):
         return False
     return own.sent % (1 + n) == 0
-
-
-@compiled
-def controller_fits(plan: TrackingPlan, collisions: int, separation: int) -> bool:
-    """Test whether the plan of a controller holds together, as `shield_fits`."""
-    sizes = plan.step.arrays.sizes
-    own = plan.sizes
-    if not _control_fits(
-        plan.step, plan.robot, collisions, separation
-    ) or own.motion != _motion_width(sizes):
-        return False
-    return _networks_fit(plan.step, own.network, own.fallback) and own.log == _log_width(sizes)
 
 
 @compiled
@@ -351,18 +333,14 @@ def _log_width(sizes: ProgramSizes) -> int:
 
 @compiled
 def _parts_fit(plan: ArmPlan, collisions: int) -> bool:
-    """Test the parts that a shield writes into: its request and its scene."""
+    """Test the parts that a step writes into: a shield's request, and the scene."""
     arrays = plan.step.arrays
     parts = len(arrays.table)
     if plan.width != _log_width(arrays.sizes) or plan.velocities.shape[1] != 3:
         return False
-    if not _is_within(plan.request, 0, parts) or not _is_within(plan.scene, -1, parts):
+    if not _is_within(plan.request, -1, parts) or not _is_within(plan.scene, -1, parts):
         return False
-    constants = block_constants(arrays, plan.request)
-    request = RequestConstants.of(constants)
-    if request.velocity.size != plan.sizes.request:
-        return False
-    if not _is_within(request.frame, 0, len(arrays.placements)):
+    if plan.request >= 0 and not _request_fits(plan):
         return False
     if plan.scene < 0:
         return plan.sizes.obstacles == 0
@@ -371,3 +349,13 @@ def _parts_fit(plan: ArmPlan, collisions: int) -> bool:
         return False
     head = SceneHead.of(scene[: SceneHead.width()])
     return plan.sizes.obstacles <= head.bodies
+
+
+@compiled
+def _request_fits(plan: ArmPlan) -> bool:
+    """Test the part that a shield writes its request into."""
+    arrays = plan.step.arrays
+    request = RequestConstants.of(block_constants(arrays, plan.request))
+    if request.velocity.size != plan.sizes.request:
+        return False
+    return _is_within(request.frame, 0, len(arrays.placements))

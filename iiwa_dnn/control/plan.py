@@ -40,12 +40,11 @@ class ControlPlan(NamedTuple):
     Attributes:
         arrays: Arrays from which the nominal program is assembled.
         network: Function that answers the nominal program, with its settings.
-        paths: Paths of the tracked frames.
+        paths: Paths of the tracked frames; empty if targets are given.
         yielding: Constants of the fallback programs and stopping motions.
         fallback: Network states of the fallback programs, (`fallback_size`,), their warm starts;
             changed by steps.
         policy: Action of the policy at a step without a solution; `BRAKE` in continuous mode.
-        samples: Whether a step samples its targets from `paths`; else they are in its log.
         timing: Periods of the step.
     """
 
@@ -55,7 +54,6 @@ class ControlPlan(NamedTuple):
     yielding: Yielding
     fallback: Vector
     policy: int
-    samples: bool
     timing: Periods
 
 

@@ -34,21 +34,17 @@ from iiwa_dnn.control.arms import (
     ArmInput,
     ArmPlan,
     ArmSettings,
-    ArmSizes,
     ArmState,
     add_pending,
     begin_step,
     finish_step,
     halt_arm,
-    margin_of,
     motion_of,
     place_arm,
     rest_arm,
     see_body,
     see_people,
     send_arm,
-    separation_of,
-    stopping_time_of,
 )
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import ACTION_OF, periods_of_step
@@ -67,26 +63,21 @@ from iiwa_dnn.control.following import (
     no_samples,
     velocity_request,
 )
+from iiwa_dnn.control.layout import ArmLayout, Margin, lay_out_arm, own_movers, reasons_of
 from iiwa_dnn.control.paths import long_times, setup_warnings, warn_of_bodies
 from iiwa_dnn.control.people import News, separation_in, split_bodies
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.posing import PoseChunk, solve_poses
 from iiwa_dnn.control.requests import (
-    CUT,
-    FASTEST,
-    REASONS,
     TWIST,
-    Reason,
     Request,
     RequestCost,
     one_request,
 )
 from iiwa_dnn.errors import InvalidInputError, warn_caller
-from iiwa_dnn.naming import active_limits, describe
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.robot.kinematics_kernel import model_tables
 from iiwa_dnn.schemes import (
     CollisionAvoidance,
     JointLimits,
@@ -96,11 +87,8 @@ from iiwa_dnn.schemes import (
     own_rate_limits,
 )
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.periods import SLACK, Periods, checked_longest
-from iiwa_dnn.schemes.rate_limits import MotionLimits
-from iiwa_dnn.schemes.scene import Body, scene_views
-from iiwa_dnn.schemes.separation import PEOPLE_SPEED, FreeBody, Separation
+from iiwa_dnn.schemes.separation import PEOPLE_SPEED, Separation
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 DISTANCE = 0.02
@@ -113,97 +101,18 @@ LATENCY = 0.15
 NO_TARGETS = np.zeros((0, TARGET_SIZE))
 """Targets of a shield, which tracks no frame, (0, 18)."""
 
-
-class Margin(NamedTuple):
-    """Distances of an arm from its limits, or of N arms, (N,).
-
-    Attributes:
-        joint: Least distance of a joint from its position limits [rad].
-        distance: Least distance of a link from an obstacle or another link, less the one to keep
-            [m]; inf if no pair is watched.
-        separation: Least distance of a link that joints move from what a body of bounded speed may
-            have reached, less the one to keep [m]; inf if there is no body.
-    """
-
-    joint: float | Vector
-    distance: float | Vector
-    separation: float | Vector = np.inf
+OWN_NETWORK = np.zeros(0)
+"""Argument of `finish_step` for an arm whose memory holds the state of its network."""
 
 
-class ArmLayout(NamedTuple):
-    """Layout of an arm's step, for requests of its joints and of one frame's twist.
-
-    Attributes:
-        plan: Arrays and settings for kernels.
-        step: Layout of the control step.
-        memory: Memory of an arm that has not begun, (k,).
-        positions: Place of the commanded joint positions in it.
-        asks: Whether the step calls functions in Python: limits in numpy, or obstacles that move in
-            a way of their own (`Obstacle.shift`).
-    """
-
-    plan: ArmPlan
-    step: ControlLayout
-    memory: Vector
-    positions: slice
-    asks: bool
-
-    def state(self, memory: Vector) -> ArmState:
-        """View memories (..., k) of arms as their states."""
-        return ArmState.of(memory, *self.plan.sizes)
-
-    def active_limits(self, memory: Vector) -> tuple[str, ...]:
-        """Name the reasons, bounds and rows that keep an arm's last command from its request."""
-        arm = self.state(memory)
-        if not arm.is_clipped:
-            return ()
-        names = self.step.log_layout.names
-        codes, rows = np.split(arm.limiting.astype(int), [arm.positions.size])
-        words = map(describe, active_limits(names.settings, codes, rows))
-        motion = motion_of(self.plan, arm)
-        reasons = [
-            self.separation_words(memory) if reason == REASONS[Reason.SEPARATION] else reason
-            for reason in reasons_of(arm)
-        ]
-        return (*reasons, *words, *names.conditions(motion.q, motion.least))
-
-    def separation_words(self, memory: Vector) -> str:
-        """Name the link and the body that slow an arm's last command down, or the body's age."""
-        link, number = map(int, separation_of(self.plan, memory)[1:])
-        rule = separation_in(self.step.program.parts)
-        assert rule is not None
-        arm = self.state(memory)
-        ages = [FreeBody.of(body).age for body in arm.bodies[: len(rule.bodies)]]
-        seen = ages[number] if number < len(ages) else arm.seen.age
-        return rule.words(self.step.program.robot, link, number, seen - arm.period)
-
-    def margin(self, memory: Vector) -> Margin:
-        """Compute the least distances of joints from their limits, and of pairs from theirs.
-
-        They are those at the joint positions that an arm's last command starts from.
-        """
-        separation, _, _ = separation_of(self.plan, memory)
-        return Margin(*margin_of(self.plan, memory), separation)
-
-    def stopping_time(self, memory: Vector) -> float:
-        """Compute the time of the stopping motion from an arm's last command [s]."""
-        return float(stopping_time_of(self.plan, memory))
-
-
-def reasons_of(arm: ArmState) -> tuple[str, ...]:
-    """Name each `Reason` of an arm's last step."""
-    return tuple(REASONS[code] for code in np.flatnonzero(arm.reasons))
-
-
-def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
+def lay_out_shield(shield: Shield, frame: str) -> ArmLayout:
     """Lay out the step of a shield's arm, for requests of joints and of one frame's twist.
 
     Raises:
         InvalidInputError: The shield's limits do not fit.
         NotFoundError: The robot has no frame of that name.
     """
-    robot = shield.robot
-    program = Scheme([RequestCost(frame)], [], shield.limits).program(robot)
+    program = Scheme([RequestCost(frame)], [], shield.limits).program(shield.robot)
     if not program.places_of(JointLimits):
         raise InvalidInputError("limits", "need a JointLimits: every command keeps it", program)
     if len(program.places_of(CollisionAvoidance)) > 1:
@@ -212,59 +121,7 @@ def lay_out_arm(shield: Shield, frame: str) -> ArmLayout:
     solver = DNNSolver(tol=1e-9)
     longest = shield.longest_period
     step = ControlLayout(program, {}, solver, shield.dt, Action.RELAX, longest)
-    avoidance = avoidance_of(shield) or CollisionAvoidance()
-    obstacles = avoidance.obstacles
-    n, m, _ = program.sizes
-    sizes = ArmSizes(
-        n=robot.dof,
-        request=max(robot.dof, TWIST),
-        motion=step.width,
-        network=solver.state_for(program.sizes).size,
-        fallback=step.plan.fallback.size,
-        obstacles=len(obstacles),
-        limiting=n + m,
-        # Two commands in a row last longer than a period, or are one.
-        sent=(1 + robot.dof) * (1 + 2 * math.ceil(shield.delay / shield.dt)) * (shield.delay > 0.0),
-        bodies=sum(len(each.names) for each in program.parts if isinstance(each, Separation)),
-    )
-    total = np.minimum(robot.dq_max, FASTEST).sum()
-    plan = ArmPlan(
-        model_tables(robot, program.kinematics.frame_ids),
-        step.plan,
-        program.places_of(RequestCost)[0],
-        [*program.places_of(CollisionAvoidance), -1][0],
-        [*program.places_of(Separation), -1][0],
-        step.log_layout.width,
-        (program.rate_limits or MotionLimits()).constants(robot),
-        float(CUT * max(robot.reach, 1.0) * total),  # above what the joints can do anywhere
-        robot.q_lower,
-        robot.q_upper,
-        np.array([each.velocity for each in obstacles], dtype=np.float64).reshape(-1, 3),
-        shield.settings,
-        sizes,
-    )
-    memory = ArmState.zeros(*sizes)
-    if obstacles:
-        bodies = scene_views(avoidance.scene(robot).constants, robot.dof).bodies
-        centers = [Body.of(body).center for body in bodies[-len(obstacles) :]]
-        memory.obstacles = np.array(centers)
-    rest_arm(plan, memory.numbers, np.zeros(0))
-    positions = ArmState.columns(*sizes)["positions"]
-    return ArmLayout(plan, step, memory.numbers, positions, bool(called_parts(shield, program)))
-
-
-def called_parts(shield: Shield, program: ProgramLayout) -> list[str]:
-    """Name the limits and obstacles whose Python is called at each step of a shield's program."""
-    numpy = [program.parts[k] for k in program.refreshed]
-    parts: list[Any] = [part for part in numpy if not isinstance(part, CollisionAvoidance)]
-    parts += own_movers(shield)
-    return [type(part).__name__ for part in parts]
-
-
-def own_movers(shield: Shield) -> list[Obstacle]:
-    """Return the obstacles of a shield that do not move at a constant velocity."""
-    avoidance = avoidance_of(shield) or CollisionAvoidance()
-    return [each for each in avoidance.obstacles if type(each).shift is not Obstacle.shift]
+    return lay_out_arm(step, solver, shield.settings)
 
 
 def see(plan: ArmPlan, memory: Vector, news: News) -> None:
@@ -543,7 +400,7 @@ class Shield:
         """Return the layout of the steps for requests of joints and of a frame's twist."""
         with self._lock:
             if frame not in self._layouts:
-                self._layouts[frame] = lay_out_arm(self, frame)
+                self._layouts[frame] = lay_out_shield(self, frame)
             return self._layouts[frame]
 
     def reset(self, q: ArrayLike | None = None) -> None:
@@ -580,7 +437,7 @@ class Shield:
         with self._turn():
             kept = self._kept
             memory = kept.memory.copy()
-            send_arm(self.layout(kept.frame).plan, memory, sent, period)
+            send_arm(self.layout(kept.frame).plan, memory, sent, period, 1.0)
             self._kept = kept._replace(memory=memory)
 
     @property
@@ -803,7 +660,7 @@ class Shield:
             if people is not None or obstacles is not None:
                 see(plan, memory, News(separation_in(self._limits), people, obstacles, age))
             samples, kind, request = self._followed(kind, request, time, lead)
-            inputs = ArmInput(measured, kind, request, dt or 0.0, elapsed or 0.0)
+            inputs = ArmInput(measured, kind, request, dt or 0.0, elapsed or 0.0, 0.0)
             kept = Kept(memory, seen, samples)
             data, action = self._answer(layout, kept, inputs, periods)
             command = ShieldCommand(data, layout, ACTION_OF[action], periods, kept)
@@ -823,11 +680,10 @@ class Shield:
         kinematics = layout.step.program.kinematics
         positions = memory[layout.positions]
         kinematics.update(positions)
-        if layout.asks:
+        if layout.called:
             self._call_parts(layout, memory, periods)
         data = np.empty(plan.width)
-        jacobian = kinematics.jacobian
-        action = finish_step(plan, memory, inputs, jacobian, kinematics.placements, data)
+        action = finish_step(plan, memory, inputs, data, OWN_NETWORK)
         if action == INVALID:
             checks.joint_positions("q", positions, self.robot.dof)
         return data, action
@@ -861,7 +717,7 @@ class Shield:
             last = motion_of(plan, arm).last.copy()
             program = layout.step.program
             program.refresh(arm.positions.copy(), last, NO_TARGETS, t, periods.expected)
-            if own_movers(self):
+            if own_movers(program):
                 avoidance = avoidance_of(self) or CollisionAvoidance()
                 begun = layout.state(layout.memory).obstacles
                 shifts = [obstacle.shift(t) for obstacle in avoidance.obstacles]

@@ -23,9 +23,10 @@ from iiwa_dnn.control.arms import (
     step_arms,
     write_margins,
 )
+from iiwa_dnn.control.layout import Margin
 from iiwa_dnn.control.people import News, is_of_each, separation_in
 from iiwa_dnn.control.requests import one_request
-from iiwa_dnn.control.shield import Margin, Shield, called_parts, check_held, see
+from iiwa_dnn.control.shield import Shield, check_held, see
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.qp.layout import IntVector
@@ -125,9 +126,9 @@ class Shields:
         )
         self.threads = threads or os.cpu_count() or 1
         layout = shield.layout(self.frame)
-        if names := called_parts(shield, layout.step.program):
-            problem = f"are in Python: {', '.join(names)}; take a Shield for each arm"
-            raise InvalidInputError("limits", problem, names)
+        if layout.called:
+            problem = f"are in Python: {', '.join(layout.called)}; take a Shield for each arm"
+            raise InvalidInputError("limits", problem, layout.called)
         memory = layout.memory
         self._memories: Matrix = np.tile(memory, (self.count, 1))
 
@@ -187,7 +188,7 @@ class Shields:
         check_held(self, dt)
         stated_periods(self.dt, self.longest_period, dt, elapsed)
         measured = checks.array("q", q, shape)
-        inputs = ArmInput(measured.ravel(), kind, request.ravel(), dt or 0.0, elapsed or 0.0)
+        inputs = ArmInput(measured.ravel(), kind, request.ravel(), dt or 0.0, elapsed or 0.0, 0.0)
         kinds = self._flags("given", given) * kind
         layout = self._shield.layout(self.frame)
         with self._shield._lock:

@@ -17,15 +17,13 @@ from iiwa_dnn.compiling.expressions import Use
 from iiwa_dnn.compiling.library import Entry
 from iiwa_dnn.compiling.sources import Module, TranslationError, c_name
 from iiwa_dnn.compiling.translator import Function, Translator
-from iiwa_dnn.control.arms import ArmPlan, ArmState
 from iiwa_dnn.control.command import SINGULAR
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.fitting import controller_scratch, shield_scratch
+from iiwa_dnn.control.fitting import arm_scratch
 from iiwa_dnn.control.paths import by_frame
 from iiwa_dnn.control.plan import Paths
-from iiwa_dnn.control.requests import REASONS, TWIST
-from iiwa_dnn.control.shield import Shield, called_parts
-from iiwa_dnn.control.tracking import TrackingPlan, TrackingSizes, TrackingState
+from iiwa_dnn.control.requests import REASONS, TWIST, Reason
+from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.core import (
     PACKAGE,
@@ -42,8 +40,6 @@ from iiwa_dnn.export.nodes import Node, PartNumber, path_constants, program_cons
 from iiwa_dnn.naming import active_limits, describe, limit_kinds
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Reference
-from iiwa_dnn.robot import Robot
-from iiwa_dnn.robot.kinematics_kernel import model_tables
 from iiwa_dnn.robot.obstacles import names_of
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.layout import ProgramLayout
@@ -90,105 +86,61 @@ class Tables:
                 part is named.
             NotFoundError: There is no such frame.
         """
-        limits = made.limits if isinstance(made, Shield) else made.scheme.limits
-        self.kept = ", ".join(each.title for each in limits) or "none"
+        source = made if isinstance(made, Shield) else made.scheme
+        self.kept = ", ".join(each.title for each in source.limits) or "none"
         self.own = OwnParts()
-        avoidance = avoidance_of(made if isinstance(made, Shield) else made.scheme)
+        avoidance = avoidance_of(source)
         self._scene = avoidance and {
             "distance": avoidance.distance,
             "obstacles": avoidance.settings()["obstacles"],
         }
+        reasons = [*REASONS]
         if isinstance(made, Shield):
-            self._take_shield(made, frame or made.robot.tip)
+            self.kind = "shield"
+            self.frames: Sequence[str] = [frame or made.robot.tip]
+            layout = made.layout(self.frames[0])
+            paths: list[Reference] = []
+            called = layout.called
         else:
-            self._take_controller(made)
-
-    @property
-    def robot(self) -> Robot:
-        """The robot."""
-        return self.program.robot
-
-    def _take_shield(self, shield: Shield, frame: str) -> None:
-        """Lay out the tables of a shield."""
-        layout = shield.layout(frame)
-        plan, step, memory = layout[:3]
-        if names := called_parts(shield, step.program):
-            problem = f"are in Python, which C cannot call: {', '.join(names)}"
-            raise InvalidInputError("limits", problem, names)
-        avoidance = avoidance_of(shield)
-        obstacles = avoidance.obstacles if avoidance else ()
-        self.kind = "shield"
-        self.program = step.program
-        self.frames: Sequence[str] = [frame]
-        self.obstacles = names_of(obstacles)
-        self._name_limits(REASONS)
-        self.memory = STATE + memory.size
-        self.scratch = shield_scratch(plan) + self.memory
-        longest = shield.longest_period or 0.0
-        self.periods = {"dt": shield.dt, "longest": longest, "delay": float(shield.delay)}
-        self.flat = self._flat([])
-        self.flat.add("plan", core().kinds[ArmPlan], plan)
-        self.flat.add_numbers("places", ArmState.of(memory, *plan.sizes).obstacles)
-
-    def _take_controller(self, controller: Controller) -> None:
-        """Lay out the tables of a controller."""
-        step = controller.control_layout
-        program = step.program
-        refused: list[object] = [program.parts[k] for k in program.refreshed]
-        if not step.has_network:
-            refused.append(controller.solver.network)
-        if refused:
-            name = type(refused[0]).__name__
-            raise InvalidInputError(
-                "controller", f"{name} answers in Python, as obstacles that move do", refused[0]
-            )
-        sizes = TrackingSizes(
-            step.log_layout.width,
-            step.width,
-            controller.solver.state_for(program.sizes).size,
-            step.plan.fallback.size,
-        )
-        given = step.given
-        if not step.plan.samples:
-            none = Paths(given.paths.table[:0], given.paths.constants[:0])
-            given = given._replace(paths=none)
-        model = model_tables(controller.robot, program.kinematics.frame_ids, program.needs_inertia)
-        plan = TrackingPlan(model, given, sizes)
-        self.kind = "controller"
-        self.program = program
-        self.frames = program.target_frames
-        self.obstacles = []
-        self._name_limits(("", SINGULAR))
-        self.memory = STATE + TrackingState.width(*sizes)
-        self.scratch = controller_scratch(plan) + self.memory
-        self.periods = {"dt": controller.dt, "longest": 0.0, "delay": 0.0}
-        self.flat = self._flat([*by_frame(controller.reference, controller.robot.tip).values()])
-        self.flat.add("plan", core().kinds[TrackingPlan], plan)
-
-    def _name_limits(self, reasons: Sequence[str]) -> None:
-        """Name the reasons and limits of a step."""
+            self.kind = "controller"
+            layout = made.arm_layout
+            self.frames = layout.step.program.target_frames
+            paths = [*by_frame(made.reference, made.robot.tip).values()]
+            network = type(made.solver.network).__name__
+            called = (*layout.called, *[network] * (not layout.step.has_network))
+            reasons[Reason.SINGULAR] = SINGULAR
+        if called:
+            problem = f"are in Python, which C cannot call: {', '.join(called)}"
+            raise InvalidInputError("parts", problem, called)
+        plan = layout.plan
+        settings = plan.settings
+        self.program = layout.step.program
+        self.obstacles = names_of(avoidance.obstacles) if avoidance and plan.sizes.obstacles else []
         bounds, rows = limit_words(self.program)
         self.limit_names = [*reasons, *bounds, *rows]
         self.first_row = len(reasons) + len(bounds)
-
-    def _flat(self, paths: Sequence[Reference]) -> Flat:
-        """Begin the arrays of a plan, with names for its constants."""
-        labels = robot_labels(self.robot, self.program.kinematics.frame_ids)
+        self.memory = STATE + layout.memory.size
+        self.scratch = self.memory + arm_scratch(plan)
+        self.periods = {name: float(getattr(settings, name)) for name in ("dt", "longest", "delay")}
+        robot = self.program.robot
+        labels = robot_labels(robot, self.program.kinematics.frame_ids)
         nodes = {
             (ProgramArrays, "constants"): program_constants(self.program, labels),
             (Paths, "constants"): path_constants(paths, labels),
         }
-        return Flat(self.own.part, nodes, labels)
+        self.flat = Flat(self.own.part, nodes, labels)
+        self.flat.add("plan", core().plan, plan)
+        self.flat.add_numbers("places", layout.state(layout.memory).obstacles)
 
     @property
     def has_reference(self) -> bool:
         """Whether a controller samples its targets where none are given."""
-        return self.kind == "controller" and "paths" in self.flat.named["plan"].value["step"].value
+        return "paths" in self.flat.named["plan"].value["step"].value
 
     @property
     def limits(self) -> dict[str, np.ndarray[Any, Any]]:
         """Limits of the robot's joints by their names."""
-        robot = self.robot
+        robot = self.program.robot
         lower, upper = robot.limits[:2]
         return {
             "lower": lower,
@@ -208,29 +160,17 @@ class Tables:
             digest = ((digest ^ letter) * _PRIME) & _BITS
         return digest
 
-    @property
-    def _described(self) -> dict[str, Any]:
-        """The robot, as the settings of a record have it."""
-        robot = self.robot
-        return {
-            "robot": robot.name,
-            "joints": [*robot.joint_names],
-            "locked": dict(zip(robot.locked, robot.q_locked, strict=True)),
-            "tip": robot.tip,
-            "tools": [tool.settings() for tool in robot.tools],
-        }
-
     def _step(self, row: Vector) -> dict[str, Any]:
         """Return a recorded step: arguments by their names, the command and its result."""
-        n = self.robot.dof
+        n = self.program.robot.dof
         t, *numbers, result = Node.of(row, {}).plain
         kind, period = numbers[n : n + 2]
         asked = numbers[n + 2 : -n]
-        given = {"q": numbers[:n], "t": t, "target": asked}
-        if self.kind == "shield":
-            request = REQUESTS[int(kind)]
-            given = {"q": numbers[:n], **({"dt": period} if period else {})}
-            given |= {request: asked[: TWIST if request == "twist" else n]} if request else {}
+        given = {"q": numbers[:n], **({"dt": period} if period else {})}
+        if self.kind == "controller":
+            given |= {"t": t, "target": asked}
+        elif request := REQUESTS[int(kind)]:
+            given[request] = asked[: TWIST if request == "twist" else n]
         return {"given": given, "dq": numbers[-n:], "result": int(result)}
 
     def json(self, name: str, rows: Matrix, tolerance: float) -> str:
@@ -241,12 +181,13 @@ class Tables:
             rows: Recorded steps, of which those up to `STEPS` are written.
             tolerance: Largest difference of a command in units of the velocity limits.
         """
+        robot = self.program.robot
         own = {
             "release": RELEASE,
             "digest": f"{self.digest:016x}",
             "kind": self.kind,
             "name": name,
-            "joint_names": [*self.robot.joint_names],
+            "joint_names": [*robot.joint_names],
             "frame_names": [*self.frames],
             "obstacle_names": self.obstacles,
             "limit_names": self.limit_names,
@@ -257,7 +198,13 @@ class Tables:
             "memory": self.memory,
             "scratch": self.scratch,
             "own": self.own.names,
-            "robot": self._described,
+            "robot": {
+                "robot": robot.name,
+                "joints": [*robot.joint_names],
+                "locked": dict(zip(robot.locked, robot.q_locked, strict=True)),
+                "tip": robot.tip,
+                "tools": [tool.settings() for tool in robot.tools],
+            },
             "scene": self._scene,
             "numbers": Node(self.flat.named).plain,
             "integers": Node(self.flat.worded).plain,

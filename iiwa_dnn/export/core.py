@@ -23,8 +23,7 @@ from iiwa_dnn.compiling.library import numbered_kernels, source_of
 from iiwa_dnn.compiling.readers import write_readers
 from iiwa_dnn.compiling.sources import decoration
 from iiwa_dnn.compiling.translator import Translator
-from iiwa_dnn.control import arms, fitting, tracking
-from iiwa_dnn.control.command import log_of
+from iiwa_dnn.control import arms, cycle, fitting
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.requests import FASTEST, Reason, Request
 from iiwa_dnn.naming import ACTIONS, LimitKind
@@ -50,17 +49,11 @@ ROOM = 30
 WRITTEN = ("jacobian", "placements", "inertia", "fallback")
 """Arrays of a plan that steps write: tables have their shapes alone."""
 
-_PLANS = (arms.ArmPlan, tracking.TrackingPlan)
-_STATES = {arms.ArmState: "shield", tracking.TrackingState: "controller"}
 _KERNELS = (
     *(arms.arm_state, arms.rest_arm, arms.halt_arm, arms.send_arm, arms.step_arm, arms.place_arm),
-    *(arms.brake_arm, tracking.brake_tracking),
-    *(arms.motion_of, arms.margin_of, arms.stopping_time_of, log_of, all_finite),
-    *(arms.see_people, arms.see_body, arms.separation_of),
-    *(tracking.tracking_state, tracking.tracking_motion, tracking.send_tracking),
-    *(tracking.sample_tracking, tracking.step_tracking),
-    *(fitting.shield_fits, fitting.shield_scratch),
-    *(fitting.controller_fits, fitting.controller_scratch),
+    *(arms.brake_arm, arms.motion_of, arms.margin_of, arms.stopping_time_of, all_finite),
+    *(arms.see_people, arms.see_body, arms.separation_of, cycle.sample_targets),
+    *(fitting.arm_fits, fitting.arm_scratch),
 )
 """Kernels that the interface calls, by their names."""
 
@@ -100,11 +93,12 @@ def wrapped(line: str) -> list[str]:
     while len(line) > WIDTH:
         depth = 0
         breaks = []
-        for at, letter in enumerate(line[:WIDTH]):
+        plain = re.sub('"[^"]*"', lambda found: "_" * len(found[0]), line)
+        for at, letter in enumerate(plain[:WIDTH]):
             depth += (letter in "({[") - (letter in ")}]")
-            is_value = line[at - 1 : at + 1] == "= " and depth == 0
-            ends = line[at - 1 : at + 1] == ", " or line[at - 1] == "("
-            is_operator = re.match(r" (&&|\|\||[-+*/?:]) ", line[at : at + 4])
+            is_value = plain[at - 1 : at + 1] == "= " and depth == 0
+            ends = plain[at - 1 : at + 1] == ", " or plain[at - 1] == "("
+            is_operator = re.match(r" (&&|\|\||[-+*/?:]) ", plain[at : at + 4])
             if at > WIDTH // 3 and (ends or is_value or is_operator):
                 breaks.append((depth, -at))
         if not breaks:
@@ -138,13 +132,13 @@ class Core(NamedTuple):
         header: Text of ``armstep.h``.
         code: Text of ``armstep.c``.
         parts: Number of each part by its name.
-        kinds: Type of each class whose tables are read.
+        plan: Type of the plan that tables hold.
     """
 
     header: str
     code: str
     parts: dict[str, int]
-    kinds: dict[type, Kind]
+    plan: Kind
 
 
 @cache
@@ -160,13 +154,11 @@ def core() -> Core:
         module = package.module(kernel.__module__)
         own = translator.function(module, module.names[kernel.__name__])
         calls[kernel.__name__] = f"{own.name}({'arena, ' * own.uses_arena}"
-    kinds = {own: _kind(translator, own) for own in (*_PLANS, *_STATES)}
+    plan, state = (_kind(translator, own) for own in (arms.ArmPlan, arms.ArmState))
     readers: dict[str, str] = {}
-    for plan in _PLANS:
-        write_readers(kinds[plan], WRITTEN, readers)
+    write_readers(plan, WRITTEN, readers)
     code = translator.text(SECTIONS)
-    widths = {own.__name__: _width(kinds[own], f"own->{word}") for own, word in _STATES.items()}
-    values = _words(translator) | calls | widths
+    values = _words(translator) | calls | {"width": _width(state)}
     folder = TEMPLATES / "core"
     text = [
         filled(folder / "head.c", values),
@@ -181,7 +173,7 @@ def core() -> Core:
         filled(folder / "interface.c", values),
     ]
     header = filled(folder / "armstep.h", values)
-    return Core(header, "\n\n".join(text), translator.numbers, kinds)
+    return Core(header, "\n\n".join(text), translator.numbers, plan)
 
 
 def used_prelude(code: str) -> list[str]:
@@ -198,9 +190,9 @@ def _kind(translator: Translator, own: type) -> Kind:
     return translator.kinds.of(module, module.names[own.__name__])
 
 
-def _width(state: Kind, plan: str) -> str:
-    """Write the number of numbers of a state, whose sizes a plan has."""
-    counts = [f"{n} * {plan}.sizes.{size}" for size, n in state.sizes.items() if size]
+def _width(state: Kind) -> str:
+    """Write the number of numbers of a state, whose sizes `plan` has."""
+    counts = [f"{n} * plan->sizes.{size}" for size, n in state.sizes.items() if size]
     return " + ".join([str(state.sizes[""]), *counts])
 
 

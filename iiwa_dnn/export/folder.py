@@ -150,14 +150,12 @@ def _begun(made: Controller | Shield, q0: ArrayLike | None) -> tuple[Any, Vector
     """Return a shield, or a copy of a controller that begins; and where it begins, (n,) [rad].
 
     Raises:
-        InvalidInputError: It is neither, or a controller with varying periods.
+        InvalidInputError: It is neither.
     """
     if isinstance(made, Shield):
         robot = made.robot
         return made, Configuration(robot, robot.start_posture() if q0 is None else q0).q
     controller = checks.instance("made", made, Controller)
-    if controller.longest_period is not None:
-        raise InvalidInputError("controller", "with longest_period has no C", controller)
     twin = copy.copy(controller)
     start = Configuration(twin.robot, twin.positions if q0 is None else q0)
     twin.reset()
@@ -215,7 +213,7 @@ class _Export:
         """Return the texts that both kinds have."""
         tables = self.tables
         name = self._name
-        robot = tables.robot
+        robot = tables.program.robot
         flat = tables.flat
         words = {
             "joint": robot.joint_names,
@@ -357,11 +355,11 @@ def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
     """Record steps of a controller, from joint positions q0 (n,) [rad]; the arm moves as commanded.
 
     A controller without a reference follows a small figure of eight. The kinematics are those of
-    the exported C.
+    the exported C. Where periods vary, they are not stated, the shortest and the longest in turn.
 
     Returns:
-        Rows of the time [s], joint positions, two zeros, targets of all frames, the command and
-        the action.
+        Rows of the time [s], joint positions, a zero, the stated period [s], targets of all frames,
+        the command and the action.
     """
     twin = copy.copy(controller)
     if twin.reference is None:
@@ -372,14 +370,17 @@ def run(controller: Controller, q0: Vector, steps: int) -> Matrix:
         }
     take_exported_kinematics(twin)
     q = q0.copy()
+    t = 0.0
+    periods = [0.0] if twin.longest_period is None else [0.0, 0.5 * twin.dt, twin.longest_period]
     rows: list[Vector] = []
     for k in range(steps):
-        t = k * twin.dt
-        targets = twin.targets(t - twin.path_lag)
-        command = twin.step(q, t)
+        period = periods[k % len(periods)]
+        command = twin.step(q, t, dt=period or None)
         result = [float(command.action)]
-        rows.append(np.concatenate([[t], q, [0.0, 0.0], targets.ravel(), command.dq, result]))
-        q = q + twin.dt * command.dq
+        targets = command.targets.ravel()
+        rows.append(np.concatenate([[t], q, [0.0, period], targets, command.dq, result]))
+        q = command.next_q
+        t += period or twin.dt
     return np.array(rows)
 
 

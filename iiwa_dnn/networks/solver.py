@@ -104,9 +104,12 @@ class DNNSolver:
         try:
             return self._warm[sizes]
         except KeyError:
-            some = QP.from_data(np.zeros(data_size(*sizes)), sizes)
-            self._keep(sizes, np.zeros(self.network.state_size(some)))
+            self._keep(sizes, np.zeros(self.state_size(sizes)))
             return self._warm[sizes]
+
+    def state_size(self, sizes: Sizes) -> int:
+        """Count the numbers of the network's state for programs of these sizes."""
+        return self.network.state_size(QP.from_data(np.zeros(data_size(*sizes)), sizes))
 
     def compiled_answer(self, sizes: Sizes, duration: float = 0.0) -> CompiledAnswer | None:
         """Return the compiled function that answers programs of these sizes as this solver does.

@@ -94,7 +94,7 @@ def test_a_pair_that_begins_nearer_comes_no_nearer_and_then_keeps_its_distance(
     avoidance, scheme = beside(nearer)
     controller = d.Controller(ROBOT, scheme, dt=DT)
     _, first = driven(controller, START.q, 1, at(0.0))
-    own = controller._state.motion.least
+    own = controller._motion.least.copy()
     pressed, _ = driven(controller, START.q, 100, at(0.2))
     begun = judged(ROBOT, avoidance, pressed[:1]).min()
     assert own.min() == pytest.approx(LEAST - nearer - CLEARANCE, abs=2e-6)
@@ -103,7 +103,7 @@ def test_a_pair_that_begins_nearer_comes_no_nearer_and_then_keeps_its_distance(
     left, _ = driven(controller, pressed[-1], 300, at(-0.2))
     assert judged(ROBOT, avoidance, left[-1:]).min() > LEAST
     again, last = driven(controller, left[-1], 400, at(0.2, 0.1))
-    assert (controller._state.motion.least[: len(avoidance.scene(ROBOT).pairs)] == LEAST).all()
+    assert (controller._motion.least[: len(avoidance.scene(ROBOT).pairs)] == LEAST).all()
     assert judged(ROBOT, avoidance, again).min() > LEAST - SLACK
     assert not any("nearer" in words for words in last[-1].active_limits)
 
@@ -134,13 +134,13 @@ def test_what_pairs_keep_is_copied_and_begins_anew_after_a_reset(copied: Any) ->
     _, scheme = beside(0.005)
     controller = d.Controller(ROBOT, scheme, dt=DT)
     path, _ = driven(controller, START.q, 60, at(-0.003))
-    own = controller._state.motion.least.min()
+    own = controller._motion.least.min()
     twin = copied(controller)
     twin.step(path[-1], 0.3, at(0.0))
-    assert twin._state.motion.least.min() == own
+    assert twin._motion.least.min() == own
     twin.reset()
     twin.step(path[-1], 0.3, at(0.0))
-    assert own + 1e-3 < twin._state.motion.least.min() < LEAST
+    assert own + 1e-3 < twin._motion.least.min() < LEAST
 
 
 def test_a_command_that_was_computed_counts_as_the_start_of_what_is_sent() -> None:
@@ -152,7 +152,7 @@ def test_a_command_that_was_computed_counts_as_the_start_of_what_is_sent() -> No
         command = controller.compute(q, k * DT, frames)
         controller.send(command.dq)
         other.step(q, k * DT, frames)
-        own = [each._state.motion.least.min() for each in (controller, other)]
+        own = [each._motion.least.min() for each in (controller, other)]
         assert own[0] == own[1]
         q = command.next_q
 

@@ -35,6 +35,7 @@ class Arm:
             "request": np.full(7, 0.5),
             "dt": 0.0,
             "elapsed": 0.0,
+            "t": 0.0,
         }
         reason = step_arm(self.plan, self.memory, ArmInput(**own | wrong))
         self.path.append(self.path[-1] + self.state.period * self.motion.last)
@@ -73,7 +74,7 @@ def test_a_refused_step_brakes_within_the_limits_and_names_its_reason(
         found = arm.step(**wrong) if is_wrong else arm.step()
         if is_wrong:
             assert found == reason
-            assert REASONS[reason] in d.control.shield.reasons_of(arm.state)
+            assert REASONS[reason] in d.control.layout.reasons_of(arm.state)
         if k == 101:
             assert 0.9 * speed < np.abs(arm.motion.last).max()
     for _ in range(200):

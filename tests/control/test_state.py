@@ -169,10 +169,10 @@ def test_what_a_step_asks_may_read_the_controller_and_not_move_it() -> None:
         controller.reset,
     ):
         path.asks = asks
-        before = controller._state.numbers.copy()
+        before = controller._motion.numbers.copy()
         with pytest.raises(d.InvalidInputError, match="controller: is within a step"):
             controller.step(q, 0.0)
-        np.testing.assert_array_equal(controller._state.numbers, before)
+        np.testing.assert_array_equal(controller._motion.numbers, before)
     path.asks = controller.halt
     controller.step(q, 0.0)
     assert controller.step(q, 0.0).kind is ProgramKind.STOPPED
@@ -184,10 +184,10 @@ def test_a_refused_step_leaves_nothing_behind() -> None:
     for seen, t in ((q * np.nan, k * DT), (q, np.inf)):
         with pytest.raises(d.InvalidInputError):
             controller.step(seen, t)
-    np.testing.assert_array_equal(controller._state.numbers, twin._state.numbers)
+    np.testing.assert_array_equal(controller._motion.numbers, twin._motion.numbers)
     for each in (controller, twin):
         each.send(np.full(7, 0.01))
-    np.testing.assert_array_equal(controller._state.numbers, twin._state.numbers)
+    np.testing.assert_array_equal(controller._motion.numbers, twin._motion.numbers)
 
 
 def test_a_command_says_the_same_when_the_period_has_changed() -> None:

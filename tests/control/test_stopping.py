@@ -138,7 +138,7 @@ def test_the_braking_motion_in_hand_is_that_of_the_last_command() -> None:
     for k in range(100):
         dq = controller.step(q, k * 4e-3, tip_at(2.0, 0.0, 0.0)).dq
         q = q + 4e-3 * dq
-        noted.append(controller._state.motion.stopping_periods)
+        noted.append(controller._motion.stopping_periods)
         least.append(np.ceil(np.abs(dq / (4e-3 * ROBOT.ddq_max)).max() - 1e-9))
     np.testing.assert_array_equal(noted, least)
     assert max(noted) > 10.0
@@ -335,7 +335,7 @@ def test_an_arm_that_is_halted_carries_the_stored_motion_out() -> None:
     controller = d.Controller(ROBOT, scheme, dt=4e-3)
     path, commands = driven(controller, START.q, 40, tip_at(0.0, 0.2, 0.0))
     begun = commands[-1].dq
-    periods = int(controller._state.motion.stopping_periods)
+    periods = int(controller._motion.stopping_periods)
     assert periods > 5
     controller.halt()
     _, commands = driven(controller, path[-1], periods + 1, tip_at(0.0, 0.2, 0.0))
@@ -362,7 +362,7 @@ def test_a_policy_that_acted_is_asked_first_at_the_next_step() -> None:
     controller = d.Controller(ROBOT, scheme, dt=4e-3)
     _, commands = driven(controller, START.q, 3, tip_at(0.0, 0.05, 0.0))
     assert [command.kind.name for command in commands] == ["RATE_LIMITED"] * 3
-    assert controller._state.motion.yields
+    assert controller._motion.yields
     # The nominal program of such a step is not solved: its network's state stays.
     before = controller.solver.state_for(controller.program.sizes).copy()
     controller.step(commands[-1].next_q, 0.0, tip_at(0.0, 0.05, 0.0))

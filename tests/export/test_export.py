@@ -19,10 +19,10 @@ from iiwa_dnn.compiling.kinds import attributes
 from iiwa_dnn.compiling.sources import Package
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.export import c99
-from iiwa_dnn.export.arm_tables import STATE
 from iiwa_dnn.export.folder import run as run_controller, take_exported_kinematics
 from iiwa_dnn.schemes.joint_limits import PositionConstants
 from iiwa_dnn.studies.runs import paper_robot
+from judge_distances import swinging
 
 pytestmark = needs("gcc")
 
@@ -70,7 +70,7 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
         command = controller.step(q, k * dt)
         found = there.step(q, k * dt)
         assert targets.tobytes() == command.targets.tobytes()
-        assert found.memory[STATE : STATE + command.data.size].tobytes() == command.data.tobytes()
+        assert command.data.tobytes() in scratch.tobytes()  # the log of the step
         assert found.dq.tobytes() == command.dq.tobytes()
         assert found.next_q.tobytes() == command.next_q.tobytes()
         said = (found.action, found.program, found.fraction, there.path_lag)
@@ -85,6 +85,103 @@ def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) ->
     assert np.abs(q - q0).max() > 1e-4
     assert limited > 5 or name not in REACHING
     assert len(actions) > 1 or not name.startswith(("without", "yielding", "collisions with balls"))
+
+
+TIP = iiwa_dnn.Configuration(paper_robot(), START).position
+MOVING = iiwa_dnn.CollisionAvoidance(
+    [
+        iiwa_dnn.Sphere(TIP + [0.05, 0.35, 0.0], 0.06, velocity=[0.0, -0.1, 0.0]),
+        iiwa_dnn.Sphere(TIP + [0.3, -0.5, 0.0], 0.05),
+    ]
+)
+SMOOTH = (iiwa_dnn.AccelerationLimits(10.0), iiwa_dnn.JerkLimits(500.0))
+VARYING: dict[str, Any] = {"longest_period": 4e-3}
+HOSTILE: dict[str, dict[str, Any]] = {
+    "constant": {"scheme": with_limits(*SMOOTH)},
+    "varying": {"scheme": with_limits(*SMOOTH), **VARYING},
+    "moving": {"scheme": with_limits(MOVING, *SMOOTH)},
+    "moving, without rates": {"scheme": with_limits(MOVING), "policy": "relax"},
+    "varying and moving": {"scheme": with_limits(MOVING, *SMOOTH), **VARYING},
+    "continuous": {"mode": "continuous", "scheme": with_limits(MOVING)},
+    "continuous and varying": {"mode": "continuous", **VARYING},
+}
+
+
+def stated(random: np.random.Generator, controller: iiwa_dnn.Controller) -> dict[str, float]:
+    """Draw a period: that of the command, of the last one, or none."""
+    longest = controller.longest_period
+    if longest is None:
+        return {"dt": controller.dt * random.uniform(0.3, 1.0)} if random.random() < 0.1 else {}
+    period = random.uniform(0.1, 1.1) * longest
+    return ({"dt": period}, {"elapsed": period}, {})[random.integers(3)]
+
+
+@pytest.mark.filterwarnings("ignore:a period of .* the longest", "ignore:in continuous mode")
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_steps_have_pythons_bits(name: str, tmp_path: Path) -> None:
+    """Positions jump, targets are far away, periods are stated in all ways, velocities are sent."""
+    here, q0 = drawing(**HOSTILE[name])
+    there = in_armstep(here, tmp_path, q0)
+    pose = iiwa_dnn.Configuration(here.robot, q0)
+    here.anchor(pose)
+    take_exported_kinematics(here)
+    random = np.random.default_rng(3)
+    q = q0.copy()
+    t = 0.0
+    differing = 0
+    actions = set()
+    lags = set()
+    sent = np.zeros(7)
+    for k in range(5000):
+        period = stated(random, here)
+        q = q + 1e-3 * random.standard_normal(7) * (random.random() < 0.005)
+        far = iiwa_dnn.Target(pose.position + 0.3 * random.standard_normal(3), pose.rotation)
+        target = far if k // 100 % 5 == 4 else None
+        if k % 1000 == 700:
+            for each in (here, there):
+                each.send(sent, 0.5)
+        if k == 4900:
+            here.halt()
+            there.halt()
+        command = here.step(q, t, target, **period)
+        found = there.step(q, t, None if target is None else target.data, **period)
+        said = (found.action, found.program, found.fraction, there.path_lag)
+        differing += found.dq.tobytes() != command.dq.tobytes()
+        differing += found.next_q.tobytes() != command.next_q.tobytes()
+        differing += said != (command.action, command.kind, command.fraction, here.path_lag)
+        actions.add(found.action)
+        lags.add(there.path_lag)
+        sent = 0.9 * command.dq
+        q = command.next_q
+        t += max(period.values(), default=here.dt)
+    assert differing == 0
+    assert len(actions) > 1
+    assert len(lags) > 5
+    assert not found.dq.any()
+    assert importlib.import_module("armstep.__main__").main(["check", f"{tmp_path}/arm.json"]) == 0
+
+
+def test_obstacles_are_placed_beside_a_controller(tmp_path: Path) -> None:
+    """A ball that comes to its place at the first step is one that was always there."""
+    scheme, away = (
+        with_limits(iiwa_dnn.CollisionAvoidance([iiwa_dnn.Sphere(place, 0.05)]), *SMOOTH)
+        for place in ([0.36, 0.16, 0.64], [5.0, 0.0, 0.0])
+    )
+    path = iiwa_dnn.Line((0.0, -0.2, 0.3), period=2.0)
+    here, q0 = drawing(scheme, path)
+    there = in_armstep(drawing(away, path)[0], tmp_path, q0)
+    here.anchor(iiwa_dnn.Configuration(here.robot, q0))
+    take_exported_kinematics(here)
+    q = q0
+    limited = 0
+    for k in range(1000):
+        command = here.step(q, k * here.dt)
+        places = [[0.36, 0.16, 0.64]] if k % 100 == 0 else None
+        found = there.step(q, k * here.dt, obstacles=places)
+        assert found.dq.tobytes() == command.dq.tobytes()
+        limited += any("Sphere 1" in own for own in found.active_limits)
+        q = command.next_q
+    assert limited > 10
 
 
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
@@ -196,7 +293,9 @@ class _Local(iiwa_dnn.Limit):
     kernel = staticmethod(lambda step, constants, G, h, lb, ub: None)
 
 
-AVOIDANCE = iiwa_dnn.CollisionAvoidance([iiwa_dnn.Sphere((0, 0, 2), 0.1, velocity=(0.1, 0, 0))])
+AVOIDANCE = iiwa_dnn.CollisionAvoidance(
+    [swinging(iiwa_dnn.Sphere)((0, 0, 2), 0.1, velocity=(0.1, 0, 0))]
+)
 DUAL = iiwa_dnn.PrimalDualNetwork()
 UNSTATED = iiwa_dnn.Scheme([iiwa_dnn.Manipulability()], DoubleIndicator().tasks)
 
@@ -204,9 +303,9 @@ UNSTATED = iiwa_dnn.Scheme([iiwa_dnn.Manipulability()], DoubleIndicator().tasks)
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"scheme": UNSTATED}, "Manipulability answers in Python"),
-        ({"scheme": with_limits(AVOIDANCE)}, "CollisionAvoidance answers in Python, as obstacles"),
-        ({"solver": iiwa_dnn.DNNSolver(DUAL)}, "PrimalDualNetwork answers"),
+        ({"scheme": UNSTATED}, "parts: are in Python, .* Manipulability"),
+        ({"scheme": with_limits(AVOIDANCE)}, "call: CollisionAvoidance"),
+        ({"solver": iiwa_dnn.DNNSolver(DUAL)}, "call: PrimalDualNetwork"),
         ({"scheme": with_limits(_Local())}, "lambda.* cannot be exported"),
     ],
 )
@@ -337,7 +436,7 @@ def test_the_controller_that_is_exported_stays_as_it_is(tmp_path: Path) -> None:
         controller.step(q0, k * controller.dt)
         twin.step(q0, k * controller.dt)
     c99(controller, tmp_path)
-    np.testing.assert_array_equal(controller._state.numbers, twin._state.numbers)
+    np.testing.assert_array_equal(controller._motion.numbers, twin._motion.numbers)
     np.testing.assert_array_equal(controller.step(q0, 0.0).dq, twin.step(q0, 0.0).dq)
 
 

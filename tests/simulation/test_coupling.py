@@ -136,4 +136,4 @@ def test_braking_from_a_velocity_that_others_chose_is_tested() -> None:
     controller.send(away)
     controller.halt()
     controller.step(q, 0.0, target)
-    assert controller._state.motion.stopping_periods == np.ceil(0.3 / (10.0 * DT)) - 1.0
+    assert controller._motion.stopping_periods == np.ceil(0.3 / (10.0 * DT)) - 1.0

@@ -75,7 +75,16 @@ class _Controllers(Arms[Answer]):
     _kind = "controller"
     _decision = Command
 
-    def step(self, q: ArrayLike, t: float, target: ArrayLike | None = None) -> Answer:
+    def step(
+        self,
+        q: ArrayLike,
+        t: float,
+        target: ArrayLike | None = None,
+        *,
+        obstacles: ArrayLike | None = None,
+        dt: float | None = None,
+        elapsed: float | None = None,
+    ) -> Answer:
         """Compute the command for joint positions; it counts as sent. N arms have arrays of N rows.
 
         Args:
@@ -83,11 +92,16 @@ class _Controllers(Arms[Answer]):
             t: Time [s]; the reference is asked for the time `path_lag` before it.
             target: Targets of the tracked frames, (18,) or (frames, 18), in place of the
                 reference's.
+            obstacles: Where the centres of the obstacles are at the end of the last step [m],
+                (k, 3), of many or (N, k, 3); None: where they were, or their velocities lead them.
+            dt: Period for which the command will be held [s].
+            elapsed: Time since the last step [s].
 
         Raises:
             InputError: An argument has a wrong shape or is not finite, or there is neither target
-                nor reference; nothing is changed.
+                nor reference, or a period is wrong; nothing is changed.
         """
+        periods = self._periods(dt, elapsed)
         joints = numbers("q", q, self._shape, FARTHEST)
         if not np.isfinite(t):
             raise InputError(f"t: must be finite, not {t!r}")
@@ -100,7 +114,9 @@ class _Controllers(Arms[Answer]):
         elif not self.tables.has_reference:
             raise InputError("target: there is no reference, so each step needs one")
         with self._lock:
-            return self._take(joints, 0, wanted, t=t)
+            if obstacles is not None:
+                self.place(obstacles)
+            return self._take(joints, 0, wanted, periods, t)
 
 
 class Controller(_Controllers[Command]):

@@ -48,8 +48,8 @@ enum armstep_request {
 @requests@
 };
 
-/* Results of a shield's step: reasons beside limits for another command than the request. Those to rest come
- * first. */
+/* Reasons beside limits for another command than is asked: results of a shield's step, and codes of active limits.
+ * Those to rest come first. */
 enum armstep_reason {
     ARMSTEP_INVALID = -1, /* the step is refused; of a controller too */
 @reasons@
@@ -64,9 +64,6 @@ enum armstep_action {
 enum armstep_program {
 @programs@
 };
-
-/* Code among a controller's active limits where no limit, but the posture is in the way. */
-enum { ARMSTEP_SINGULAR = 1 };
 
 /* Kinds of parts. */
 enum armstep_entry {
@@ -103,7 +100,7 @@ struct armstep_tables {
     ptrdiff_t first_row; /* code of the first row */
     const double *lower, *upper, *velocity, *acceleration, *jerk; /* the robot's limits, (joints) each */
     double dt; /* control period */
-    double longest; /* longest one where a shield's periods vary; 0: they do not */
+    double longest; /* longest one where periods vary; 0: they do not */
     double delay; /* time by which a shield's arm is behind its commands */
     ptrdiff_t memory; /* doubles of an arm */
     ptrdiff_t scratch; /* doubles that a call takes for itself */
@@ -144,7 +141,7 @@ ARMSTEP_API enum armstep_status armstep_send(
     const struct armstep *arm, double *memory, const double *dq, double period, double fraction
 );
 
-/* Say where the centres of a shield's obstacles are, (obstacles, 3). If one is not finite, all stay where they are, and
+/* Say where the centres of the obstacles are at the end of the last step, (obstacles, 3). If one is not finite, all stay where they are, and
  * the arm brakes until they are placed again. */
 ARMSTEP_API enum armstep_status armstep_place(const struct armstep *arm, double *memory, const double *centers);
 
@@ -167,8 +164,8 @@ struct armstep_input {
     int kind; /* of a shield's request, enum armstep_request */
     const double *request; /* joint velocities or positions (joints), a twist (6): linear, then angular velocity;
                             * or a controller's targets (frames, 18). NULL: no new one; those of the reference */
-    double t; /* time of a controller's reference */
-    double dt; /* period for which a shield's command will be held; 0: not stated */
+    double t; /* time of a controller's reference and obstacles */
+    double dt; /* period for which the command will be held; 0: not stated */
     double elapsed; /* or the time since the last step; needs tables->longest; both at least 1e-9, at most 1e3 */
 };
 
@@ -176,7 +173,7 @@ struct armstep_input {
  *
  * Returns the first reason of a shield, or the action of a controller. Without a new request a shield's last one
  * counts, until it is too old. An argument without a meaning is a shield's reason. ARMSTEP_INVALID: there is no
- * q, an argument of a controller is not finite, or a user's own part takes more than the scratch; the command is then
+ * q, an argument of a controller has no meaning, or a user's own part takes more than the scratch; the command is then
  * the next one of the motion to rest, never a jump. For memory that was not begun, or is of other tables, dq is 0.
  */
 ARMSTEP_API int armstep_step(

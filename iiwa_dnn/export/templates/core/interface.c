@@ -1,7 +1,6 @@
 /* The layout that tables describe. */
 struct layout {
-    control_arms_ArmPlan shield;
-    control_tracking_TrackingPlan controller;
+    control_arms_ArmPlan plan;
     const double *places;
 };
 
@@ -9,14 +8,20 @@ typedef char layout_has_room[sizeof(struct layout) <= sizeof(((struct armstep *)
 
 enum { STATE = 1 }; /* where an arm's state begins in its memory, behind the digest of the tables */
 
-static const struct layout *layout_of(const struct armstep *arm)
+static const control_arms_ArmPlan *plan_of(const struct armstep *arm)
 {
-    return (const struct layout *)(const void *)arm->laid_out;
+    return &((const struct layout *)(const void *)arm->laid_out)->plan;
 }
 
 static bool is_shield(const struct armstep *arm)
 {
     return arm->tables->kind == ARMSTEP_SHIELD;
+}
+
+static ptrdiff_t request_width(const struct armstep *arm, int kind)
+{
+    const ptrdiff_t asked = kind == ARMSTEP_REQUEST_TWIST ? 6 : arm->tables->joints;
+    return is_shield(arm) ? asked : ARMSTEP_TARGET * arm->tables->frames;
 }
 
 /* View numbers for kernels, whose arrays have one type whether they are written or not. */
@@ -33,9 +38,14 @@ static Vector view_if_any(const double *numbers, ptrdiff_t count)
     return numbers != NULL ? view(numbers, count) : view(nothing, 0);
 }
 
-static Vector state_of(const struct armstep *arm, const double *memory)
+static Vector numbers_of(const struct armstep *arm, const double *memory)
 {
     return view(memory + STATE, arm->tables->memory - STATE);
+}
+
+static control_arms_ArmState state_of(const struct armstep *arm, const double *memory)
+{
+    return @arm_state@plan_of(arm), numbers_of(arm, memory));
 }
 
 static struct arena arena_of(const struct armstep *arm, double *scratch)
@@ -45,21 +55,10 @@ static struct arena arena_of(const struct armstep *arm, double *scratch)
     return own;
 }
 
-static control_command_StepLog log_of_controller(const struct armstep *arm, const double *memory)
-{
-    const control_tracking_TrackingPlan *plan = &layout_of(arm)->controller;
-    const control_tracking_TrackingState state = @tracking_state@plan, state_of(arm, memory));
-    return @log_of@state.log, &plan->step.arrays.sizes);
-}
-
 static control_state_MotionState motion_state_of(const struct armstep *arm, const double *memory)
 {
-    const struct layout *own = layout_of(arm);
-    if (is_shield(arm)) {
-        const control_arms_ArmState state = @arm_state@&own->shield, state_of(arm, memory));
-        return @motion_of@&own->shield, &state);
-    }
-    return @tracking_motion@&own->controller, state_of(arm, memory));
+    const control_arms_ArmState state = state_of(arm, memory);
+    return @motion_of@plan_of(arm), &state);
 }
 
 /* FNV-1a of 64 bits. */
@@ -156,28 +155,17 @@ static bool computes_as_ieee(void)
 static bool is_laid_out(const struct armstep *arm, struct reader *reader)
 {
     const struct armstep_tables *tables = arm->tables;
-    const struct layout *own = layout_of(arm);
-    int64_t memory, scratch;
+    const control_arms_ArmPlan *plan = plan_of(arm);
     if (reader->is_bad || reader->number != reader->last_number || reader->integer != reader->last_integer) {
         return false;
     }
-    if (is_shield(arm)) {
-        if (!@shield_fits@&own->shield, ARMSTEP_PART_schemes_collisions_collision_rows, ARMSTEP_PART_schemes_separation_separation_rows) || own->shield.sizes.obstacles != tables->obstacles
-            || own->shield.sizes.n != tables->joints || tables->frames != 1) {
-            return false;
-        }
-        memory = @ArmState@;
-        scratch = @shield_scratch@&own->shield) + memory;
-    } else {
-        if (!@controller_fits@&own->controller, ARMSTEP_PART_schemes_collisions_collision_rows, ARMSTEP_PART_schemes_separation_separation_rows) || tables->obstacles != 0
-            || own->controller.step.arrays.sizes.joints != tables->joints
-            || own->controller.step.arrays.sizes.frames != tables->frames) {
-            return false;
-        }
-        memory = @TrackingState@;
-        scratch = @controller_scratch@&own->controller) + memory;
+    if (!@arm_fits@plan, ARMSTEP_PART_schemes_collisions_collision_rows, ARMSTEP_PART_schemes_separation_separation_rows)
+        || is_shield(arm) != (plan->request >= 0) || plan->sizes.obstacles != tables->obstacles
+        || plan->sizes.n != tables->joints || plan->step.arrays.sizes.frames != tables->frames) {
+        return false;
     }
-    return tables->memory == STATE + memory && tables->scratch == STATE + scratch;
+    const int64_t memory = @width@;
+    return tables->memory == STATE + memory && tables->scratch == STATE + memory + @arm_scratch@plan);
 }
 
 enum armstep_status armstep_load(struct armstep *arm, const struct armstep_tables *tables)
@@ -198,28 +186,17 @@ enum armstep_status armstep_load(struct armstep *arm, const struct armstep_table
     if (armstep_digest(tables) != tables->digest) {
         return ARMSTEP_DAMAGED;
     }
-    if (is_shield(arm)) {
-        own->shield = read_control_arms_ArmPlan(&reader);
-        own->places = read_doubles(&reader, 3 * own->shield.sizes.obstacles);
-    } else {
-        own->controller = read_control_tracking_TrackingPlan(&reader);
-    }
+    own->plan = read_control_arms_ArmPlan(&reader);
+    own->places = read_doubles(&reader, 3 * own->plan.sizes.obstacles);
     return is_laid_out(arm, &reader) ? ARMSTEP_OK : ARMSTEP_UNFIT;
-}
-
-static void clear(const struct armstep *arm, double *memory)
-{
-    memset(memory, 0, sizeof *memory * (size_t)arm->tables->memory);
-    memory[0] = mark_of(arm);
 }
 
 void armstep_begin(const struct armstep *arm, double *memory, double *scratch)
 {
-    clear(arm, memory);
-    if (is_shield(arm)) {
-        (void)armstep_place(arm, memory, layout_of(arm)->places);
-        (void)armstep_rest(arm, memory, scratch, NULL);
-    }
+    memset(memory, 0, sizeof *memory * (size_t)arm->tables->memory);
+    memory[0] = mark_of(arm);
+    (void)armstep_place(arm, memory, ((const struct layout *)(const void *)arm->laid_out)->places);
+    (void)armstep_rest(arm, memory, scratch, NULL);
 }
 
 enum armstep_status armstep_rest(const struct armstep *arm, double *memory, double *scratch, const double *q)
@@ -234,11 +211,7 @@ enum armstep_status armstep_rest(const struct armstep *arm, double *memory, doub
     if (!@all_finite@joints, 0, joints.size0)) {
         return ARMSTEP_NOT_FINITE;
     }
-    if (is_shield(arm)) {
-        @rest_arm@&layout_of(arm)->shield, state_of(arm, memory), joints);
-    } else {
-        clear(arm, memory);
-    }
+    @rest_arm@plan_of(arm), numbers_of(arm, memory), joints);
     return ARMSTEP_OK;
 }
 
@@ -247,11 +220,7 @@ enum armstep_status armstep_halt(const struct armstep *arm, double *memory)
     if (!has_begun(arm, memory)) {
         return ARMSTEP_OTHER_TABLES;
     }
-    if (is_shield(arm)) {
-        @halt_arm@&layout_of(arm)->shield, state_of(arm, memory));
-    } else {
-        motion_state_of(arm, memory).at->halts = 1.0;
-    }
+    @halt_arm@plan_of(arm), numbers_of(arm, memory));
     return ARMSTEP_OK;
 }
 
@@ -271,11 +240,7 @@ enum armstep_status armstep_send(
     if (!(period > 0.0 && period < INFINITY) || !(fabs(fraction) < INFINITY)) {
         return ARMSTEP_NOT_FINITE;
     }
-    if (is_shield(arm)) {
-        @send_arm@&layout_of(arm)->shield, state_of(arm, memory), sent, period);
-    } else {
-        @send_tracking@&layout_of(arm)->controller, state_of(arm, memory), sent, period, fraction);
-    }
+    @send_arm@plan_of(arm), numbers_of(arm, memory), sent, period, fraction);
     return ARMSTEP_OK;
 }
 
@@ -283,13 +248,10 @@ enum armstep_status armstep_place(const struct armstep *arm, double *memory, con
 {
     const Vector numbers = view(centers, 3 * arm->tables->obstacles);
     const Matrix places = {numbers.data, arm->tables->obstacles, 3};
-    if (!is_shield(arm)) {
-        return ARMSTEP_WRONG_KIND;
-    }
     if (!has_begun(arm, memory)) {
         return ARMSTEP_OTHER_TABLES;
     }
-    @place_arm@&layout_of(arm)->shield, state_of(arm, memory), places);
+    @place_arm@plan_of(arm), numbers_of(arm, memory), places);
     return @all_finite@numbers, 0, numbers.size0) ? ARMSTEP_OK : ARMSTEP_NOT_FINITE;
 }
 
@@ -304,56 +266,34 @@ enum armstep_status armstep_people(
     if (!has_begun(arm, memory)) {
         return ARMSTEP_OTHER_TABLES;
     }
-    return @see_people@&layout_of(arm)->shield, state_of(arm, memory), own, age) ? ARMSTEP_OK : ARMSTEP_NOT_FINITE;
+    return @see_people@plan_of(arm), numbers_of(arm, memory), own, age) ? ARMSTEP_OK : ARMSTEP_NOT_FINITE;
 }
 
 enum armstep_status armstep_body(
     const struct armstep *arm, double *memory, ptrdiff_t number, const double *box, double age
 )
 {
-    if (!is_shield(arm) || number < 0 || number >= layout_of(arm)->shield.sizes.bodies) {
+    if (!is_shield(arm) || number < 0 || number >= plan_of(arm)->sizes.bodies) {
         return ARMSTEP_WRONG_KIND;
     }
     if (!has_begun(arm, memory)) {
         return ARMSTEP_OTHER_TABLES;
     }
-    return @see_body@&layout_of(arm)->shield, state_of(arm, memory), number, view(box, 15), age) ? ARMSTEP_OK
+    return @see_body@plan_of(arm), numbers_of(arm, memory), number, view(box, 15), age) ? ARMSTEP_OK
                                                                                            : ARMSTEP_NOT_FINITE;
 }
 
-static int64_t step_shield(
-    const struct armstep *arm, struct arena *arena, double *memory, const struct armstep_input *input
-)
+static int64_t step(const struct armstep *arm, struct arena *arena, double *memory, const struct armstep_input *input)
 {
-    const bool is_twist = input->kind == ARMSTEP_REQUEST_TWIST;
     const control_arms_ArmInput own = {
         view(input->q, arm->tables->joints),
-        input->request != NULL ? input->kind : ARMSTEP_REQUEST_NONE,
-        view_if_any(input->request, is_twist ? 6 : arm->tables->joints),
+        input->request != NULL && is_shield(arm) ? input->kind : ARMSTEP_REQUEST_NONE,
+        view_if_any(input->request, request_width(arm, input->kind)),
         input->dt,
         input->elapsed,
+        input->t,
     };
-    return @step_arm@&layout_of(arm)->shield, state_of(arm, memory), &own);
-}
-
-static int64_t step_controller(
-    const struct armstep *arm, struct arena *arena, double *memory, const struct armstep_input *input
-)
-{
-    const Vector joints = view(input->q, arm->tables->joints);
-    const Vector targets = view_if_any(input->request, ARMSTEP_TARGET * arm->tables->frames);
-    return @step_tracking@&layout_of(arm)->controller, state_of(arm, memory), joints, input->t, targets);
-}
-
-/* Take the next command of the motion to rest. */
-static void brake(const struct armstep *arm, struct arena *arena, double *memory)
-{
-    (void)arena;
-    if (is_shield(arm)) {
-        @brake_arm@&layout_of(arm)->shield, state_of(arm, memory));
-    } else {
-        @brake_tracking@&layout_of(arm)->controller, state_of(arm, memory));
-    }
+    return @step_arm@plan_of(arm), numbers_of(arm, memory), &own);
 }
 
 int armstep_step(
@@ -365,6 +305,7 @@ int armstep_step(
     const bool may_fail = arm->tables->own_count > 0; /* where a user's own part takes too much */
     struct arena arena = arena_of(arm, scratch);
     int64_t result = ARMSTEP_INVALID;
+    bool is_taken = false;
     if (!has_begun(arm, memory)) {
         memset(dq, 0, width);
         return ARMSTEP_INVALID;
@@ -375,15 +316,17 @@ int armstep_step(
         arena.top = arena.start;
     }
     if (input->q != NULL) {
-        result = is_shield(arm) ? step_shield(arm, &arena, memory, input) : step_controller(arm, &arena, memory, input);
+        result = step(arm, &arena, memory, input);
+        is_taken = true;
     }
     if (arena.full) {
         memcpy(memory, scratch, bytes);
-        result = ARMSTEP_INVALID;
-    }
-    if (result == ARMSTEP_INVALID) {
         arena = arena_of(arm, scratch);
-        brake(arm, &arena, memory);
+        result = ARMSTEP_INVALID;
+        is_taken = false;
+    }
+    if (!is_taken) { /* the next command of the motion to rest */
+        @brake_arm@plan_of(arm), numbers_of(arm, memory));
     }
     memcpy(dq, motion_state_of(arm, memory).last.data, width);
     return (int)result;
@@ -394,8 +337,7 @@ ptrdiff_t armstep_steps(
 )
 {
     const ptrdiff_t n = arm->tables->joints;
-    const ptrdiff_t width = is_shield(arm) ? batch->input.kind == ARMSTEP_REQUEST_TWIST ? 6 : n
-                                           : ARMSTEP_TARGET * arm->tables->frames;
+    const ptrdiff_t width = request_width(arm, batch->input.kind);
     ptrdiff_t refused = 0;
     for (ptrdiff_t k = first; k < last; k++) {
         double *const memory = batch->memory + k * batch->stride;
@@ -417,13 +359,14 @@ enum armstep_status armstep_targets(
     const Matrix own = {targets, arm->tables->frames, ARMSTEP_TARGET};
     struct arena own_arena = arena_of(arm, scratch);
     struct arena *const arena = &own_arena;
-    if (is_shield(arm) || layout_of(arm)->controller.step.paths.table.size0 == 0) {
+    if (is_shield(arm) || plan_of(arm)->step.paths.table.size0 == 0) {
         return ARMSTEP_WRONG_KIND;
     }
     if (!has_begun(arm, memory)) {
         return ARMSTEP_OTHER_TABLES;
     }
-    @sample_tracking@&layout_of(arm)->controller, state_of(arm, memory), t, own);
+    const double lag = motion_state_of(arm, memory).at->path_lag;
+    @sample_targets@&plan_of(arm)->step.paths, t - lag, arm->tables->dt, own);
     return ARMSTEP_OK;
 }
 
@@ -456,18 +399,12 @@ enum armstep_status armstep_restore(const struct armstep *arm, double *memory, c
 
 const double *armstep_next_q(const struct armstep *arm, const double *memory)
 {
-    if (is_shield(arm)) {
-        return @arm_state@&layout_of(arm)->shield, state_of(arm, memory)).positions.data;
-    }
-    return log_of_controller(arm, memory).next_q.data;
+    return state_of(arm, memory).positions.data;
 }
 
 bool armstep_is_clipped(const struct armstep *arm, const double *memory)
 {
-    if (is_shield(arm)) {
-        return @arm_state@&layout_of(arm)->shield, state_of(arm, memory)).at->is_clipped != 0.0;
-    }
-    return armstep_program_of(arm, memory) != ARMSTEP_PROGRAM_NOMINAL;
+    return state_of(arm, memory).at->is_clipped != 0.0;
 }
 
 static bool is_among(int code, const int *codes, int count)
@@ -485,9 +422,7 @@ static bool is_among(int code, const int *codes, int count)
  * others, come last. */
 static int limit_codes(const struct armstep *arm, Vector limiting, int reasons, int *codes)
 {
-    const struct layout *own = layout_of(arm);
-    const schemes_program_ProgramSizes *sizes =
-        is_shield(arm) ? &own->shield.step.arrays.sizes : &own->controller.step.arrays.sizes;
+    const schemes_program_ProgramSizes *sizes = &plan_of(arm)->step.arrays.sizes;
     const int first_row = (int)arm->tables->first_row;
     const int joints = (int)arm->tables->joints;
     const int sides = (first_row - reasons) / joints;
@@ -519,15 +454,8 @@ int armstep_active_limits(const struct armstep *arm, const double *memory, int *
     if (!has_begun(arm, memory)) {
         return 0;
     }
-    if (!is_shield(arm)) {
-        count = limit_codes(arm, log_of_controller(arm, memory).limiting, ARMSTEP_SINGULAR + 1, codes);
-        if (count == 0 && armstep_program_of(arm, memory) == ARMSTEP_PROGRAM_RELAXED) {
-            codes[count++] = ARMSTEP_SINGULAR;
-        }
-        return count;
-    }
-    const control_arms_ArmState state = @arm_state@&layout_of(arm)->shield, state_of(arm, memory));
-    if (state.at->is_clipped == 0.0) {
+    const control_arms_ArmState state = state_of(arm, memory);
+    if (is_shield(arm) && state.at->is_clipped == 0.0) {
         return 0;
     }
     for (int k = 0; k < (int)state.reasons.size0; k++) {
@@ -550,7 +478,7 @@ enum armstep_status armstep_margin(
     if (!has_begun(arm, memory)) {
         return ARMSTEP_OTHER_TABLES;
     }
-    const double_2 found = @margin_of@&layout_of(arm)->shield, state_of(arm, memory));
+    const double_2 found = @margin_of@plan_of(arm), numbers_of(arm, memory));
     *joint = found.at[0];
     *distance = found.at[1];
     return ARMSTEP_OK;
@@ -564,7 +492,7 @@ double armstep_separation(const struct armstep *arm, const double *memory, doubl
     if (!is_shield(arm) || !has_begun(arm, memory)) {
         return INFINITY;
     }
-    return @separation_of@&layout_of(arm)->shield, state_of(arm, memory)).at[0];
+    return @separation_of@plan_of(arm), numbers_of(arm, memory)).at[0];
 }
 
 double armstep_stopping_time(const struct armstep *arm, const double *memory, double *scratch)
@@ -572,17 +500,17 @@ double armstep_stopping_time(const struct armstep *arm, const double *memory, do
     struct arena own_arena = arena_of(arm, scratch);
     struct arena *const arena = &own_arena;
     (void)arena;
-    return is_shield(arm) ? @stopping_time_of@&layout_of(arm)->shield, state_of(arm, memory)) : NAN;
+    return is_shield(arm) ? @stopping_time_of@plan_of(arm), numbers_of(arm, memory)) : NAN;
 }
 
 enum armstep_program armstep_program_of(const struct armstep *arm, const double *memory)
 {
-    return is_shield(arm) ? ARMSTEP_PROGRAM_NOMINAL : (enum armstep_program)log_of_controller(arm, memory).at->kind;
+    return (enum armstep_program)state_of(arm, memory).at->program;
 }
 
 double armstep_fraction(const struct armstep *arm, const double *memory)
 {
-    return is_shield(arm) ? 1.0 : log_of_controller(arm, memory).at->fraction;
+    return state_of(arm, memory).at->fraction;
 }
 
 double armstep_path_lag(const struct armstep *arm, const double *memory)
