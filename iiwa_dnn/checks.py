@@ -75,6 +75,11 @@ def not_negative(argument: str, value: object) -> float:
     return _number(argument, value, "a finite number >= 0", lambda number: number >= 0.0)
 
 
+def fraction(argument: str, value: object) -> float:
+    """Return a number from 0 to 1 as a float; refuse any other value."""
+    return _number(argument, value, "a number from 0 to 1", lambda number: 0.0 <= number <= 1.0)
+
+
 def _number(argument: str, value: object, kind: str, fits: Callable[[float], bool]) -> float:
     """Return a finite number that fits as a float; refuse any other value, naming the kind."""
     # A float first: the test for any kind of number costs more than all the rest of some callers.

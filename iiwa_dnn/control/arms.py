@@ -157,6 +157,7 @@ class ArmState(Record):
         is_repeated: Whether the request is that of the step before.
         is_clipped: Whether the last command differs from the request.
         is_misplaced: Whether the place of an obstacle is not known.
+        reduction: Part of the joints' velocity limits that requests must not use.
         positions: Joint positions at the end of the last command's period [rad], (n,).
         measured: Measured ones [rad], (n,), with the displacement that the delay hides, and with
             the turns of `positions`.
@@ -188,6 +189,7 @@ class ArmState(Record):
     is_repeated: bool
     is_clipped: bool
     is_misplaced: bool
+    reduction: float
     positions: Vector = part("n")
     measured: Vector = part("n")
     wraps: Vector = part("n")
@@ -295,14 +297,16 @@ def motion_of(plan: ArmPlan, arm: ArmState) -> MotionState:
 
 @compiled
 def rest_arm(plan: ArmPlan, memory: Vector, q: Vector) -> None:
-    """Reset an arm to rest at joint positions q (n,) [rad]; its obstacles stay where they are.
+    """Reset an arm to rest at joint positions q (n,) [rad]; obstacles and speed scale stay.
 
     If q is empty, the arm begins at the positions that the next step measures; they are NaN before.
     Bodies of bounded speed have to be seen anew.
     """
     arm = arm_state(plan, memory)
     centers = arm.obstacles.copy()
+    reduction = arm.reduction
     memory[:] = 0.0
+    arm.reduction = reduction
     for k in range(len(centers)):
         copied(arm.obstacles[k], centers[k])
     arm.period = plan.settings.dt
@@ -383,6 +387,16 @@ def halt_arm(plan: ArmPlan, memory: Vector) -> None:
     """Make an arm brake at each step, whatever is requested, until `rest_arm`."""
     arm = arm_state(plan, memory)
     arm.reason = Reason.HALTED
+
+
+@compiled
+def scale_speed(plan: ArmPlan, memory: Vector, scale: float) -> bool:
+    """Let requests use a part of the joints' velocity limits; one outside of [0, 1] is refused."""
+    arm = arm_state(plan, memory)
+    fits = 0.0 <= scale <= 1.0
+    if fits:
+        arm.reduction = 1.0 - scale
+    return fits
 
 
 @compiled
@@ -902,11 +916,49 @@ def _take_request(
             request.velocity[i] = arm.request[i] / excess
     admitted = np.empty(arm.positions.size)
     admitted[:] = np.inf
+    if arm.reduction > 0.0:
+        _scale_request(plan, arm, arrays, timing, request, admitted)
     if plan.separation >= 0:
         _slow_down(plan, arm, arrays, timing, request, admitted)
     if not request.is_twist:
         approach_request(arm, motion_of(plan, arm), plan.motion, timing, admitted, state)
         copied(request.velocity, state[: arm.positions.size])
+
+
+@compiled
+def _scale_request(
+    plan: ArmPlan,
+    arm: ArmState,
+    arrays: ProgramArrays,
+    timing: Periods,
+    request: RequestConstants,
+    admitted: Vector,
+) -> None:
+    """Slow a request down to the part of the velocity limits that `scale_speed` lets it use.
+
+    Args:
+        plan: Layout of the step.
+        arm: The arm.
+        arrays: Arrays of the step.
+        timing: Periods of the step.
+        request: The request; a twist is scaled, by the rates that answer it without limits.
+        admitted: Largest speeds of the joints for another request [rad/s], (n,), overwritten.
+    """
+    dq = np.zeros(admitted.size)
+    if request.is_twist:
+        twist_rates(arrays, request, dq)
+    factor = 1.0
+    for i in range(dq.size):
+        admitted[i] = (1.0 - arm.reduction) * min(plan.motion.velocity[i], FASTEST)
+        wanted = dq[i] if request.is_twist else arm.request[i]
+        if arm.answered == Request.POSITION:
+            wanted = _quickest(plan, arm, i, timing.hold)
+        if abs(wanted) > admitted[i]:
+            factor = min(factor, admitted[i] / abs(wanted))
+    for i in range(TWIST if request.is_twist else 0):
+        request.velocity[i] *= factor
+    if factor < 1.0 and not is_refused(arm):
+        arm.reasons[Reason.SPEED_SCALE] = 1.0
 
 
 @compiled
@@ -952,7 +1004,7 @@ def _slow_down(
         return
     arm.reasons[Reason.SEPARATION] = 1.0 if largest_entry(dq) > 0.0 else 0.0
     for i in range(n):
-        admitted[i] = factor * abs(dq[i])
+        admitted[i] = min(admitted[i], factor * abs(dq[i]))
     for i in range(TWIST if request.is_twist else 0):
         request.velocity[i] *= factor / excess
 
@@ -1028,7 +1080,11 @@ def approach_request(
         if reaches:
             accel = rates.acceleration
             rates = Rates(rates.velocity, accel, rates.jerk, accel, np.inf, 0.0)
-            dq[i] = reaching(last, before, left, min(most, admitted[i]), rates, periods)
+            dq[i] = reaching(last, before, left, most, rates, periods)
+            if admitted[i] < most:
+                slowest = _towards(-admitted[i], last, rates.jerk, periods)
+                dq[i] = max(dq[i], slowest)
+                dq[i] = min(dq[i], _towards(admitted[i], last, rates.jerk, periods))
             continue
         if follows and abs(wanted) <= admitted[i]:
             dq[i] = wanted
@@ -1039,8 +1095,14 @@ def approach_request(
         wanted = min(max(wanted, -admitted[i]), admitted[i])
         lower, upper, _, _ = joint_bounds(last, before, above, below, rates, periods)
         if arm.is_repeated or wanted < lower or wanted > upper:
-            wanted += braking(last - wanted, -np.inf, np.inf, limits.jerk[i], periods)
+            wanted = _towards(wanted, last, rates.jerk, periods)
         dq[i] = wanted
+
+
+@compiled
+def _towards(wanted: float, last: float, jerk: float, periods: Periods) -> float:
+    """Return the next velocity [rad/s] of a joint that comes from the last to the wanted one."""
+    return wanted + braking(last - wanted, -np.inf, np.inf, jerk, periods)
 
 
 @compiled

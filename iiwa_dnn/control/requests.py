@@ -58,6 +58,7 @@ REASONS = (
     "place of an obstacle not finite",
     "frame of bodies refused",
     "separation",
+    "speed scale",
 )
 """Words of each `Reason`, in the order of their codes."""
 
@@ -80,7 +81,7 @@ class Reason(IntEnum):
     """Reasons, other than limits, for a command that differs from the request.
 
     With those from `NO_REQUEST` to `Q_NOT_FINITE` and from `UNKNOWN_KIND` to `PLACE_NOT_FINITE` the
-    arm brakes to rest. `SEPARATION` slows the request down.
+    arm brakes to rest. `SEPARATION` and `SPEED_SCALE` slow the request down.
     """
 
     NONE = 0
@@ -98,6 +99,7 @@ class Reason(IntEnum):
     PLACE_NOT_FINITE = 12
     FRAME_REFUSED = 13
     SEPARATION = 14
+    SPEED_SCALE = 15
 
 
 def one_request(

@@ -42,6 +42,7 @@ from iiwa_dnn.control.arms import (
     motion_of,
     place_arm,
     rest_arm,
+    scale_speed,
     see_body,
     see_people,
     send_arm,
@@ -315,6 +316,7 @@ class Shield:
         )
         self._warned: set[str] = set()
         self._unseen = tuple(Request)  # kinds whose first request has warnings
+        self._speed_scale = 1.0
         self._halted = False
         self._is_within = False
         self._kept: Kept
@@ -415,12 +417,29 @@ class Shield:
             layout = self.layout(tip)
             memory = layout.memory.copy()
             rest_arm(layout.plan, memory, positions)
+            scale_speed(layout.plan, memory, self._speed_scale)
             self._kept = Kept(memory, tip)
             self._halted = False
 
     def halt(self) -> None:
         """Brake at every step from now on, whatever is requested, until `reset`."""
         self._halted = True  # without the lock: a signal handler may interrupt a step
+
+    def scale_speed(self, scale: float) -> None:
+        """Let requests use a part of the joints' velocity limits from the next step on.
+
+        The arm comes to that speed within its rates. It stays until the next call, and is no limit:
+        joints that answer a twist may be quicker near a singular posture or beside a limit.
+
+        Args:
+            scale: The part, from 0, at which the arm comes to rest, to 1.
+        """
+        self._speed_scale = checks.fraction("scale", scale)
+        with self._turn():
+            kept = self._kept
+            memory = kept.memory.copy()
+            scale_speed(self.layout(kept.frame).plan, memory, scale)
+            self._kept = kept._replace(memory=memory)
 
     def send(self, dq: ArrayLike, dt: float | None = None) -> None:
         """Count a velocity as sent to the arm, in place of a step's command.

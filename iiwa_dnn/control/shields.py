@@ -20,6 +20,7 @@ from iiwa_dnn.control.arms import (
     motion_of,
     place_arm,
     rest_arm,
+    scale_speed,
     step_arms,
     write_margins,
 )
@@ -268,6 +269,18 @@ class Shields:
         with self._shield._lock:
             for i in np.flatnonzero(self._flags("mask", mask)):
                 halt_arm(self._shield.layout(self.frame).plan, self._memories[i])
+
+    def scale_speed(self, scale: float, mask: ArrayLike | None = None) -> None:
+        """Let requests use a part of the joints' velocity limits, as `Shield.scale_speed`.
+
+        Args:
+            scale: The part, from 0 to 1.
+            mask: Whether each arm is meant, (N,); None: all are.
+        """
+        part = checks.fraction("scale", scale)
+        with self._shield._lock:
+            for i in np.flatnonzero(self._flags("mask", mask)):
+                scale_speed(self._shield.layout(self.frame).plan, self._memories[i], part)
 
     def active_limits(self, i: int) -> tuple[str, ...]:
         """Name the active limits of arm i's last command, as `ShieldCommand.active_limits`."""

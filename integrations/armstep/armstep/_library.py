@@ -92,6 +92,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "begin": (None, [POINTER] * 3),
     "rest": (INT, [POINTER] * 4),
     "halt": (INT, [POINTER] * 2),
+    "scale_speed": (INT, [*[POINTER] * 2, REAL]),
     "send": (INT, [*[POINTER] * 3, REAL, REAL]),
     "place": (INT, [POINTER] * 3),
     "people": (INT, [*[POINTER] * 3, SIZE, REAL]),

@@ -36,6 +36,7 @@ Reason = IntEnum(
         "PLACE_NOT_FINITE",
         "FRAME_REFUSED",
         "SEPARATION",
+        "SPEED_SCALE",
     ],
     start=0,
 )
@@ -142,6 +143,18 @@ class _Shields(Arms[Answer]):
             if mask is not None:
                 self._buffers.given[...] = mask
             return self._take(joints, *request, periods)
+
+    def scale_speed(self, scale: float, mask: ArrayLike | None = None) -> None:
+        """Let requests use a part, from 0 to 1, of the joints' velocity limits until the next call.
+
+        Of many arms those of a mask (N,).
+
+        Raises:
+            InputError: It is no such part; nothing is changed.
+        """
+        for _, memory in self._each(mask):
+            if ONE.armstep_scale_speed(self.tables.arm, memory, scale):
+                raise InputError("scale: must be from 0 to 1")
 
     def see(self, people: ArrayLike, age: float) -> None:
         """Say where all people in the field are, as a sensor saw them `age` [s] before the step.

@@ -135,6 +135,9 @@ ARMSTEP_API enum armstep_status armstep_rest(
 /* Brake at every step from now on, whatever is asked, until armstep_rest. */
 ARMSTEP_API enum armstep_status armstep_halt(const struct armstep *arm, double *memory);
 
+/* Let a shield's requests use a part of the joints' velocity limits, from 0 (rest) to 1, until the next call. */
+ARMSTEP_API enum armstep_status armstep_scale_speed(const struct armstep *arm, double *memory, double scale);
+
 /* Count dq (joints) as sent for a period above 0, in place of a step's command. The clock of a controller's
  * reference goes on by a fraction of it, from 0 to 1. Limits are not checked, but ARMSTEP_FASTEST. */
 ARMSTEP_API enum armstep_status armstep_send(

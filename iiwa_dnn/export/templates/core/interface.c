@@ -224,6 +224,14 @@ enum armstep_status armstep_halt(const struct armstep *arm, double *memory)
     return ARMSTEP_OK;
 }
 
+enum armstep_status armstep_scale_speed(const struct armstep *arm, double *memory, double scale)
+{
+    if (!has_begun(arm, memory)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    return @scale_speed@plan_of(arm), numbers_of(arm, memory), scale) ? ARMSTEP_OK : ARMSTEP_NOT_FINITE;
+}
+
 enum armstep_status armstep_send(
     const struct armstep *arm, double *memory, const double *dq, double period, double fraction
 )
