@@ -23,6 +23,15 @@ from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.command import StepLog, log_of
 from iiwa_dnn.control.cycle import INVALID, sample_targets, take_step
+from iiwa_dnn.control.following import (
+    FollowState,
+    asks,
+    follow_samples,
+    forget_samples,
+    have_meaning,
+    keep_samples,
+    samples_of,
+)
 from iiwa_dnn.control.people import (
     grow_older,
     is_newer,
@@ -124,6 +133,7 @@ class ArmSizes(NamedTuple):
     limiting: int
     sent: int
     bodies: int
+    following: int
 
 
 class SeenBodies(Record):
@@ -175,6 +185,7 @@ class ArmState(Record):
             (k (1 + n),).
         seen: What is known of bodies of bounded speed.
         bodies: A `FreeBody` for each of them, as the last step left it.
+        following: `FollowState`; (0,): no samples are followed.
     """
 
     time: float
@@ -204,6 +215,7 @@ class ArmState(Record):
     sent: Vector = part("sent")
     seen: SeenBodies = part(SeenBodies)
     bodies: Matrix = part("bodies", FREE_BODY)
+    following: Vector = part("following")
 
 
 class ArmPlan(NamedTuple):
@@ -279,6 +291,7 @@ def arm_state(plan: ArmPlan, memory: Vector) -> ArmState:
         plan.sizes.limiting,
         plan.sizes.sent,
         plan.sizes.bodies,
+        plan.sizes.following,
     )
 
 
@@ -293,6 +306,32 @@ def motion_of(plan: ArmPlan, arm: ArmState) -> MotionState:
     """View the state of an arm's motion."""
     sizes = plan.step.arrays.sizes
     return MotionState.of(arm.motion, sizes.joints, sizes.pairs)
+
+
+@compiled
+def follow_of(plan: ArmPlan, arm: ArmState) -> FollowState:
+    """View what an arm follows, if it has room for samples."""
+    n = plan.sizes.n
+    m = samples_of(n, plan.sizes.following)
+    return FollowState.of(arm.following, n, m, n * m)
+
+
+@compiled
+def follow_arm(plan: ArmPlan, memory: Vector, times: Vector, positions: Matrix, mode: int) -> bool:
+    """Let an arm follow samples from their time on; return whether they have a meaning.
+
+    Args:
+        plan: Layout of the steps.
+        memory: The arm's memory, (k,), overwritten.
+        times: Time of each sample [s], rising; of a chunk on the arm's clock, (m,).
+        positions: Joint positions of each [rad], (m, n).
+        mode: Their `Mode`; of a stream one sample comes at a time.
+    """
+    arm = arm_state(plan, memory)
+    if not have_meaning(times, mode, samples_of(plan.sizes.n, plan.sizes.following)):
+        return False
+    keep_samples(follow_of(plan, arm), times, positions.reshape(positions.size), mode, arm.time)
+    return True
 
 
 @compiled
@@ -516,11 +555,13 @@ def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> None:
         stated = inputs.dt + inputs.elapsed
         unstated = arm.reasons[Reason.PERIOD_REFUSED] != 0.0 or stated == 0.0
         _update_positions(plan, arm, inputs.q, unstated and settings.longest > 0.0)
-        _update_request(arm, settings, inputs)
+        _take_samples(plan, arm, inputs)
     if arm.reason != Reason.NONE:
         arm.reasons[arm.reason] = 1.0
     arm.period = periods.expected
     arm.answered = _answered(arm)
+    if plan.sizes.following > 0:
+        _follow(plan, arm, periods)
 
 
 @compiled
@@ -532,6 +573,46 @@ def _measure(arm: ArmState, inputs: ArmInput) -> None:
         copied(arm.positions, inputs.q)
     else:
         arm.reasons[Reason.Q_NOT_FINITE] = 1.0
+
+
+@compiled
+def _take_samples(plan: ArmPlan, arm: ArmState, inputs: ArmInput) -> None:
+    """Take the request of a step, or without one that of samples: a velocity, written later.
+
+    It is NaN for samples that are not finite, so that the arm brakes.
+    """
+    asked = inputs
+    request = np.zeros(plan.sizes.n)
+    if plan.sizes.following > 0:
+        own = follow_of(plan, arm)
+        arm.reasons[Reason.STALE] = 1.0 if own.is_stale else 0.0
+        own.is_stale = False
+        if inputs.kind != Request.NONE:
+            forget_samples(own)
+        elif asks(own):
+            request[:] = np.nan if own.is_broken else 0.0
+            asked = ArmInput(
+                inputs.q, Request.VELOCITY, request, inputs.dt, inputs.elapsed, inputs.t
+            )
+    _update_request(arm, plan.settings, asked)
+
+
+@compiled
+def _follow(plan: ArmPlan, arm: ArmState, periods: Periods) -> None:
+    """Make the velocities by which an arm follows samples its request, of one that asks for some.
+
+    If it brakes because of its request, the samples are forgotten.
+    """
+    own = follow_of(plan, arm)
+    if arm.reason != Reason.NONE:
+        own.count = 0
+        own.waiting = 0
+    if own.count + own.waiting == 0 or arm.answered != Request.VELOCITY or is_refused(arm):
+        return
+    motion = motion_of(plan, arm)
+    change_spacing(motion, periods.dt)
+    follow_samples(own, arm.positions, motion, plan.motion, periods, arm.time, arm.request)
+    arm.answered = FOLLOW
 
 
 @compiled

@@ -461,7 +461,11 @@ class Controller:
                 program, paths, self.solver, self.dt, policy, longest, self.mode == "continuous"
             )
             settings = ArmSettings.make(
-                dt=self.dt, longest=longest or 0.0, timeout=math.inf, tracking_error=0.0, delay=0.0
+                dt=self.dt,
+                longest=longest or 0.0,
+                timeout=math.inf,
+                tracking_error=0.0,
+                delay=0.0,
             )
             layout = lay_out_arm(step, self.solver, settings)
             memory = self._taken_over(layout)

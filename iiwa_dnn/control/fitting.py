@@ -11,6 +11,7 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.arms import ArmPlan
 from iiwa_dnn.control.command import log_sizes
 from iiwa_dnn.control.fallback import Yielding
+from iiwa_dnn.control.following import ALONE, OF_JOINT, samples_of
 from iiwa_dnn.control.plan import ControlPlan, PathColumn
 from iiwa_dnn.control.requests import RequestConstants
 from iiwa_dnn.qp import Vector
@@ -43,6 +44,7 @@ def arm_scratch(plan: ArmPlan) -> int:
     n = base.sizes.n
     taken = 8 * n * (n + base.sizes.m + base.sizes.p + 10) + 2 * plan.width
     taken += 2 * (base.constants.size + base.inertia.size + plan.step.network.settings.numbers.size)
+    taken += 2 * (10 * n + samples_of(n, plan.sizes.following))
     return taken + 12 * (base.placements.shape[0] + 4 * n)
 
 
@@ -84,7 +86,18 @@ def _state_fits(plan: ArmPlan) -> bool:
         return False
     if own.obstacles != len(plan.velocities) or not _is_within(own.sent, 0, MOST * (1 + n)):
         return False
-    return own.sent % (1 + n) == 0
+    return own.sent % (1 + n) == 0 and _samples_fit(plan)
+
+
+@compiled
+def _samples_fit(plan: ArmPlan) -> bool:
+    """Test the room for samples that are followed, four at least for a stream."""
+    n = plan.sizes.n
+    width = plan.sizes.following
+    if width == 0 or plan.request < 0:
+        return width == 0
+    m = samples_of(n, width)
+    return _is_within(m, 4, MOST) and width == ALONE + OF_JOINT * n + m * (2 + 3 * n)
 
 
 @compiled

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,17 +28,8 @@ from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import LARGEST
-from iiwa_dnn.control.arms import (
-    ArmInput,
-    ArmPlan,
-    ArmState,
-    arm_state,
-    is_refused,
-    motion_of,
-    periods_of_inputs,
-)
-from iiwa_dnn.control.requests import FOLLOW, Reason, Request
-from iiwa_dnn.control.state import MotionState, change_spacing
+from iiwa_dnn.control.requests import Request
+from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
@@ -49,7 +40,7 @@ from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.viability import reaching, rest_ahead
 
 SAMPLES = 64
-"""Largest number of samples of a chunk."""
+"""Largest number of samples of a chunk, where none is stated; a stream takes four."""
 
 SHARE = 0.1
 """Share of the limits with which an offset fades."""
@@ -99,8 +90,11 @@ NEAR = 1e-4
 PATIENCE = 10.0
 """Time after its last sample until which a preview waits for a chunk [s]."""
 
-STALE = "samples stale"
-"""Word for samples that were all in the past."""
+ALONE = 19
+"""Single numbers of a `FollowState`."""
+
+OF_JOINT = 8
+"""Numbers of it for each joint."""
 
 PIECES = 3
 """Cubic pieces of the curve of a stream: as many as reach given positions, velocities and
@@ -151,9 +145,8 @@ class FollowState(Record):
         mode: Its `Mode`.
         waiting: Number of samples that wait for their time.
         next_mode: Their `Mode`.
-        is_stale: Whether the last samples that came were all in the past.
-        was_stale: Whether that was so at the last step.
-        is_broken: Whether they were not finite.
+        is_stale: Whether the samples that came since the last step were all in the past.
+        is_broken: Whether the last ones that came were not finite.
         since: Time of the last step [s].
         spacing: Period of the last step [s].
         clock: Clock s at the last step [s].
@@ -177,9 +170,9 @@ class FollowState(Record):
         asked: Requested velocities of the last step [rad/s], (n,).
         times: Times of the samples [s].
         next_times: Times of the waiting ones [s].
-        positions: Positions of the samples, one sample after another [rad], (64 n,).
-        slopes: Their velocities [rad/s], (64 n,).
-        next_positions: Positions of the waiting ones [rad], (64 n,).
+        positions: Positions of the samples, one sample after another [rad], (samples n,).
+        slopes: Their velocities [rad/s], (samples n,).
+        next_positions: Positions of the waiting ones [rad], (samples n,).
     """
 
     count: int
@@ -187,7 +180,6 @@ class FollowState(Record):
     waiting: int
     next_mode: int
     is_stale: bool
-    was_stale: bool
     is_broken: bool
     since: float
     spacing: float
@@ -210,8 +202,8 @@ class FollowState(Record):
     speed: Vector = part()
     speed_before: Vector = part()
     asked: Vector = part()
-    times: Vector = part(SAMPLES)
-    next_times: Vector = part(SAMPLES)
+    times: Vector = part("samples")
+    next_times: Vector = part("samples")
     positions: Vector = part("entries")
     slopes: Vector = part("entries")
     next_positions: Vector = part("entries")
@@ -221,15 +213,20 @@ KEEPS = {"time": Mode.TIME, "path": Mode.PATH}
 """Modes of a chunk by what it keeps."""
 
 
-def checked_times(times: ArrayLike) -> Vector:
-    """Return the times (m,) [s] of a chunk, which may be NaN.
+def follow_width(n: int, samples: int) -> int:
+    """Count the numbers of a `FollowState` of n joints; 0 without samples."""
+    return FollowState.width(n, samples, n * samples) if samples else 0
+
+
+def checked_times(times: ArrayLike, most: int) -> Vector:
+    """Return the times (m,) [s] of a chunk, m at most `most`, which may be NaN.
 
     Raises:
         InvalidInputError: They are no list, do not rise, or are too many.
     """
     t = checks.array("times", times, (-1,))
-    if not 1 <= t.size <= SAMPLES:
-        raise InvalidInputError("times", f"must be 1 to {SAMPLES}, not {t.size}", times)
+    if not 1 <= t.size <= most:
+        raise InvalidInputError("times", f"must be 1 to {most}, not {t.size}", times)
     steps = np.diff(t)
     if (steps < SHORTEST).any():
         k = int(np.argmax(steps < SHORTEST))
@@ -238,22 +235,15 @@ def checked_times(times: ArrayLike) -> Vector:
     return t
 
 
-def no_samples(plan: ArmPlan) -> Vector:
-    """Return the numbers of a `FollowState` of an arm that follows nothing yet, (k,)."""
-    n = plan.sizes.n
-    return FollowState.zeros(n, SAMPLES * n).numbers
+def stream_mode(kind: Request, lead: int | None, samples: int) -> int:
+    """Return the `Mode` of a stream with a lead; None stands for 1.
 
-
-def velocity_request(own: FollowState) -> tuple[Request, Vector]:
-    """Return kind and numbers (n,) of the request for a step of an arm that follows samples.
-
-    It is NaN for samples that are broken, so that the arm brakes; none for a stream without a new
-    sample, which so grows older. `follow_step` writes the velocities.
+    Raises:
+        InvalidInputError: The request is of another kind, or the shield follows no samples.
     """
-    is_chunk = own.count > 0 and own.mode < Mode.STREAM
-    asks = own.is_broken or own.waiting > 0 or is_chunk
-    fill = np.nan if own.is_broken else 0.0
-    return Request.VELOCITY if asks else Request.NONE, np.full(own.goal.size, fill)
+    if kind is not Request.POSITION or not samples:
+        raise InvalidInputError("time, lead", "belong to a position of a shield with samples", lead)
+    return Mode.STREAM + (1 if lead is None else checks.one_of("lead", lead, (0, 1, 2)))
 
 
 class Preview(NamedTuple):
@@ -301,13 +291,11 @@ class Rehearsal:
         self._positions = positions
         self._words: dict[str, None] = {}
 
-    def take(
-        self, own: FollowState, arm: ArmState, after: ArmState, words: tuple[str, ...]
-    ) -> None:
-        """Take a step: what is followed, the arm before and after it, and its active limits."""
+    def take(self, own: FollowState, arm: Any, after: Any, words: tuple[str, ...]) -> None:
+        """Take a step: what is followed, the `ArmState` before and after it, its active limits."""
         t = self._times
         if own.count + own.waiting == 0:  # refused, or the arm brakes
-            self._words = dict.fromkeys(words or (STALE,))
+            self._words = dict.fromkeys(words)
             self.goes_on = False
             self._miss(np.flatnonzero(np.isnan(self.result.off)))
             return
@@ -355,34 +343,42 @@ class Curve(NamedTuple):
 
 
 @compiled
-def follow_of(plan: ArmPlan, samples: Vector) -> FollowState:
-    """View what an arm follows, (k,)."""
-    n = plan.sizes.n
-    return FollowState.of(samples, n, SAMPLES * n)
+def samples_of(n: int, width: int) -> int:
+    """Return for how many samples of n joints a `FollowState` of some numbers has room."""
+    return (width - ALONE - OF_JOINT * n) // (2 + 3 * n) if width > 0 else 0
 
 
 @compiled
-def keep_samples(
-    plan: ArmPlan, samples: Vector, times: Vector, positions: Matrix, mode: int, now: float
-) -> None:
+def have_meaning(times: Vector, mode: int, most: int) -> bool:
+    """Test whether times (m,) [s] rise and are at most `most`, and there is such a `Mode`."""
+    if times.size < 1 or times.size > most or mode < Mode.TIME or mode > Mode.STREAM + 2:
+        return False
+    if mode >= Mode.STREAM and times.size > 1:
+        return False
+    count = 0
+    for k in range(1, times.size):
+        count += times[k] - times[k - 1] < SHORTEST
+    return count == 0
+
+
+@compiled
+def keep_samples(own: FollowState, times: Vector, positions: Vector, mode: int, now: float) -> None:
     """Let samples wait for their time, in place of those that wait.
 
     With numbers that are not finite the arm brakes. Stale samples change nothing: a chunk that is
     all before the present time; one of a stream that is not after the last one.
 
     Args:
-        plan: Layout of the steps.
-        samples: What is followed, (k,), overwritten.
+        own: What is followed.
         times: Time of each sample [s], rising; of a chunk on the arm's clock, (m,).
-        positions: Joint positions of each [rad], (m, n).
+        positions: Joint positions of one sample after another [rad], (m n,).
         mode: Their `Mode`; of a stream one sample comes at a time.
         now: Time of the next step [s].
     """
-    own = follow_of(plan, samples)
-    flat = positions.reshape(positions.size)
-    own.is_broken = not (all_finite(times, 0, times.size) and all_finite(flat, 0, flat.size))
+    own.is_broken = not all_finite(times, 0, times.size)
+    own.is_broken = own.is_broken or not all_finite(positions, 0, positions.size)
     if not own.is_broken:
-        own.is_broken = largest_entry(times) > LONGEST or largest_entry(flat) > LARGEST
+        own.is_broken = largest_entry(times) > LONGEST or largest_entry(positions) > LARGEST
     if own.is_broken:
         return
     last = times[times.size - 1]
@@ -395,35 +391,22 @@ def keep_samples(
     own.waiting = times.size
     own.next_mode = mode
     copied(own.next_times[: times.size], times)
-    copied(own.next_positions[: positions.size], flat)
+    copied(own.next_positions[: positions.size], positions)
 
 
 @compiled
-def follow_step(plan: ArmPlan, memory: Vector, inputs: ArmInput, samples: Vector) -> None:
-    """Make the velocities by which an arm follows samples its request: after `begin_step`.
+def forget_samples(own: FollowState) -> None:
+    """Follow nothing from now on."""
+    own.count = 0
+    own.waiting = 0
+    own.is_broken = False
 
-    If the arm brakes because of its request, the samples are forgotten.
 
-    Args:
-        plan: Layout of the step.
-        memory: The arm's memory after `begin_step`, (k,); the request is written to it.
-        inputs: The inputs of the step.
-        samples: What is followed, (k,), overwritten.
-    """
-    arm = arm_state(plan, memory)
-    own = follow_of(plan, samples)
-    own.was_stale = own.is_stale
-    own.is_stale = False
-    if arm.reason != Reason.NONE:
-        own.count = 0
-        own.waiting = 0
-    if own.count + own.waiting == 0 or arm.answered != Request.VELOCITY or is_refused(arm):
-        return
-    periods = periods_of_inputs(arm, plan.settings, inputs)
-    motion = motion_of(plan, arm)
-    change_spacing(motion, periods.dt)
-    follow_samples(own, arm.positions, motion, plan.motion, periods, arm.time, arm.request)
-    arm.answered = FOLLOW
+@compiled
+def asks(own: FollowState) -> bool:
+    """Test whether samples are a request: not a stream without a new one, which grows older."""
+    is_chunk = own.count > 0 and own.mode < Mode.STREAM
+    return own.is_broken or own.waiting > 0 or is_chunk
 
 
 @compiled
@@ -686,7 +669,7 @@ def _solve_slopes(own: FollowState, i: int) -> None:
     last = own.count - 1
     own.slopes[i] = _end_slope(own, i, 0, 1)
     own.slopes[last * n + i] = _end_slope(own, i, last, -1)
-    ratio = np.zeros(SAMPLES)
+    ratio = np.zeros(own.times.size)
     for k in range(1, last):
         h = own.times[k] - own.times[k - 1]
         after = own.times[k + 1] - own.times[k]
@@ -842,12 +825,12 @@ def _take_sample(
         seam = 0.0
         a = 0.0
         w = own.pace[i]
-        if moves == 0:
-            w = 0.0
-        elif abs(mean - w) <= change and abs(mean) <= limits.velocity[i]:
+        if abs(mean - w) <= change and abs(mean) <= limits.velocity[i]:
             a = (mean - w) / sampling
             w = mean
             own.misses[i] = 1.0
+        elif moves == 0:
+            w = 0.0
         else:
             own.misses[i] += 1.0
             seam = p - own.goal[i] - w * sampling

@@ -19,6 +19,7 @@ from iiwa_dnn.control.arms import (
     stopping_time_of,
 )
 from iiwa_dnn.control.cycle import ControlLayout
+from iiwa_dnn.control.following import follow_width
 from iiwa_dnn.control.people import separation_in
 from iiwa_dnn.control.requests import CUT, FASTEST, REASONS, TWIST, Reason, RequestCost
 from iiwa_dnn.control.state import MotionState
@@ -115,13 +116,16 @@ def reasons_of(arm: ArmState) -> tuple[str, ...]:
     return tuple(REASONS[code] for code in np.flatnonzero(arm.reasons))
 
 
-def lay_out_arm(step: ControlLayout, solver: DNNSolver, settings: ArmSettings) -> ArmLayout:
+def lay_out_arm(
+    step: ControlLayout, solver: DNNSolver, settings: ArmSettings, samples: int = 0
+) -> ArmLayout:
     """Lay out the step of a shield's arm, if the program has a request, or of a controller's.
 
     Args:
         step: Layout of the control step.
         solver: The solver that answers its programs.
         settings: Settings of the steps.
+        samples: Largest number of samples of a chunk that a shield's arm follows.
     """
     program = step.program
     robot = program.robot
@@ -132,7 +136,9 @@ def lay_out_arm(step: ControlLayout, solver: DNNSolver, settings: ArmSettings) -
     scene = scenes[0] if len(scenes) == 1 and (request >= 0 or not movers) else -1
     avoidance: Any = program.parts[scene] if scene >= 0 else CollisionAvoidance()
     obstacles = avoidance.obstacles
-    sizes = _sizes(step, solver, settings, request >= 0, len(obstacles))
+    sizes = _sizes(step, solver, settings, request >= 0)._replace(
+        obstacles=len(obstacles), following=follow_width(robot.dof, samples)
+    )
     total = np.minimum(robot.dq_max, FASTEST).sum()
     plan = ArmPlan(
         model_tables(robot, program.kinematics.frame_ids, program.needs_inertia),
@@ -163,10 +169,8 @@ def lay_out_arm(step: ControlLayout, solver: DNNSolver, settings: ArmSettings) -
     return ArmLayout(plan, step, memory.numbers, positions, names)
 
 
-def _sizes(
-    step: ControlLayout, solver: DNNSolver, settings: ArmSettings, asks: bool, obstacles: int
-) -> ArmSizes:
-    """Return the sizes of the state of an arm, which has requests or not, and some obstacles."""
+def _sizes(step: ControlLayout, solver: DNNSolver, settings: ArmSettings, asks: bool) -> ArmSizes:
+    """Return the sizes of the state of an arm, which has requests or not, and no obstacles."""
     program = step.program
     dof = program.robot.dof
     n, m, _ = program.sizes
@@ -179,10 +183,11 @@ def _sizes(
         network=solver.state_size(program.sizes) if step.has_network else 0,
         fallback=fallback,
         twist_fallback=fallback * asks,
-        obstacles=obstacles,
+        obstacles=0,
         limiting=n + m,
         sent=(1 + dof) * late * (settings.delay > 0.0),
         bodies=sum(len(each.names) for each in program.parts if isinstance(each, Separation)),
+        following=0,
     )
 
 

@@ -59,6 +59,7 @@ REASONS = (
     "frame of bodies refused",
     "separation",
     "speed scale",
+    "samples stale",
 )
 """Words of each `Reason`, in the order of their codes."""
 
@@ -100,6 +101,7 @@ class Reason(IntEnum):
     FRAME_REFUSED = 13
     SEPARATION = 14
     SPEED_SCALE = 15
+    STALE = 16
 
 
 def one_request(

@@ -38,6 +38,8 @@ from iiwa_dnn.control.arms import (
     add_pending,
     begin_step,
     finish_step,
+    follow_arm,
+    follow_of,
     halt_arm,
     motion_of,
     place_arm,
@@ -52,17 +54,12 @@ from iiwa_dnn.control.controller import ACTION_OF, periods_of_step
 from iiwa_dnn.control.cycle import INVALID, ControlLayout
 from iiwa_dnn.control.following import (
     KEEPS,
-    STALE,
+    SAMPLES,
     FollowState,
-    Mode,
     Preview,
     Rehearsal,
     checked_times,
-    follow_of,
-    follow_step,
-    keep_samples,
-    no_samples,
-    velocity_request,
+    stream_mode,
 )
 from iiwa_dnn.control.layout import ArmLayout, Margin, lay_out_arm, own_movers, reasons_of
 from iiwa_dnn.control.paths import long_times, setup_warnings, warn_of_bodies
@@ -122,7 +119,7 @@ def lay_out_shield(shield: Shield, frame: str) -> ArmLayout:
     solver = DNNSolver(tol=1e-9)
     longest = shield.longest_period
     step = ControlLayout(program, {}, solver, shield.dt, Action.RELAX, longest)
-    return lay_out_arm(step, solver, shield.settings)
+    return lay_out_arm(step, solver, shield.settings, shield.samples)
 
 
 def see(plan: ArmPlan, memory: Vector, news: News) -> None:
@@ -139,12 +136,10 @@ class Kept(NamedTuple):
     Attributes:
         memory: Memory of the arm, (k,).
         frame: Frame of its twists.
-        samples: What it follows, (k,); None: it has a request of another kind.
     """
 
     memory: Vector
     frame: str
-    samples: Vector | None = None
 
 
 class ShieldCommand(Command):
@@ -153,19 +148,17 @@ class ShieldCommand(Command):
     Attributes:
         layout: Layout of the arm's step.
         memory: Memory of the arm after the step, (k,).
-        samples: What the arm follows, (k,); None: it has a request of another kind.
     """
 
-    __slots__ = ("layout", "memory", "samples")
+    __slots__ = ("layout", "memory")
 
     def __init__(
-        self, data: Vector, layout: ArmLayout, action: Action, periods: Periods, kept: Kept
+        self, data: Vector, layout: ArmLayout, action: Action, periods: Periods, memory: Vector
     ) -> None:
         """Take what a `Command` takes, and the arm's layout and memory, which are not copied."""
         super().__init__(data, layout.step.log_layout, action, periods)
         self.layout = layout
-        self.memory = kept.memory
-        self.samples = kept.samples
+        self.memory = memory
 
     @property
     def state(self) -> ArmState:
@@ -184,26 +177,26 @@ class ShieldCommand(Command):
     @property
     def reasons(self) -> tuple[str, ...]:
         """Reasons, other than limits, for a command that differs from the request, in words."""
-        followed = self._followed
-        stale = (STALE,) if followed is not None and followed.was_stale else ()
-        return reasons_of(self.state) + stale
+        return reasons_of(self.state)
 
     @property
     def _followed(self) -> FollowState | None:
-        """What the arm follows; None: it has a request of another kind."""
-        return None if self.samples is None else follow_of(self.layout.plan, self.samples)
+        """What the arm follows, or None."""
+        plan = self.layout.plan
+        own = follow_of(plan, self.state) if plan.sizes.following else None
+        return own if own is not None and own.count else None
 
     @property
     def late(self) -> float:
         """Time by which the clock of what is followed is behind at the end of the period [s]."""
         followed = self._followed
-        return float(followed.late) if followed is not None and followed.count else 0.0
+        return 0.0 if followed is None else float(followed.late)
 
     @property
     def off(self) -> float:
         """Largest distance of a joint from what is followed, at the end of the period [rad]."""
         followed = self._followed
-        if followed is None or not followed.count:
+        if followed is None:
             return 0.0
         return float(np.abs(self.state.positions - followed.reference).max())
 
@@ -243,6 +236,7 @@ class Shield:
         dt: Control period [s].
         longest_period: Longest control period where periods vary [s]; None: they are constant.
         delay: Time by which the arm is behind its commands [s].
+        samples: Largest number of samples of a chunk to follow.
         settings: These and the other numbers, for kernels. All of these are set when the shield is
             made; `limits` alone may be set later.
     """
@@ -251,6 +245,7 @@ class Shield:
     dt: float
     longest_period: float | None
     delay: float
+    samples: int
     settings: ArmSettings
 
     def __init__(
@@ -268,6 +263,7 @@ class Shield:
         latency: float = LATENCY,
         contact_speed: float = 0.0,
         people_speed: float = PEOPLE_SPEED,
+        samples: int = SAMPLES,
     ) -> None:
         """Take a robot, and the obstacles and people to keep away from.
 
@@ -292,6 +288,7 @@ class Shield:
                 the arm earlier; the promise does not depend on it.
             contact_speed: Speed of a link's points up to which people may touch it [m/s].
             people_speed: Bound on their speed [m/s].
+            samples: Largest number of samples of a chunk to follow, at least 4; 0: none is.
 
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
@@ -313,6 +310,7 @@ class Shield:
             longest_period=longest_period,
             delay=settings.delay,
             settings=settings,
+            samples=samples and checks.integer("samples", samples, 4),
         )
         self._warned: set[str] = set()
         self._unseen = tuple(Request)  # kinds whose first request has warnings
@@ -357,7 +355,7 @@ class Shield:
     @limits.setter
     def limits(self, limits: Sequence[Limit]) -> None:
         with self._turn():
-            memory, frame, _ = self._kept
+            memory, frame = self._kept
             layout = self.layout(frame)
             if motion_of(layout.plan, layout.state(memory)).last.any():
                 raise InvalidInputError("limits", "are set at rest: halt the arm first", limits)
@@ -525,7 +523,7 @@ class Shield:
         frame: str | None,
     ) -> PoseChunk:
         """Return the samples of a chunk as joint positions; those of poses are solved for."""
-        t = checked_times(times)
+        t = checked_times(times, self.samples)
         if positions is not None and poses is None:
             points = checks.array("positions", positions, (t.size, self.robot.dof))
             return PoseChunk(t, points, np.arange(t.size), {})
@@ -543,9 +541,9 @@ class Shield:
             return
         kept = self._kept
         plan = self.layout(kept.frame).plan
-        samples = no_samples(plan) if kept.samples is None else kept.samples.copy()
-        keep_samples(plan, samples, chunk.times, chunk.positions, mode, self.time)
-        self._kept = kept._replace(samples=samples)
+        memory = kept.memory.copy()
+        follow_arm(plan, memory, chunk.times, chunk.positions, mode)
+        self._kept = kept._replace(memory=memory)
 
     def preview(
         self,
@@ -585,8 +583,7 @@ class Shield:
                     pending = np.zeros(self.robot.dof)
                     add_pending(arm, self.delay, pending)
                     command = self.step(arm.positions - pending, dt=dt)
-                    assert command.samples is not None
-                    own = follow_of(command.layout.plan, command.samples)
+                    own = follow_of(command.layout.plan, command.state)
                     rehearsal.take(own, arm, command.state, command.active_limits)
             finally:
                 self._kept = kept
@@ -678,24 +675,24 @@ class Shield:
                 halt_arm(plan, memory)
             if people is not None or obstacles is not None:
                 see(plan, memory, News(separation_in(self._limits), people, obstacles, age))
-            samples, kind, request = self._followed(kind, request, time, lead)
+            if not time is lead is None:
+                mode = stream_mode(kind, lead, self.samples)
+                stamp = np.array([self.time if time is None else checks.finite("time", time)])
+                follow_arm(plan, memory, stamp, request[np.newaxis], mode)
+                kind = Request.NONE
             inputs = ArmInput(measured, kind, request, dt or 0.0, elapsed or 0.0, 0.0)
-            kept = Kept(memory, seen, samples)
-            data, action = self._answer(layout, kept, inputs, periods)
-            command = ShieldCommand(data, layout, ACTION_OF[action], periods, kept)
+            data, action = self._answer(layout, memory, inputs, periods)
+            command = ShieldCommand(data, layout, ACTION_OF[action], periods, memory)
             # Last: an interrupted step changes nothing.
-            object.__setattr__(self, "_kept", kept)
+            object.__setattr__(self, "_kept", Kept(memory, seen))
             return command
 
     def _answer(
-        self, layout: ArmLayout, kept: Kept, inputs: ArmInput, periods: Periods
+        self, layout: ArmLayout, memory: Vector, inputs: ArmInput, periods: Periods
     ) -> tuple[Vector, int]:
         """Take a step of a memory, which is overwritten; return its log and the action."""
         plan = layout.plan
-        memory = kept.memory
         begin_step(plan, memory, inputs)
-        if kept.samples is not None:
-            follow_step(plan, memory, inputs, kept.samples)
         kinematics = layout.step.program.kinematics
         positions = memory[layout.positions]
         kinematics.update(positions)
@@ -706,24 +703,6 @@ class Shield:
         if action == INVALID:
             checks.joint_positions("q", positions, self.robot.dof)
         return data, action
-
-    def _followed(
-        self, kind: Request, request: Vector, time: float | None, lead: int | None
-    ) -> tuple[Vector | None, Request, Vector]:
-        """Return what the arm follows in a step, a copy or None, and the step's request."""
-        streams = not time is lead is None
-        kept = self._kept
-        if streams and kind is not Request.POSITION:
-            raise InvalidInputError("time, lead", "belong to a position", (time, lead))
-        if not streams and (kept.samples is None or kind is not Request.NONE):
-            return None, kind, request
-        plan = self.layout(kept.frame).plan
-        samples = no_samples(plan) if kept.samples is None else kept.samples.copy()
-        if streams:
-            mode = Mode.STREAM + (1 if lead is None else checks.one_of("lead", lead, (0, 1, 2)))
-            stamp = self.time if time is None else checks.finite("time", time)
-            keep_samples(plan, samples, np.array([stamp]), request[np.newaxis], mode, self.time)
-        return samples, *velocity_request(follow_of(plan, samples))
 
     def _call_parts(self, layout: ArmLayout, memory: Vector, periods: Periods) -> None:
         """Call the limits and obstacles in Python of a step whose kinematics are computed."""

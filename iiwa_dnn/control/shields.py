@@ -8,7 +8,7 @@ import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn import checks
 from iiwa_dnn.control.arms import (
     ArmInput,
+    follow_arm,
     halt_arm,
     motion_of,
     place_arm,
@@ -24,12 +25,13 @@ from iiwa_dnn.control.arms import (
     step_arms,
     write_margins,
 )
+from iiwa_dnn.control.following import KEEPS, checked_times, stream_mode
 from iiwa_dnn.control.layout import Margin
 from iiwa_dnn.control.people import News, is_of_each, separation_in
 from iiwa_dnn.control.requests import one_request
 from iiwa_dnn.control.shield import Shield, check_held, see
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp import Matrix
+from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import IntVector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.periods import stated_periods
@@ -104,7 +106,7 @@ class Shields:
             count: Number of arms.
             frame: Frame whose twists will be requested; None stands for the tip.
             threads: Threads of a step; None: as many as there are processors.
-            settings: Arguments of `Shield`, with a robot.
+            settings: Arguments of `Shield`, with a robot; `samples` are 0 if they are not stated.
 
         Raises:
             InvalidInputError: An argument is out of range, or the step of many arms would call a
@@ -115,7 +117,7 @@ class Shields:
         if isinstance(robot, Shield) and not settings:
             shield = copy.deepcopy(robot)
         else:
-            shield = Shield(robot, **settings)  # type: ignore[arg-type]
+            shield = Shield(robot, **({"samples": 0} | settings))  # type: ignore[arg-type]
         self._shield = shield
         checks.fix(
             self,
@@ -152,6 +154,8 @@ class Shields:
         *,
         twist: ArrayLike | None = None,
         position: ArrayLike | None = None,
+        time: float | None = None,
+        lead: int | None = None,
         given: ArrayLike | None = None,
         obstacles: ArrayLike | Mapping[str, Any] | None = None,
         people: ArrayLike | Sequence[Any] | None = None,
@@ -170,6 +174,8 @@ class Shields:
             twist: Or the requested linear [m/s] and angular [rad/s] velocities of the frame,
                 (N, 6).
             position: Or the requested joint positions [rad], (N, n).
+            time: Time at which they were sampled [s], for a stream, as for `Shield.step`.
+            lead: Samples by which a stream is continued beyond the last one.
             given: Whether each arm has a new request, (N,); None: all have.
             obstacles: Present centres of the k obstacles [m], (k, 3) or (N, k, 3); None: they are
                 where they were, or where their velocities have led them. Or the place of bodies
@@ -199,6 +205,11 @@ class Shields:
                 self._see(people, None, age)
             if obstacles is not None and not isinstance(obstacles, Mapping):
                 self._place(obstacles)
+            if not time is lead is None:
+                mode = stream_mode(kind, lead, self._shield.samples)
+                stamp = None if time is None else np.full(1, checks.finite("time", time))
+                self._keep(stamp, request, mode, kinds > 0)
+                kinds = 0 * kinds
             self._take_steps(inputs, kinds)
             arms = layout.state(self._memories)
             return ShieldsCommand(
@@ -208,6 +219,46 @@ class Shields:
                 np.argmax(arms.reasons, axis=1),
                 self,
             )
+
+    def follow(
+        self,
+        times: ArrayLike,
+        positions: ArrayLike,
+        keep: Literal["time", "path"] = "time",
+        *,
+        now: float | None = None,
+        given: ArrayLike | None = None,
+    ) -> None:
+        """Follow a chunk of timed joint positions from the next steps on, as `Shield.follow`.
+
+        Args:
+            times: Time of each sample [s], (m,), rising.
+            positions: Joint positions of each arm at each [rad], (N, m, n).
+            keep: What is kept where the samples are too quick for the joints.
+            now: Present time on the clock of `times` [s]; None: they are on each arm's clock.
+            given: Whether each arm has a chunk, (N,); None: all have.
+
+        Raises:
+            InvalidInputError: A shape is wrong, times do not rise, or samples are too many. Nothing
+                is then changed.
+        """
+        t = checked_times(times, self._shield.samples)
+        mode = KEEPS[checks.one_of("keep", keep, tuple(KEEPS))]
+        points = checks.array("positions", positions, (self.count, t.size, self.robot.dof))
+        with self._shield._lock:
+            self._keep(t, points, mode, self._flags("given", given) > 0, now)
+
+    def _keep(
+        self, times: Vector | None, points: Any, mode: int, given: Any, now: float | None = None
+    ) -> None:
+        """Let arms follow samples; without times that of the present."""
+        layout = self._shield.layout(self.frame)
+        for i in np.flatnonzero(given):
+            memory = self._memories[i]
+            clock = float(layout.state(memory).time)
+            own = np.full(1, clock) if times is None else times
+            own = own + (0.0 if now is None else clock - now)
+            follow_arm(layout.plan, memory, own, points[i].reshape(own.size, -1), mode)
 
     def _see(self, people: Any, bodies: Mapping[str, Any] | None, age: float | None) -> None:
         """Take what was seen of people, by all arms or by each one, and of bodies by all arms."""

@@ -54,6 +54,7 @@ _KERNELS = (
     *(arms.brake_arm, arms.motion_of, arms.margin_of, arms.stopping_time_of, all_finite),
     *(arms.see_people, arms.see_body, arms.separation_of, cycle.sample_targets),
     arms.scale_speed,
+    *(arms.follow_arm, arms.follow_of),
     *(fitting.arm_fits, fitting.arm_scratch),
 )
 """Kernels that the interface calls, by their names."""

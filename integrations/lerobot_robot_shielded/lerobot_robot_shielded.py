@@ -32,6 +32,8 @@ class ShieldedConfig(RobotConfig):
         record: Folder that the last minutes are recorded in; none: they are not.
         following_error: Distance of a motor from its goal [rad] beyond which the goal waits.
         gripper_speed: Largest speed of what is no joint [1/s], in its own unit.
+        lead: Actions are a stream, which the motors pass through, continued by 0, 1 or 2 of them
+            beyond the last one; none: each is a rest.
     """
 
     robot: dict[str, Any]  # a choice of RobotConfig would contain itself
@@ -40,6 +42,7 @@ class ShieldedConfig(RobotConfig):
     record: str = ""
     following_error: float = 0.3
     gripper_speed: float = math.inf
+    lead: int | None = None
 
 
 def wrapped(name: str) -> Any:
@@ -68,6 +71,8 @@ class Shielded(Robot):
         super().__init__(config)
         self.config = config
         self.robot = make_robot_from_config(draccus.decode(RobotConfig, config.robot))
+        if config.lead not in (None, 0, 1, 2):
+            raise ValueError(f"lead: {config.lead} is none of 0, 1, 2")
         try:
             self._shield: Any = armstep.Shield(config.shield)
             joints = self._shield.tables.joint_names
@@ -154,7 +159,7 @@ class Shielded(Robot):
         if self._recorded:
             self._recorded.measured = measured
         try:
-            request = {"position": self._radians(action)}
+            request = {"position": self._radians(action), "lead": self.config.lead}
         except armstep.InputError:
             reasons["idle"] = "no number for each joint"
         command = drive.step(self._now, dt, request, **reasons)

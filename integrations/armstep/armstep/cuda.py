@@ -161,6 +161,8 @@ class CudaShields(Shields):
         *,
         twist: Any = None,
         position: Any = None,
+        time: Any = None,
+        lead: Any = None,
         given: Any = None,
         obstacles: Any = None,
         dt: float | None = None,
@@ -176,6 +178,8 @@ class CudaShields(Shields):
             dq: Joint velocities that are requested [rad/s], (N, n).
             twist: Or twists of the frame, (N, 6).
             position: Or joint positions to reach [rad], (N, n).
+            time: None, as `lead`: there are no streams.
+            lead: None.
             given: Whether each arm has a new request, (N,); None: all have.
             obstacles: Where the obstacles' centres are [m], (k, 3) or (N, k, 3).
             dt: Period for which the commands will be held [s].
@@ -184,6 +188,8 @@ class CudaShields(Shields):
         Raises:
             InputError: An array has a wrong shape or is not on the GPU, or a period is wrong.
         """
+        if not time is lead is None:
+            self.follow()
         periods = map(np.float64, self._periods(dt, elapsed))
         with self._lock, self._device:
             joints = _numbers("q", q, self._shape)
@@ -203,6 +209,15 @@ class CudaShields(Shields):
             RUNNING.add(self._device.id)
         dq, next_q, clipped, reason = answers
         return Decisions(dq, next_q, clipped, reason, self)
+
+    @property
+    def time(self) -> float:
+        """Refuse, as `follow`."""
+        raise InputError("time: is not there on a GPU")
+
+    def follow(self, *about: Any, **named: Any) -> None:
+        """Refuse: the shields of a GPU follow no samples."""
+        raise InputError("follow: is not there on a GPU")
 
     def reset(self, mask: Any = None, q: Any = None) -> None:
         """Let arms stand at joint positions q (N, n) [rad]; None: where they are measured next."""

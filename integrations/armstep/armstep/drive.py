@@ -288,6 +288,7 @@ class Drive:
         self._following = Following(tables.limits, *about)
         self._recent = Recent(tables.limits, timeout)
         self._fresh: tuple[float, Array] | None = None  # a state that no command was compared with
+        self._chunk: Mapping[str, Any] | None = None  # that is followed
         self.reset()
 
     def reset(self) -> None:
@@ -299,6 +300,14 @@ class Drive:
     def is_at_rest(self) -> bool:
         """Test whether the last command was one to rest, or there was none."""
         return self.command is None or bool(np.abs(self.command.dq).max() <= REST)
+
+    @property
+    def deviation(self) -> Array | None:
+        """Measured joint positions less those of what is followed [rad], (n,), or None."""
+        reference = None if self.command is None else self.command.followed
+        if self.command is None or reference is None:
+            return None
+        return self.command.next_q - reference + self._following.error
 
     def hold(self, reason: str) -> None:
         """Brake for a reason until `reset`."""
@@ -323,7 +332,8 @@ class Drive:
         Args:
             t: Present time [s].
             elapsed: Time since the last period began [s].
-            request: Request as an argument of `Shield.step`.
+            request: Request as an argument of `Shield.step`; or of `Shield.follow`, `times` being
+                on this clock: an object that is the same again goes on.
             fault: Reason to brake.
             blind: Reason why joint states do not count.
             idle: Reason why the request does not count.
@@ -362,6 +372,7 @@ class Drive:
             return "waits until the arm is at rest or moves steadily"
         dt = self.shield.dt
         self._fresh = None
+        self._chunk = None
         self._following.begin(t, self._recent.extended(t, dq), dq)
         count = 2 + math.ceil(self.shield.tables.delay / dt)  # commands that the shield remembers
         self.shield.reset(self._following.commanded(t - count * dt))
@@ -390,14 +401,26 @@ class Drive:
         Commanded positions never jump, so they are told as measured ones: the shield is then never
         resynchronised.
         """
+        if "times" in request and not self.fault:
+            request = self._followed(request, t)
         asked = {"dq": np.zeros(len(self._following.error))} if self.fault else request
         if self._following.forgets:
             measured = None if blind else self._following.measured(t)
             return self.shield.step(measured, **asked, elapsed=elapsed)
         q = self._following.commanded(t)
         if self._stands and "position" in asked:
-            asked = {"position": self._awaited(q, asked["position"])}
+            asked = {**asked, "position": self._awaited(q, asked["position"])}
         return self.shield.step(q, **asked, dt=self.shield.dt)
+
+    def _followed(self, chunk: Mapping[str, Any], t: float) -> Mapping[str, Any]:
+        """Let the shield follow a chunk that is new, its times on the clock of the periods."""
+        try:
+            if chunk is not self._chunk:
+                self.shield.follow(**chunk, now=t)
+        except InputError as error:
+            self.fault = f"{error}"
+        self._chunk = chunk
+        return {}
 
     def _awaited(self, q: Array, goal: Array) -> Array:
         """Return requested positions that do not lead joints away that do not follow."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,11 +13,16 @@ from numpy.typing import ArrayLike
 from armstep._library import ONE
 from armstep.arms import FARTHEST, TWIST, Answer, Arms, Decision, Decisions, numbers, pointed
 from armstep.errors import InputError, LibraryError
-from armstep.tables import Path, Tables
+from armstep.tables import Array, Path, Tables
 
 KINDS = ("dq", "twist", "position")
 """Arguments that are requests, in the order of their codes from 1 on."""
 
+KEEPS = ("time", "path")
+"""What a chunk keeps where its samples are too quick, in the order of their codes from 0 on."""
+
+STREAM = 2
+"""Code of a stream with a lead of 0."""
 
 Reason = IntEnum(
     "Reason",
@@ -37,6 +43,7 @@ Reason = IntEnum(
         "FRAME_REFUSED",
         "SEPARATION",
         "SPEED_SCALE",
+        "STALE",
     ],
     start=0,
 )
@@ -64,6 +71,31 @@ class ShieldCommand(Decision):
     def reason(self) -> Reason:
         """The first reason beside limits for another command than the request."""
         return Reason(self.result)
+
+    @property
+    def late(self) -> float:
+        """Time by which the clock of what is followed is behind at the end of the period [s]."""
+        return self._followed()[0]
+
+    @property
+    def followed(self) -> Array | None:
+        """Joint positions of what is followed there [rad], (n,); None: nothing is."""
+        return self._followed()[1]
+
+    @property
+    def off(self) -> float:
+        """Largest distance of a joint from what is followed there [rad]."""
+        reference = self.followed
+        return 0.0 if reference is None else float(np.abs(self.next_q - reference).max())
+
+    def _followed(self) -> tuple[float, Array | None]:
+        """Return by how much the clock of what is followed is late, and where that is."""
+        late = ctypes.c_double()
+        place = ONE.armstep_followed(self.tables.arm, self.memory.ctypes, ctypes.byref(late))
+        if place is None:
+            return 0.0, None
+        joints = (ctypes.c_double * len(self.next_q)).from_address(place)
+        return late.value, np.array(joints)
 
     @property
     def margin(self) -> Margin:
@@ -106,6 +138,8 @@ class _Shields(Arms[Answer]):
         *,
         twist: ArrayLike | None = None,
         position: ArrayLike | None = None,
+        time: float | None = None,
+        lead: int | None = None,
         given: ArrayLike | None = None,
         obstacles: ArrayLike | None = None,
         dt: float | None = None,
@@ -120,7 +154,11 @@ class _Shields(Arms[Answer]):
                 Of many, those whose positions are not finite brake.
             dq: Joint velocity that is requested [rad/s], (n,).
             twist: Or linear [m/s] and angular [rad/s] velocity of the frame along the base's axes.
-            position: Or joint positions to reach [rad], (n,).
+            position: Or joint positions to reach [rad], (n,); with a time or a lead those of a
+                stream, which the arm passes through.
+            time: Time at which they were sampled [s], on a clock of their sender; None: now.
+            lead: Samples by which a stream is continued beyond the last one, 0, 1 (also None) or 2:
+                the arm is 2 - lead sampling periods late.
             given: Whether each of many arms has a new request, (N,); None: all have.
             obstacles: Where the centres of the obstacles are [m], (k, 3), of many or (N, k, 3);
                 None: where they were.
@@ -139,6 +177,9 @@ class _Shields(Arms[Answer]):
         with self._lock:
             if obstacles is not None:
                 self.place(obstacles)
+            if time is not None or lead is not None:
+                self._pass(position, time, 1 if lead is None else lead, mask)
+                request = 0, None
             self._batch.given = None if mask is None else self._given
             if mask is not None:
                 self._buffers.given[...] = mask
@@ -155,6 +196,60 @@ class _Shields(Arms[Answer]):
         for _, memory in self._each(mask):
             if ONE.armstep_scale_speed(self.tables.arm, memory, scale):
                 raise InputError("scale: must be from 0 to 1")
+
+    @property
+    def time(self) -> float:
+        """Time of the next step since the first one [s], of the first of many arms."""
+        with self._lock:
+            return float(ONE.armstep_time(self.tables.arm, self._memory[0].ctypes))
+
+    def follow(
+        self,
+        times: ArrayLike,
+        positions: ArrayLike,
+        keep: Literal["time", "path"] = "time",
+        *,
+        now: float | None = None,
+        given: ArrayLike | None = None,
+    ) -> None:
+        """Follow a chunk of timed joint positions from the next steps on, which need no request.
+
+        Args:
+            times: Time of each sample [s], (m,), rising.
+            positions: Joint positions of each [rad], (m, n); for N arms (N, m, n). If some are not
+                finite, the arm brakes.
+            keep: What is kept where the samples are too quick for the joints: their ``"time"``, or
+                their ``"path"``, later.
+            now: Present time on the clock of `times` [s]; None: they are on each arm's clock.
+            given: Which of many arms have a chunk, (N,); None: all.
+
+        Raises:
+            InputError: A shape is wrong, times do not rise, or samples are too many; nothing is
+                then changed.
+        """
+        if keep not in KEEPS:
+            raise InputError(f"keep: must be one of {', '.join(KEEPS)}")
+        t = pointed("times", times, np.shape(times)[:1])
+        points = pointed("positions", positions, (*self._many, t.size, self._shape[-1]))
+        rows = points.reshape(self.count, t.size, self._shape[-1])
+        for i, memory in self._each(given):
+            ahead = 0.0 if now is None else ONE.armstep_time(self.tables.arm, memory) - now
+            self._keep(memory, t + ahead, rows[i], KEEPS.index(keep))
+
+    def _pass(self, position: ArrayLike | None, time: float | None, lead: int, given: Any) -> None:
+        """Take joint positions as the next samples of streams."""
+        if position is None or lead not in (0, 1, 2):
+            raise InputError("time, lead: belong to a position, and a lead is 0, 1 or 2")
+        rows = pointed("position", position, self._shape).reshape(self.count, -1)
+        for i, memory in self._each(given):
+            stamp = ONE.armstep_time(self.tables.arm, memory) if time is None else time
+            self._keep(memory, np.array([stamp], np.float64), rows[i], STREAM + lead)
+
+    def _keep(self, memory: Any, times: Array, rows: Array, mode: int) -> None:
+        """Let an arm follow samples."""
+        given = (times.ctypes, rows.ctypes, times.size, mode)
+        if ONE.armstep_follow(self.tables.arm, memory, *given):
+            raise InputError("times: must rise, and be no more than the shield has samples")
 
     def see(self, people: ArrayLike, age: float) -> None:
         """Say where all people in the field are, as a sensor saw them `age` [s] before the step.

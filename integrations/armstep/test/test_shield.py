@@ -43,6 +43,64 @@ def tiled(own: dict[str, np.ndarray], count: int) -> dict[str, np.ndarray]:
     return {name: np.tile(value, (count, 1)) for name, value in own.items()}
 
 
+def test_chunks_and_streams_have_the_bits_of_shields(package: Any) -> None:
+    random = np.random.default_rng(1)
+    here = Shields(SMOOTH, 1, samples=64, **SETTINGS)
+    there = package.Shield()
+    many = package.Shields(2)
+    assert there.time == 0.0
+    q = START.copy()
+    seen = set()
+    for k in range(1500):
+        own: dict[str, Any] = {}
+        if k % 250 == 40:
+            times = k * DT - 0.02 + np.cumsum(random.uniform(0.01, 0.05, 8))
+            points = q + 0.1 * np.cumsum(random.standard_normal((8, 7)), axis=0)
+            points[0] *= np.nan if k > 1200 else 1.0
+            keep = ["time", "path"][k // 250 % 2]
+            there.follow(times, points, keep, now=k * DT)
+            for arms, count in ((here, 1), (many, 2)):
+                arms.follow(times, np.tile(points, (count, 1, 1)), keep, now=k * DT)
+        elif 600 < k < 900 and k % 20 == 0:
+            goal = START + 0.2 * np.sin(k * DT * np.arange(1.0, 8.0))
+            own = {"position": goal, "lead": k // 100 % 3}
+        wide = {
+            name: value[np.newaxis] if name == "position" else value for name, value in own.items()
+        }
+        command = there.step(q, **own)
+        same = here.step(q[np.newaxis], **wide)
+        twice = many.step(
+            np.tile(q, (2, 1)),
+            **{n: np.tile(v, (2, 1)) if n == "position" else v for n, v in own.items()},
+        )
+        np.testing.assert_array_equal(command.dq, same.dq[0])
+        np.testing.assert_array_equal(twice.dq, np.tile(command.dq, (2, 1)))
+        assert command.reason == same.reason[0]
+        assert (command.off > 0.0) <= (command.followed is not None)
+        seen.add(command.reason.name)
+        q = command.next_q
+    assert {"NONE", "TIMED_OUT", "NOT_FINITE"} <= seen
+    assert np.abs(q - START).max() > 0.05
+
+
+def test_samples_without_a_meaning_are_refused(package: Any) -> None:
+    made = package.Shield()
+    for times, positions, keep in (
+        ([0.0, 0.0], np.tile(START, (2, 1)), "time"),
+        (np.arange(65.0), np.tile(START, (65, 1)), "time"),
+        ([], np.zeros((0, 7)), "time"),
+        ([0.0], [START], "neither"),
+        ([0.0], [START[:6]], "path"),
+    ):
+        with pytest.raises(armstep.InputError):
+            made.follow(times, positions, keep)
+    for own in ({"dq": START, "lead": 1}, {"position": START, "lead": 3}, {"time": 0.0}):
+        with pytest.raises(armstep.InputError, match="belong to a position"):
+            made.step(START, **own)
+    made.follow([-1.0], [START])
+    assert made.step(START).reason in (armstep.Reason.NO_REQUEST, armstep.Reason.STALE)
+
+
 def test_each_kind_of_request_has_the_bits_of_shields(package: Any) -> None:
     random = np.random.default_rng(0)
     here = Shields(SMOOTH, 1, **SETTINGS)

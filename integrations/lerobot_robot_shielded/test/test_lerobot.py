@@ -70,6 +70,22 @@ def test_chunks_with_seams_break_no_limit(commands: Path, tmp_path: Path) -> Non
     np.testing.assert_allclose(q[-1], q[-2], atol=1e-9)  # at rest before the motors are off
 
 
+def test_a_lead_of_one_action_makes_motors_one_action_late(commands: Path, tmp_path: Path) -> None:
+    for lead, most in (("", 6), ("--robot.lead=1", 2)):
+        words = (RECORD[0], "--teleop.smooth=true", "--fps=30", "--teleop_time_s=6", *lead.split())
+        done = run(commands, "teleoperate", tmp_path, *words)
+        assert done.returncode == 0, done.stdout[-3000:]
+        q = np.radians(np.load(tmp_path / "goals.npy")[:, :-1])
+        assert breaches(q, DT, *ROBOT.limits) == []
+        k = np.arange(60, 150)
+        off = [
+            np.abs(q[k, 4] - np.radians(20.0 * np.sin(np.pi / 25.0 * (k - d)))) for d in range(8)
+        ]
+        late = int(np.argmin([each.sum() for each in off]))
+        assert most - 2 <= late <= most
+        assert lead == "" or off[late].max() < 5e-3
+
+
 def test_a_motor_is_one_joint(commands: Path, tmp_path: Path) -> None:
     done = run(commands, "teleoperate", tmp_path, f"--robot.joints=[{','.join(5 * ['gripper'])}]")
     assert "joints: ['gripper.pos'" in done.stdout

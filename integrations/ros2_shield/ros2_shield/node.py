@@ -19,6 +19,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import PoseArray, TwistStamped
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
 from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, qos_profile_sensor_data
@@ -65,6 +66,7 @@ class Newest:
     value: dict[str, Any] = field(default_factory=dict)  # its numbers (k,) by their name
     stamp: int = 0  # its own [ns], 0 without one
     time: float = -np.inf  # of its stamp, by the clock of the periods [s]
+    end: float = -np.inf  # of a trajectory, which lasts
 
     def is_recent(self, now: float, timeout: float) -> bool:
         """Test whether the message is not too old at a time [s]."""
@@ -72,7 +74,8 @@ class Newest:
 
     def fault(self, now: float, timeout: float) -> str:
         """Return why the message does not count at a time [s], or nothing."""
-        return self.problem or ("" if self.is_recent(now, timeout) else f"{self.kind} timed out")
+        counts = self.end > -np.inf or self.is_recent(now, timeout)
+        return self.problem or ("" if counts else f"{self.kind} timed out")
 
 
 class ShieldNode(Node):
@@ -116,6 +119,11 @@ class ShieldNode(Node):
         except armstep.InputError as error:
             raise RefusedError(f"parameter command: {error}") from error
         self._tables = tables = shield.tables
+        self._tolerances = {
+            kind: np.array([self._tolerance(f"{name}.{kind}") for name in tables.joint_names])
+            for kind in ("trajectory", "goal")
+        }
+        self._goal_time = self._tolerance("goal_time")
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         is_simulated = self.get_parameter("use_sim_time").value
         self._pace = self.get_clock() if is_simulated else steady
@@ -131,6 +139,8 @@ class ShieldNode(Node):
         ):
             take = partial(self._take, self._request, read)
             self.create_subscription(message, topic, take, NEWEST)
+        trajectories = (JointTrajectory, "~/joint_trajectory", self._on_trajectory, NEWEST)
+        self.create_subscription(*trajectories)
         # Best effort receives what is reliable, too; another's states do not displace the arm's.
         states = (JointState, "/joint_states", self._on_states, qos_profile_sensor_data)
         self.create_subscription(*states)
@@ -171,6 +181,7 @@ class ShieldNode(Node):
             return False
         newest.problem = ""
         newest.value = value
+        newest.end = -np.inf
         newest.stamp, newest.time = stamp.nanoseconds, now - age
         return True
 
@@ -211,6 +222,54 @@ class ShieldNode(Node):
         return {
             "position": self._drive.joints.ordered(message.joint_names, message.points[0].positions)
         }
+
+    def _on_trajectory(self, message: JointTrajectory) -> None:
+        """Take a trajectory, from its stamp on, without one from now; one without points ends."""
+        own = self._request
+        stamp = Time.from_msg(message.header.stamp)
+        begin = self._now()
+        if stamp.nanoseconds:
+            begin -= float((self.get_clock().now() - stamp).nanoseconds * 1e-9)
+        order = self._drive.joints.ordered
+        try:
+            rows = [order(message.joint_names, each.positions) for each in message.points]
+        except armstep.InputError as error:
+            own.problem = f"trajectory {error}"
+            return
+        after = [Duration.from_msg(each.time_from_start).nanoseconds for each in message.points]
+        times = begin + 1e-9 * np.array(after, float)
+        own.problem = "" if rows else "no request"
+        own.value = {"times": times, "positions": np.array(rows)}
+        own.end = times[-1] if rows else -np.inf
+
+    def _tolerance(self, name: str) -> float:
+        """Return a tolerance as of a JointTrajectoryController; 0: there is none.
+
+        Raises:
+            RefusedError: It is negative.
+        """
+        about = ParameterDescriptor(read_only=True)
+        found = self.declare_parameter(f"constraints.{name}", 0.0, about).value
+        if not found >= 0.0:
+            raise RefusedError(f"parameter constraints.{name}: {found} is negative")
+        return float(found)
+
+    def _watch(self, now: float) -> None:
+        """End a trajectory that a fault ends, or that a joint leaves by more than its tolerance."""
+        own = self._request
+        deviation = self._drive.deviation
+        if own.problem or own.end == -np.inf or not self._drive.has_begun:
+            return
+        if self._drive.fault:
+            own.problem = f"trajectory ended: {self._drive.fault}"
+        elif deviation is not None:
+            is_over = self._goal_time > 0.0 and now > own.end + self._goal_time
+            kind = "goal" if is_over else "trajectory"
+            tolerance = self._tolerances[kind]
+            off = np.abs(deviation) * (tolerance > 0.0) - tolerance
+            if off.max() > 0.0:
+                name = self._tables.joint_names[int(off.argmax())]
+                own.problem = f"trajectory left: constraints.{name}.{kind}"
 
     def _measured(self, message: JointState) -> dict[str, Any]:
         return {"q": self._drive.joints.ordered(message.name, message.position)}
@@ -285,6 +344,7 @@ class ShieldNode(Node):
         command = self._drive.step(now, elapsed, self._request.value, *reasons)
         if command is not None:
             self._send(command)
+        self._watch(now)
         if self._drive.fault != before:
             self._report()
 

@@ -42,6 +42,7 @@ FRAME = 8  # periods between two frames of people
 HOME = np.array([2.2, 0.3, 0.6])  # of a person [m]
 NEAR = np.array([0.45, 0.15, 0.6])  # where the person goes [m]
 WALK = 1.6  # [m/s]
+TRAJECTORIES = "/shield/joint_trajectory"
 
 
 def stamp(ns):
@@ -68,6 +69,7 @@ class Arm(Node):
         self.times = []  # of the commands [s]
         self.said = [""]  # by the diagnostics
         self.publishers_of = {kind: self.create_publisher(kind, TOPICS[kind], 1) for kind in TOPICS}
+        self.trajectories = self.create_publisher(JointTrajectory, TRAJECTORIES, 1)
         names = ("halt", "reset")  # found long before they are called: the arm would time out
         self.services_of = {each: self.create_client(Trigger, f"/shield/{each}") for each in names}
         self.create_subscription(DiagnosticArray, "/diagnostics", self.on_state, 10)
@@ -321,6 +323,51 @@ def call(arm, name):
     return future.result().success
 
 
+def follow(arm, ways, seconds):
+    """Ask for a trajectory of displacements (m, n) [rad] that lasts some seconds, and wait longer.
+
+    Return the times since then [s], and displacements.
+    """
+    begun = arm.t
+    start = arm.path[-1]
+    points = []
+    for k, way in enumerate(ways, 1):
+        point = JointTrajectoryPoint(positions=(start + way).tolist())
+        point.time_from_start.nanosec = round(1e9 * k * seconds / len(ways)) % 10**9
+        point.time_from_start.sec = round(1e9 * k * seconds / len(ways)) // 10**9
+        points.append(point)
+    message = JointTrajectory(joint_names=arm.names, points=points)
+    message.header.stamp = stamp(arm.now())
+    arm.trajectories.publish(message)
+    first = len(arm.path)
+    times = []
+    while arm.t < begun + seconds + 1.0:
+        arm.turn()
+        times.append(arm.t - begun)
+    return np.array(times), np.array(arm.path[first:]) - start
+
+
+def check_trajectory(arm):
+    """Check that a trajectory is followed without lag, and that one that is left is ended."""
+    arm.ask(arm.velocity(0.0), 200, arm.rests)
+    arm.ask(arm.velocity(0.0), 50)
+    signs = -np.sign(arm.path[-1] + 1e-3)
+
+    def way(t):
+        u = np.clip(np.atleast_1d(t) / 1.5, 0.0, 1.0)[:, np.newaxis]
+        return 0.3 * signs * u**3 * (10.0 - 15.0 * u + 6.0 * u * u)
+
+    times, ways = follow(arm, way(0.1 * np.arange(1, 16)), 1.5)
+    off = np.abs(ways - way(times - 2.0 * arm.dt)).max()
+    print(f"trajectory: {1e3 * off:.2f} mrad off", flush=True)
+    assert off < 0.01
+    np.testing.assert_allclose(ways[-1], 0.3 * signs, atol=1e-6)
+    _, ways = follow(arm, -np.outer([0.5, 1.0], signs), 0.05)  # too quick
+    assert arm.wait(lambda: arm.said[-1].startswith("trajectory left: constraints."))
+    assert arm.rests()
+    arm.start(arm.velocity(0.2))
+
+
 def check_held(arm):
     """Check that a halted arm waits for a reset, and one that does not follow its commands.
 
@@ -387,6 +434,8 @@ if __name__ == "__main__":
     if mode in ("simulated", "timed"):
         drive(arm, float(seconds))
         check_reasons(arm)
+        if mode == "simulated":
+            check_trajectory(arm)
         check_held(arm)
     np.savez(file, start=arm.path[0], log=arm.log, places=places)
     if mode == "simulated":

@@ -31,7 +31,8 @@ pytestmark = pytest.mark.skipif(
     sys.version_info[:2] != (3, 11), reason="the wheels of ROS Jazzy are for Python 3.11"
 )
 SECONDS = os.environ.get("SECONDS_OF_HOSTILE_REQUESTS", "5")
-SIMULATED = ("use_sim_time:=true", "timeout:=0.5")
+CONSTRAINTS = [f"constraints.iiwa7_joint_{k}.trajectory:=0.1" for k in range(1, 8)]
+SIMULATED = ("use_sim_time:=true", "timeout:=0.5", *CONSTRAINTS)
 TIMED = ("command:=trajectory", "following_error:=0.5", "timeout:=0.5")
 DISTANCE = 0.02
 ROBOT = iiwa_dnn.load_robot("iiwa7").with_limits(acceleration=10.0, jerk=500.0)

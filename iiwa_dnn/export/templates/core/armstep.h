@@ -161,6 +161,18 @@ ARMSTEP_API enum armstep_status armstep_body(
     const struct armstep *arm, double *memory, ptrdiff_t number, const double *box, double age
 );
 
+/* What a chunk of samples keeps where they are too quick: their times, or their path, later. A stream of single samples
+ * is continued beyond the last one by ARMSTEP_STREAM plus 0, 1 or 2 samples: the arm is 2, 1 or 0 of them late. */
+enum armstep_mode { ARMSTEP_KEEP_TIME = 0, ARMSTEP_KEEP_PATH = 1, ARMSTEP_STREAM = 2 };
+
+/* Let a shield's arm follow `count` joint positions (count, joints) from their times on, which rise: those of a chunk on
+ * the arm's clock (armstep_time), of a stream on any. Steps then need no request; another one ends it. A new chunk
+ * replaces the rest of the last from its first time on, and ends at rest. ARMSTEP_NOT_FINITE: times do not rise, or
+ * there are more samples than the tables have room for. Numbers that are not finite brake the arm. */
+ARMSTEP_API enum armstep_status armstep_follow(
+    const struct armstep *arm, double *memory, const double *times, const double *positions, ptrdiff_t count, int mode
+);
+
 /* What a step is given. Fields that are left out are zero. */
 struct armstep_input {
     const double *q; /* measured joint positions (joints) */
@@ -226,6 +238,13 @@ ARMSTEP_API int armstep_active_limits(const struct armstep *arm, const double *m
 ARMSTEP_API enum armstep_status armstep_margin(
     const struct armstep *arm, const double *memory, double *scratch, double *joint, double *distance
 );
+
+/* the time of the next step on the clock of chunks; */
+ARMSTEP_API double armstep_time(const struct armstep *arm, const double *memory);
+
+/* the time by which the clock of a chunk is behind, and the positions (joints) that are followed, at the end of the
+ * period; NULL: nothing is followed; */
+ARMSTEP_API const double *armstep_followed(const struct armstep *arm, const double *memory, double *late);
 
 /* the least separation of a shield's links from people, less the one to keep, INFINITY without; */
 ARMSTEP_API double armstep_separation(const struct armstep *arm, const double *memory, double *scratch);

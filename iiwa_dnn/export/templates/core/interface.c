@@ -263,6 +263,25 @@ enum armstep_status armstep_place(const struct armstep *arm, double *memory, con
     return @all_finite@numbers, 0, numbers.size0) ? ARMSTEP_OK : ARMSTEP_NOT_FINITE;
 }
 
+enum armstep_status armstep_follow(
+    const struct armstep *arm, double *memory, const double *times, const double *positions, ptrdiff_t count, int mode
+)
+{
+    const ptrdiff_t joints = arm->tables->joints;
+    if (!is_shield(arm)) {
+        return ARMSTEP_WRONG_KIND;
+    }
+    if (!has_begun(arm, memory)) {
+        return ARMSTEP_OTHER_TABLES;
+    }
+    if (count < 1) {
+        return ARMSTEP_NOT_FINITE;
+    }
+    const Matrix rows = {view(positions, count * joints).data, count, joints};
+    return @follow_arm@plan_of(arm), numbers_of(arm, memory), view(times, count), rows, mode) ? ARMSTEP_OK
+                                                                                              : ARMSTEP_NOT_FINITE;
+}
+
 enum armstep_status armstep_people(
     const struct armstep *arm, double *memory, const double capsules[][7], ptrdiff_t count, double age
 )
@@ -490,6 +509,25 @@ enum armstep_status armstep_margin(
     *joint = found.at[0];
     *distance = found.at[1];
     return ARMSTEP_OK;
+}
+
+double armstep_time(const struct armstep *arm, const double *memory)
+{
+    return state_of(arm, memory).at->time;
+}
+
+const double *armstep_followed(const struct armstep *arm, const double *memory, double *late)
+{
+    const control_arms_ArmState state = state_of(arm, memory);
+    if (state.following.size0 == 0) {
+        return NULL;
+    }
+    const control_following_FollowState own = @follow_of@plan_of(arm), &state);
+    if (own.at->count == 0.0) {
+        return NULL;
+    }
+    *late = own.at->late;
+    return own.reference.data;
 }
 
 double armstep_separation(const struct armstep *arm, const double *memory, double *scratch)

@@ -58,7 +58,9 @@ class Ideal(Idle, Robot):
 @TeleoperatorConfig.register_subclass("chunks")
 @dataclass(kw_only=True)
 class ChunksConfig(TeleoperatorConfig):
-    """Settings of a policy that replans without regard to where the arm is."""
+    """Settings of a policy that replans without regard to where the arm is, or is smooth."""
+
+    smooth: bool = False
 
 
 class Chunks(Idle, Teleoperator):
@@ -69,10 +71,14 @@ class Chunks(Idle, Teleoperator):
 
     def __init__(self, config):
         super().__init__(config)
+        self.config = config
         self.random = np.random.default_rng(0)
         self.count = 0
 
     def get_action(self):
+        if self.config.smooth:
+            self.count += 1
+            return dict.fromkeys(KEYS, 20.0 * np.sin(np.pi / 25.0 * self.count))
         if self.count % CHUNK == 0:
             self.base, self.slope = self.random.normal(size=(2, len(MOTORS)))
         self.count += 1
