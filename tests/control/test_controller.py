@@ -13,6 +13,7 @@ from helpers_kinematics import PAPER_Q0, dh_pose
 from helpers_simulation import driven, heart, near_target, paper_robot, paper_start, run
 
 DT = 1e-3
+PLANAR = d.robot_from_dh([(0.4, 0.0, 0.0, 0.0)] * 3, lower=-3.0, upper=3.0, velocity=1.0)
 
 
 def test_a_command_says_in_words_what_it_is() -> None:
@@ -125,49 +126,46 @@ def test_rank_counts_not_rows() -> None:
     table = d.robot_from_dh(
         [(0.0, quarter, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)], velocity=1.0, prismatic=[1, 2]
     )
-    planar = d.robot_from_dh([(0.4, 0.0, 0.0, 0.0)] * 3, lower=-3.0, upper=3.0, velocity=1.0)
     bent = [0.3, 0.8, 0.5]
     for offset, said in (([0.02, -0.03, 0.0], 0), ([0.0, 0.02, 0.03], 1)):
         across = [offset[2], offset[0], offset[1]]  # the plane of y and z
         for found in (
             next_motion_state(table, [0.1, 0.2], d.Line(offset=across), d.PositionTask()),
-            next_motion_state(planar, bent, d.Line(offset=offset), d.PositionTask()),
-            next_motion_state(planar, bent, d.Line(offset=offset), d.PoseTask()),
+            next_motion_state(PLANAR, bent, d.Line(offset=offset), d.PositionTask()),
+            next_motion_state(PLANAR, bent, d.Line(offset=offset), d.PoseTask()),
         ):
             assert [" joints cannot fulfil the " in each for each in found] == [True] * said
 
 
 def test_a_start_in_a_singular_posture_is_named() -> None:
-    planar = d.robot_from_dh([(0.4, 0.0, 0.0, 0.0)] * 3, lower=-3.0, upper=3.0, velocity=1.0)
     inwards = d.Line(offset=[-0.3, 0.0, 0.0])
-    (said,) = next_motion_state(planar, np.zeros(3), inwards, d.PositionTask())
+    (said,) = next_motion_state(PLANAR, np.zeros(3), inwards, d.PositionTask())
     assert said == (
         "3 joints cannot fulfil the 3 rows of the tasks, whose rank at the start is 1: "
         "a singular posture, or tasks that contradict each other"
     )
     (said,) = next_motion_state(
-        planar, np.zeros(3), d.Line(offset=[0.0, 0.1, 0.0]), d.PositionTask()
+        PLANAR, np.zeros(3), d.Line(offset=[0.0, 0.1, 0.0]), d.PositionTask()
     )
     assert "beyond the arm's reach" in said  # the way there begins as the joints move
 
 
 def test_a_command_in_a_singular_posture_says_so() -> None:
     """Straight, no joint moves the tip along the arm; bent, each does."""
-    planar = d.robot_from_dh([(0.4, 0.0, 0.0, 0.0)] * 3, lower=-3.0, upper=3.0, velocity=1.0)
     scheme = d.Scheme([d.CyclicMotion()], [d.PositionTask()], [d.JointLimits()])
     for q, reasons in (
         (np.zeros(3), ("a singular posture, or tasks that contradict each other",)),
         (np.array([0.3, 1.0, 0.9]), ()),
     ):
-        tip = d.Configuration(planar, q).position
-        command = d.Controller(planar, scheme, dt=1e-2).step(q, 0.0, d.Target(tip - [0.01, 0, 0]))
+        tip = d.Configuration(PLANAR, q).position
+        command = d.Controller(PLANAR, scheme, dt=1e-2).step(q, 0.0, d.Target(tip - [0.01, 0, 0]))
         assert command.active_limits == reasons
         assert command.ok == (not reasons)
-    up = d.Target(tip + [0.0, 0.0, 0.1], d.Configuration(planar, q).rotation)
-    straight = d.Controller(planar, scheme, dt=1e-2).step(q, 0.0, up)
+    up = d.Target(tip + [0.0, 0.0, 0.1], d.Configuration(PLANAR, q).rotation)
+    straight = d.Controller(PLANAR, scheme, dt=1e-2).step(q, 0.0, up)
     assert straight.active_limits == ("a singular posture, or tasks that contradict each other",)
     whole = d.Scheme([d.CyclicMotion()], [d.PoseTask()], [d.JointLimits()])
-    raised = d.Controller(planar, whole, dt=1e-2).step(q, 0.0, up)
+    raised = d.Controller(PLANAR, whole, dt=1e-2).step(q, 0.0, up)
     assert "a singular posture, or tasks that contradict each other" in raised.active_limits
 
 

@@ -6,41 +6,27 @@ from typing import Any
 import numpy as np
 import pytest
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, paper_start
-from iiwa_dnn import (
-    AccelerationLimits,
-    CollisionAvoidance,
-    Controller,
-    DoubleIndicator,
-    InvalidInputError,
-    NotFoundError,
-    Shield,
-    Shields,
-    Target,
-    simulate,
-    solve_pose,
-)
 from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
 from iiwa_dnn.simulation import MovingAverage
 
-POSE = Target(paper_start().position, paper_start().rotation)
+POSE = d.Target(paper_start().position, paper_start().rotation)
 
 
-def controller(**options: Any) -> Controller:
-    return Controller(paper_robot(), DoubleIndicator(), heart(), **options)
+def controller(**options: Any) -> d.Controller:
+    return d.Controller(paper_robot(), d.DoubleIndicator(), heart(), **options)
 
 
-def of_three_joints() -> Controller:
-    return Controller(paper_robot(), DoubleIndicator(extra_limits=(AccelerationLimits([1, 2, 3]),)))
-
+OF_THREE_JOINTS = d.DoubleIndicator(extra_limits=(d.AccelerationLimits([1, 2, 3]),))
 
 REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("mode: must be one of converged, continuous, not", lambda: controller(mode="discrete")),
     ("policy", lambda: controller(policy="raise")),
-    ("scheme", lambda: Controller(paper_robot(), object())),  # type: ignore[arg-type]
+    ("scheme", lambda: d.Controller(paper_robot(), object())),  # type: ignore[arg-type]
     ("dt", lambda: controller(dt=0.0)),
-    ("reference", lambda: Controller(paper_robot(), DoubleIndicator()).step(PAPER_Q0, 0.0)),
+    ("reference", lambda: d.Controller(paper_robot(), d.DoubleIndicator()).step(PAPER_Q0, 0.0)),
     ("dt", lambda: controller().step(PAPER_Q0, 0.0, dt=0.0)),
     ("measurement", lambda: NoiseModel(measurement=0.0)),
     ("velocity", lambda: NoiseModel(velocity=-1.0)),
@@ -50,20 +36,20 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("dt", lambda: JointEstimator(NoiseModel(), 0.0)),
     ("filter_window", lambda: MovingAverage(0)),
     ("filter_window", lambda: MovingAverage(2.5)),  # type: ignore[arg-type]
-    ("dt", lambda: Shield(paper_robot(), dt=0.0)),
-    ("timeout", lambda: Shield(paper_robot(), timeout=-1.0)),
-    ("distance", lambda: Shield(paper_robot(), distance=-0.1)),
-    ("distance", lambda: Shield(paper_robot(), 1e-3, CollisionAvoidance(), distance=0.05)),
-    ("robot", lambda: Shield("64")),  # type: ignore[arg-type]
-    ("robot", lambda: Shields(64)),  # type: ignore[arg-type]
-    ("robot", lambda: Shields(Shield(paper_robot()), 2, dt=1e-3)),
-    ("count", lambda: Shields(paper_robot(), 0)),
-    ("tracking_error", lambda: Shield(paper_robot(), tracking_error=np.nan)),
-    ("starts", lambda: solve_pose(paper_robot(), POSE, starts=0)),
-    ("target", lambda: solve_pose(paper_robot(), np.eye(4))),  # type: ignore[arg-type]
-    ("q0", lambda: solve_pose(paper_robot(), POSE, [0.0, 1.0])),
-    ("orientation", lambda: solve_pose(paper_robot(), POSE, orientation="block")),  # type: ignore[arg-type]
-    ("acceleration: must have shape", lambda: of_three_joints()),
+    ("dt", lambda: d.Shield(paper_robot(), dt=0.0)),
+    ("timeout", lambda: d.Shield(paper_robot(), timeout=-1.0)),
+    ("distance", lambda: d.Shield(paper_robot(), distance=-0.1)),
+    ("distance", lambda: d.Shield(paper_robot(), 1e-3, d.CollisionAvoidance(), distance=0.05)),
+    ("robot", lambda: d.Shield("64")),  # type: ignore[arg-type]
+    ("robot", lambda: d.Shields(64)),  # type: ignore[arg-type]
+    ("robot", lambda: d.Shields(d.Shield(paper_robot()), 2, dt=1e-3)),
+    ("count", lambda: d.Shields(paper_robot(), 0)),
+    ("tracking_error", lambda: d.Shield(paper_robot(), tracking_error=np.nan)),
+    ("starts", lambda: d.solve_pose(paper_robot(), POSE, starts=0)),
+    ("target", lambda: d.solve_pose(paper_robot(), np.eye(4))),  # type: ignore[arg-type]
+    ("q0", lambda: d.solve_pose(paper_robot(), POSE, [0.0, 1.0])),
+    ("orientation", lambda: d.solve_pose(paper_robot(), POSE, orientation="block")),  # type: ignore[arg-type]
+    ("acceleration: must have shape", lambda: d.Controller(paper_robot(), OF_THREE_JOINTS)),
     ("fraction", lambda: controller().send(np.zeros(7), fraction="a")),  # type: ignore[arg-type]
     ("fraction", lambda: controller().send(np.zeros(7), fraction=np.nan)),
 ]
@@ -71,13 +57,13 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
 
 @pytest.mark.parametrize(("name", "call"), REFUSED, ids=[name for name, _ in REFUSED])
 def test_an_argument_that_makes_no_sense_is_named(name: str, call: Callable[[], object]) -> None:
-    with pytest.raises(InvalidInputError, match=rf"^{name}\b"):
+    with pytest.raises(d.InvalidInputError, match=rf"^{name}\b"):
         call()
 
 
 def test_a_setting_of_shields_that_is_misspelt_is_named() -> None:
-    with pytest.raises(NotFoundError, match="no setting of a shield 'timeuot'; did you mean"):
-        Shields(paper_robot(), 2, timeuot=0.1)
+    with pytest.raises(d.NotFoundError, match="no setting of a shield 'timeuot'; did you mean"):
+        d.Shields(paper_robot(), 2, timeuot=0.1)
 
 
 @pytest.mark.parametrize("settings", [{"dt": 0.5}, {"longest_period": 1.5e-3}])
@@ -85,12 +71,12 @@ def test_a_warning_names_the_line_that_called(settings: dict[str, Any]) -> None:
     """Those of `Shield.step` named the line `sys:1`."""
     robot = paper_robot()
     loop = controller(policy="stop", **settings)
-    shield, warm = (Shield(robot, **{"dt": 1e-3} | settings) for _ in range(2))
+    shield, warm = (d.Shield(robot, **{"dt": 1e-3} | settings) for _ in range(2))
     calls: list[Callable[[], object]] = [
         lambda: loop.step(PAPER_Q0, 0.0, **elapsed),
         lambda: shield.step(PAPER_Q0, **elapsed),
         lambda: warm.warm_up(PAPER_Q0),
-        lambda: simulate(robot, DoubleIndicator(), heart(), PAPER_Q0, dt=0.5, duration=0.5),
+        lambda: d.simulate(robot, d.DoubleIndicator(), heart(), PAPER_Q0, dt=0.5, duration=0.5),
     ]
     elapsed = {} if "dt" in settings else {"elapsed": 2e-3}
     for call in calls[: 2 if elapsed else 4]:
@@ -114,30 +100,24 @@ def test_joint_positions_that_are_none_are_refused(q: Any, begun: bool) -> None:
     loop = controller()
     if begun:
         loop.step(PAPER_Q0, 0.0)
-    with pytest.raises(InvalidInputError, match=r"^q\b"):
+    with pytest.raises(d.InvalidInputError, match=r"^q\b"):
         loop.step(q, 1e-3)
 
 
-def test_joint_positions_of_other_types_are_the_numbers_that_they_hold() -> None:
-    q = np.array(PAPER_Q0, "f4")
-    expected = controller().step(q.astype(float), 0.0).dq
-    for other in (q, q.astype(">f8"), q.astype("g")):
-        np.testing.assert_array_equal(controller().step(other, 0.0).dq, expected)
-
-
-def test_joint_positions_with_gaps_in_memory_are_taken() -> None:
-    q = np.array(PAPER_Q0)
+def test_joint_positions_of_other_types_and_with_gaps_are_the_numbers_that_they_hold() -> None:
+    q = np.array(PAPER_Q0, "f4").astype(float)
     expected = controller().step(q, 0.0).dq
-    for other in (np.stack([q, q], axis=1)[:, 0], q[::-1].copy()[::-1]):
-        assert not other.flags.c_contiguous
+    others = [q.astype(kind) for kind in ("f4", ">f8", "g")]
+    others += [np.stack([q, q], axis=1)[:, 0], q[::-1].copy()[::-1]]
+    for other in others:
         np.testing.assert_array_equal(controller().step(other, 0.0).dq, expected)
 
 
 def test_a_scheme_that_does_not_fit_changes_nothing() -> None:
     loop = controller()
     before = loop.scheme
-    with pytest.raises(InvalidInputError, match=r"^acceleration"):
-        loop.scheme = DoubleIndicator(extra_limits=(AccelerationLimits([1, 2, 3]),))
+    with pytest.raises(d.InvalidInputError, match=r"^acceleration"):
+        loop.scheme = OF_THREE_JOINTS
     assert loop.scheme is before
 
 
@@ -145,7 +125,7 @@ def test_a_scheme_that_does_not_fit_changes_nothing() -> None:
 def test_a_time_that_is_no_number_is_refused_and_nothing_is_lost(t: Any) -> None:
     loop = controller()
     for _ in range(2):
-        with pytest.raises(InvalidInputError, match=r"^t\b"):
+        with pytest.raises(d.InvalidInputError, match=r"^t\b"):
             loop.step(PAPER_Q0, t)
         command = loop.step(PAPER_Q0, 0.0)
     expected = controller().step(PAPER_Q0, 0.0).dq

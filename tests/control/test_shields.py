@@ -9,24 +9,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-import iiwa_dnn
-from iiwa_dnn import (
-    CollisionAvoidance,
-    InvalidInputError,
-    Shield,
-    Shields,
-    Sphere,
-    load_robot,
-)
+import iiwa_dnn as d
 from iiwa_dnn.control.requests import REASONS, Reason
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 
 DT = 1e-3
 START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
-PLAIN = load_robot("iiwa7")
+PLAIN = d.load_robot("iiwa7")
 SMOOTH = PLAIN.with_limits(acceleration=10.0, jerk=500.0)
-BALL = Sphere([0.36, 0.16, 0.64], 0.05)
+BALL = d.Sphere([0.36, 0.16, 0.64], 0.05)
 
 
 @pytest.fixture
@@ -79,8 +71,8 @@ def test_each_arm_is_a_shield(kind: str, longest: float | None, delay: float) ->
         "delay": delay,
         "tracking_error": 0.01,
     }
-    shield = Shield(SMOOTH, **settings)
-    shields = Shields(SMOOTH, 3, **settings)
+    shield = d.Shield(SMOOTH, **settings)
+    shields = d.Shields(SMOOTH, 3, **settings)
     q = START.copy()
     limited = 0
     for k, own in enumerate(requests(kind, 500)):
@@ -109,7 +101,7 @@ def test_each_arm_is_a_shield(kind: str, longest: float | None, delay: float) ->
     assert many.reason[0] == Reason.HALTED
 
 
-def stepped(shields: Shields, steps: int, seed: int = 0) -> np.ndarray:
+def stepped(shields: d.Shields, steps: int, seed: int = 0) -> np.ndarray:
     """Let arms follow their commands under random requests; return all commands."""
     random = np.random.default_rng(seed)
     q = np.tile(START, (shields.count, 1))
@@ -122,12 +114,12 @@ def stepped(shields: Shields, steps: int, seed: int = 0) -> np.ndarray:
 
 
 def test_threads_change_nothing() -> None:
-    one, two = (Shields(SMOOTH, 200, dt=DT, obstacles=[BALL], threads=k) for k in (1, 3))
+    one, two = (d.Shields(SMOOTH, 200, dt=DT, obstacles=[BALL], threads=k) for k in (1, 3))
     np.testing.assert_array_equal(stepped(one, 20), stepped(two, 20))
 
 
 def test_an_arm_whose_numbers_are_not_finite_brakes_alone() -> None:
-    shields = Shields(PLAIN.with_limits(acceleration=10.0), 3, dt=DT)
+    shields = d.Shields(PLAIN.with_limits(acceleration=10.0), 3, dt=DT)
     request = np.ones((3, 7))
     q = np.tile(START, (3, 1))
     for k in range(160):
@@ -146,8 +138,8 @@ def test_an_arm_whose_numbers_are_not_finite_brakes_alone() -> None:
 
 
 def test_arms_without_a_new_request_go_on_until_theirs_is_too_old() -> None:
-    shields = Shields(PLAIN, 2, dt=DT, timeout=0.01)
-    single = Shields(PLAIN, 1, dt=DT, timeout=0.01)
+    shields = d.Shields(PLAIN, 2, dt=DT, timeout=0.01)
+    single = d.Shields(PLAIN, 1, dt=DT, timeout=0.01)
     q = np.tile(START, (2, 1))
     shields.step(q, np.full((2, 7), 0.1))
     single.step(q[:1], np.full((1, 7), 0.1))
@@ -160,7 +152,7 @@ def test_arms_without_a_new_request_go_on_until_theirs_is_too_old() -> None:
 
 
 def test_an_episode_that_begins_anew_repeats() -> None:
-    shields = Shields(SMOOTH, 4, dt=DT, obstacles=[BALL])
+    shields = d.Shields(SMOOTH, 4, dt=DT, obstacles=[BALL])
     done = np.array([False, True, False, True])
     first = stepped(shields, 30)
     shields.reset(done)
@@ -173,11 +165,11 @@ def test_an_episode_that_begins_anew_repeats() -> None:
 
 def test_obstacles_may_differ_from_arm_to_arm() -> None:
     balls = [[0.36, 0.16, 0.64], [0.4, 0.0, 0.7], [2.0, 2.0, 2.0]]
-    among = [CollisionAvoidance([Sphere(ball, 0.05)], self_collision=False) for ball in balls]
-    shields = Shields(SMOOTH, 3, dt=DT, obstacles=among[0])
+    among = [d.CollisionAvoidance([d.Sphere(ball, 0.05)], self_collision=False) for ball in balls]
+    shields = d.Shields(SMOOTH, 3, dt=DT, obstacles=among[0])
     places = np.array(balls)[:, np.newaxis]
     q = np.tile(START, (3, 1))
-    singles = [Shields(SMOOTH, 1, dt=DT, obstacles=each) for each in among]
+    singles = [d.Shields(SMOOTH, 1, dt=DT, obstacles=each) for each in among]
     for k in range(150):
         command = shields.step(q, np.full((3, 7), 0.5), obstacles=places if k == 0 else None)
         for i, own in enumerate(singles):
@@ -188,7 +180,7 @@ def test_obstacles_may_differ_from_arm_to_arm() -> None:
 
 
 def test_a_wrong_input_changes_no_arm() -> None:
-    shields = Shields(SMOOTH, 3, dt=DT, obstacles=[BALL])
+    shields = d.Shields(SMOOTH, 3, dt=DT, obstacles=[BALL])
     expected = stepped(copy.deepcopy(shields), 10)
     q = np.tile(START, (3, 1))
     wrong: list[dict[str, Any]] = [
@@ -204,25 +196,25 @@ def test_a_wrong_input_changes_no_arm() -> None:
         {"dq": [["a"] * 7] * 3},
     ]
     for own in wrong:
-        with pytest.raises(InvalidInputError):
+        with pytest.raises(d.InvalidInputError):
             shields.step(q, **own)
     np.testing.assert_array_equal(stepped(shields, 10), expected)
 
 
 def test_numbers_of_other_types_and_with_gaps_are_taken_and_commands_stay() -> None:
-    shields = Shields(PLAIN, 2, dt=DT)
+    shields = d.Shields(PLAIN, 2, dt=DT)
     q = np.tile(START, (2, 1)).astype(np.float32)
     first = shields.step(q[::-1], np.full((2, 7), 0.001))
     kept = copy.deepcopy(first[:4])
     shields.step(q, np.full((7, 2), 0.003).T)
     for found, expected in zip(first, kept, strict=False):
         np.testing.assert_array_equal(found, expected)
-    twin = Shields(PLAIN, 2, dt=DT)
+    twin = d.Shields(PLAIN, 2, dt=DT)
     np.testing.assert_array_equal(twin.step(q.astype(float), [[0.001] * 7] * 2).dq, first.dq)
 
 
 def test_the_reason_of_an_arm_is_the_first_of_its_active_limits() -> None:
-    shields = Shields(PLAIN.with_limits(acceleration=10.0), 3, dt=DT)
+    shields = d.Shields(PLAIN.with_limits(acceleration=10.0), 3, dt=DT)
     q = np.tile(START, (3, 1))
     shields.step(q, np.ones((3, 7)))
     q[0, 0] = np.nan
@@ -236,23 +228,23 @@ def test_the_reason_of_an_arm_is_the_first_of_its_active_limits() -> None:
 
 def test_shields_of_a_shield_have_its_limits() -> None:
     """The speed of the tips is that of finite differences of Pinocchio's placements."""
-    shield = Shield(PLAIN.with_limits(acceleration=10.0), DT)
-    shield.limits += (iiwa_dnn.TipSpeedLimit(0.2),)
-    shields = Shields(shield, 2)
+    shield = d.Shield(PLAIN.with_limits(acceleration=10.0), DT)
+    shield.limits += (d.TipSpeedLimit(0.2),)
+    shields = d.Shields(shield, 2)
     path = [np.tile(START, (2, 1))]
     for _ in range(200):
         path.append(shields.step(path[-1], np.ones((2, 7))).next_q)
-    tips = np.array([iiwa_dnn.Configuration(PLAIN, q[1]).position for q in path])
+    tips = np.array([d.Configuration(PLAIN, q[1]).position for q in path])
     speeds = np.linalg.norm(np.diff(tips, axis=0), axis=1) / DT
     assert 0.19 < speeds.max() < 0.2 + 1e-4
 
 
-def _commands(shields: Shields) -> np.ndarray:
+def _commands(shields: d.Shields) -> np.ndarray:
     return stepped(shields, 20, seed=3)
 
 
 def test_copies_pickles_and_forks_carry_the_state() -> None:
-    shields = Shields(SMOOTH, 130, dt=DT, obstacles=[BALL], threads=2)
+    shields = d.Shields(SMOOTH, 130, dt=DT, obstacles=[BALL], threads=2)
     stepped(shields, 10)
     copies = [copy.deepcopy(shields), pickle.loads(pickle.dumps(shields))]
     with multiprocessing.get_context("fork").Pool(1) as pool:
@@ -263,20 +255,20 @@ def test_copies_pickles_and_forks_carry_the_state() -> None:
 
 
 def test_an_arm_with_a_ball_takes_at_most_8000_bytes() -> None:
-    assert Shields(SMOOTH, 1, dt=DT, obstacles=[BALL])._memories.nbytes <= 8000
+    assert d.Shields(SMOOTH, 1, dt=DT, obstacles=[BALL])._memories.nbytes <= 8000
 
 
 def test_a_frame_that_is_none_is_refused() -> None:
-    with pytest.raises(iiwa_dnn.NotFoundError):
-        Shields(PLAIN, 2, frame="elbow")
+    with pytest.raises(d.NotFoundError):
+        d.Shields(PLAIN, 2, frame="elbow")
 
 
 @pytest.mark.usefixtures("kernels_kinematics")
 def test_obstacles_that_move_do_so_for_many_arms_too() -> None:
     """They stood still in the step of many arms; a place that is given is where they are now."""
-    ball = Sphere([0.36, 0.35, 0.64], 0.05, velocity=[0.0, -0.3, 0.0])
-    shield = Shield(SMOOTH, DT, [ball])
-    arms = Shields(SMOOTH, 2, dt=DT, obstacles=[ball])
+    ball = d.Sphere([0.36, 0.35, 0.64], 0.05, velocity=[0.0, -0.3, 0.0])
+    shield = d.Shield(SMOOTH, DT, [ball])
+    arms = d.Shields(SMOOTH, 2, dt=DT, obstacles=[ball])
     q = START
     for k in range(400):
         request = np.full(7, 0.5 * (-1) ** (k // 50))

@@ -3,19 +3,9 @@
 import numpy as np
 import pytest
 
+import iiwa_dnn as d
 from helpers_kinematics import dh_pose
 from helpers_physics import distance, heart_in_physics
-from iiwa_dnn import (
-    AccelerationLimits,
-    Configuration,
-    CrossCheck,
-    DoubleIndicator,
-    Heart,
-    Record,
-    failures,
-    load_robot,
-    simulate,
-)
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
 from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
 
@@ -25,16 +15,16 @@ TORQUE_LIMITS = np.array([176.0, 176.0, 110.0, 110.0, 110.0, 40.0, 40.0])  # the
 
 
 @pytest.fixture(scope="module")
-def nominal() -> Record:
+def nominal() -> d.Record:
     return heart_in_physics()
 
 
 @pytest.fixture(scope="module")
-def disturbed() -> Record:
+def disturbed() -> d.Record:
     return heart_in_physics(Disturbances.typical(), duration=5.0, seed=1)
 
 
-def limits_are_kept(record: Record) -> bool:
+def limits_are_kept(record: d.Record) -> bool:
     """Position, velocity and torque limits, from the arrays alone."""
     speeds = np.radians([98, 98, 100, 130, 140, 180, 180])
     return bool(
@@ -49,7 +39,7 @@ def test_nominal_heart(nominal):
     assert nominal.settings["status"] == "completed"
     assert distance(nominal)[nominal.t >= 0.5].max() <= 1e-4
     assert limits_are_kept(nominal)
-    assert failures(nominal) == []
+    assert d.failures(nominal) == []
     dt = nominal.settings["dt"]
     np.testing.assert_allclose(nominal.q[1:], nominal.q[:-1] + dt * nominal.dq, atol=1e-12)
     np.testing.assert_allclose(nominal.position, dh_pose(nominal.q)[0], atol=1e-12)
@@ -84,17 +74,17 @@ def test_back_within_a_second_after_the_push(disturbed):
 
 
 def test_a_push_is_no_command_beyond_the_acceleration_limits():
-    robot = load_robot("iiwa7")
+    robot = d.load_robot("iiwa7")
     push = Push((20.0, 0.0, 0.0), start=0.1, duration=0.05)
-    record = simulate(
+    record = d.simulate(
         robot,
-        DoubleIndicator(extra_limits=(AccelerationLimits(),)),
-        Heart().anchored(Configuration(robot, robot.start_posture())),
+        d.DoubleIndicator(extra_limits=(d.AccelerationLimits(),)),
+        d.Heart().anchored(d.Configuration(robot, robot.start_posture())),
         robot.start_posture(),
         dt=1e-3,
         duration=0.2,
         plant=MujocoPlant(Disturbances(push=push)),
-        check=CrossCheck(()),
+        check=d.CrossCheck(()),
     )
     moved, sent = (
         np.abs(np.diff(np.vstack([np.zeros(7), velocities]), axis=0)) / 1e-3
@@ -102,7 +92,7 @@ def test_a_push_is_no_command_beyond_the_acceleration_limits():
     )
     assert (moved > robot.ddq_max).any()
     assert (sent <= robot.ddq_max).all()
-    assert failures(record) == []
+    assert d.failures(record) == []
 
 
 def test_a_state_that_is_not_a_number_ends_the_run(monkeypatch):
