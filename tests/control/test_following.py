@@ -193,6 +193,25 @@ def test_stream_with_a_lead_is_a_sample_late_and_one_that_falls_silent_brakes():
     assert not command.dq.any()
 
 
+def test_equal_samples_at_a_turning_point_are_no_stop():
+    """The arm left the stream there: 49 mrad off."""
+    shield, start = make()
+    dt = shield.dt
+    rate = 2.0 * np.pi * 0.6
+    path = [start]
+    for k in range(500):
+        t = k * dt
+        own = {}
+        if k % 10 == 0:  # two samples beside each peak are equal to the last bit
+            share = round(0.55 * np.sin(rate * (t - 2.0)) * min(t / 2.0, 1.0), 6)
+            own = {"position": start + share, "lead": 1}
+        path.append(path[-1] + dt * shield.step(path[-1], **own).dq)
+    assert broken(shield, path) == []
+    times = np.arange(250, 501) * dt - 0.1
+    goal = 0.55 * np.sin(rate * (times - 2.0))
+    assert np.abs(np.array(path)[250:, 0] - start[0] - goal).max() < 0.01
+
+
 def test_stream_that_stops_dead_comes_back_and_a_rest_is_not_passed():
     """What a lead costs: docs/policies.md."""
     shield, start = make()
