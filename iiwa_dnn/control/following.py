@@ -715,8 +715,8 @@ def _limit_clock(own: FollowState, limits: MotionConstants) -> None:
     for i in range(n):
         if most[Rate.VELOCITY, i] > 0.0:
             whole = (1.0 - SHARE) * limits.acceleration[i]
-            free = max(whole - fastest * fastest * most[Rate.ACCELERATION, i], KEPT * whole)
-            accel = min(accel, free / most[Rate.VELOCITY, i])
+            left = max(whole - fastest * fastest * most[Rate.ACCELERATION, i], KEPT * whole)
+            accel = min(accel, left / most[Rate.VELOCITY, i])
     for i in range(n):
         if most[Rate.VELOCITY, i] > 0.0 and limits.jerk[i] < np.inf:
             whole = (1.0 - SHARE) * limits.jerk[i]
