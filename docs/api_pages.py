@@ -15,8 +15,11 @@ ROOMS = {
     "robot": (),
     "references": (),
     "schemes": (),
-    "control": ("estimation.JointEstimator", "estimation.NoiseModel"),
-    "simulation": ("Plant", "PlantState", "Disturbances", "Push"),
+    "control": (),
+    "simulation": (
+        *("Plant", "PlantState", "Disturbances", "Push"),
+        *("estimation.JointEstimator", "estimation.NoiseModel"),
+    ),
     "results": ("report.save_run",),
     "qp": ("register",),
     "networks": ("Flow", "NoiseSuppressingNetwork", "activations.*", "tracking.Formula"),

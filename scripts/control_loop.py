@@ -15,7 +15,7 @@ import tyro
 import iiwa_dnn
 from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import run_script
-from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
+from iiwa_dnn.simulation.estimation import JointEstimator, NoiseModel
 
 DT = 1e-3  # control period [s]
 ACCELERATION = 10.0  # limit of every joint beside a jerk limit [rad/s^2]

@@ -15,8 +15,8 @@ import tyro
 from tabulate import tabulate
 
 import iiwa_dnn
-from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.results.metrics import position_error
+from iiwa_dnn.simulation.estimation import NoiseModel
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
 from iiwa_dnn.studies.statistics import estimate

@@ -91,9 +91,8 @@ def load_robot(
     arm = ARMS.get(name)
     rates = _of_joints(full, tips or (tip,), arm.rates if arm else ())
     limits, position_dependent_velocity = _limits(path, model, root, rates)
-    for joint, (effort,) in _of_joints(full, tips, (arm.effort,) if arm and tips else ()).items():
-        if joint not in held:
-            model.effortLimit[model.joints[model.getJointId(joint)].idx_v] = effort
+    if arm and tips:
+        _state_efforts(model, _of_joints(full, tips, (arm.effort,)))
     robot = Robot(
         name,
         model,
@@ -110,6 +109,13 @@ def load_robot(
     for message in _load_warnings(robot, still, left_out):
         warnings.warn(message, stacklevel=2)
     return _hold(robot, tool, tool_shapes)
+
+
+def _state_efforts(model: pin.Model, efforts: Mapping[str, Sequence[float]]) -> None:
+    """Write the torque limit of each joint [N m] that a model has into it."""
+    for joint, (effort,) in efforts.items():
+        if model.existJointName(joint):
+            model.effortLimit[model.joints[model.getJointId(joint)].idx_v] = effort
 
 
 def _read(path: Path) -> ET.Element:

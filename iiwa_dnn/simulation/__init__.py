@@ -1,7 +1,7 @@
 """The closed loop of controller and plant, with noise and disturbances."""
 
-from iiwa_dnn.control.filters import MovingAverage as MovingAverage
 from iiwa_dnn.simulation.disturbances import Disturbances as Disturbances, Push as Push
+from iiwa_dnn.simulation.filters import MovingAverage as MovingAverage
 from iiwa_dnn.simulation.motion import MOTIONS as MOTIONS
 from iiwa_dnn.simulation.noise import gaussian_noise as gaussian_noise
 from iiwa_dnn.simulation.plants import (

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.clipping import clip_command
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.estimation import JointEstimator
-from iiwa_dnn.control.filters import MovingAverage
 from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.qp.program import Matrix
+from iiwa_dnn.simulation.clipping import clip_command
+from iiwa_dnn.simulation.estimation import JointEstimator
+from iiwa_dnn.simulation.filters import MovingAverage
 from iiwa_dnn.simulation.settings import RunSettings
 
 

@@ -9,8 +9,8 @@ import pytest
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, paper_start
-from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
 from iiwa_dnn.simulation import MovingAverage
+from iiwa_dnn.simulation.estimation import JointEstimator, NoiseModel
 
 POSE = d.Target(paper_start().position, paper_start().rotation)
 

@@ -6,7 +6,7 @@ import pytest
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import driven, heart, paper_robot, paper_start
-from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
+from iiwa_dnn.simulation.estimation import JointEstimator, NoiseModel
 
 DT = 1e-3
 
