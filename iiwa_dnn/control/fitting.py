@@ -77,16 +77,23 @@ def _state_fits(plan: ArmPlan) -> bool:
     sizes = plan.step.arrays.sizes
     own = plan.sizes
     n = sizes.joints
-    asks = plan.request >= 0
-    if own.n != n or own.request != (max(n, 6) if asks else 0) or (asks and sizes.frames != 1):
-        return False
-    if own.twist_fallback != (own.fallback if asks else 0):
+    if own.n != n or not _requests_fit(plan):
         return False
     if own.motion != _motion_width(sizes) or own.limiting != sizes.n + sizes.m:
         return False
     if own.obstacles != len(plan.velocities) or not _is_within(own.sent, 0, MOST * (1 + n)):
         return False
     return own.sent % (1 + n) == 0 and _samples_fit(plan)
+
+
+@compiled
+def _requests_fit(plan: ArmPlan) -> bool:
+    """Test the room for requests, which a shield's arms have alone."""
+    own = plan.sizes
+    if plan.request < 0:
+        return own.request == 0 and own.twist_fallback == 0
+    is_one = plan.step.arrays.sizes.frames == 1
+    return is_one and own.request == max(own.n, 6) and own.twist_fallback == own.fallback
 
 
 @compiled

@@ -673,12 +673,9 @@ class Shield:
                 periods = periods_of_step(self, self._warned, dt, elapsed)
             if self._halted:
                 halt_arm(plan, memory)
-            if people is not None or obstacles is not None:
-                see(plan, memory, News(separation_in(self._limits), people, obstacles, age))
+            self._see(plan, memory, people, obstacles, age)
             if not time is lead is None:
-                mode = stream_mode(kind, lead, self.samples)
-                stamp = np.array([self.time if time is None else checks.finite("time", time)])
-                follow_arm(plan, memory, stamp, request[np.newaxis], mode)
+                self._stream(plan, memory, kind, request, time, lead)
                 kind = Request.NONE
             inputs = ArmInput(measured, kind, request, dt or 0.0, elapsed or 0.0, 0.0)
             data, action = self._answer(layout, memory, inputs, periods)
@@ -686,6 +683,25 @@ class Shield:
             # Last: an interrupted step changes nothing.
             object.__setattr__(self, "_kept", Kept(memory, seen))
             return command
+
+    def _see(self, plan: ArmPlan, memory: Vector, people: Any, obstacles: Any, age: Any) -> None:
+        """Take what was seen of bodies of bounded speed, if there is news."""
+        if people is not None or obstacles is not None:
+            see(plan, memory, News(separation_in(self._limits), people, obstacles, age))
+
+    def _stream(
+        self,
+        plan: ArmPlan,
+        memory: Vector,
+        kind: Request,
+        request: Vector,
+        time: float | None,
+        lead: int | None,
+    ) -> None:
+        """Take a sample of a stream (n,) [rad], of a time [s] or of now, into an arm's memory."""
+        mode = stream_mode(kind, lead, self.samples)
+        stamp = np.array([self.time if time is None else checks.finite("time", time)])
+        follow_arm(plan, memory, stamp, request[np.newaxis], mode)
 
     def _answer(
         self, layout: ArmLayout, memory: Vector, inputs: ArmInput, periods: Periods

@@ -83,7 +83,7 @@ def load_robot(
     # By the name it was asked for: the URDFs call some of these arms otherwise.
     name = str(source) if tips else full.name
     if tip is None:
-        tip = tips[0] if tips else _only_end(full)
+        tip = _first_tip(full, tips)
     others = tips if len(tips) > 1 else ()
     idle = _idle_joints(full, (tip, *others, *checks.names("frames", frames)))
     chosen = checks.names("locked", locked)
@@ -91,8 +91,8 @@ def load_robot(
     arm = ARMS.get(name)
     rates = _of_joints(full, tips or (tip,), arm.rates if arm else ())
     limits, position_dependent_velocity = _limits(path, model, root, rates)
-    if arm and tips:
-        _state_efforts(model, _of_joints(full, tips, (arm.effort,)))
+    if arm:
+        _state_efforts(model, full, tips, arm.effort)
     robot = Robot(
         name,
         model,
@@ -105,15 +105,25 @@ def load_robot(
         text,
     )
     expected = {*chosen, *(_idle_joints(full, tips) if tips else ())}
-    still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
+    still = {joint: at for joint, at in held.items() if joint not in expected}
     for message in _load_warnings(robot, still, left_out):
         warnings.warn(message, stacklevel=2)
     return _hold(robot, tool, tool_shapes)
 
 
-def _state_efforts(model: pin.Model, efforts: Mapping[str, Sequence[float]]) -> None:
-    """Write the torque limit of each joint [N m] that a model has into it."""
-    for joint, (effort,) in efforts.items():
+def _first_tip(model: pin.Model, tips: Sequence[str]) -> str:
+    """Return the first tip of a known arm, or the link at the only end of another."""
+    return tips[0] if tips else _only_end(model)
+
+
+def _state_efforts(
+    model: pin.Model, full: pin.Model, tips: Sequence[str], efforts: Sequence[float]
+) -> None:
+    """Write the torque limits [N m] of a known arm's joints before its tips into a model.
+
+    `full` is the model before joints were locked. An arm without tips is another one.
+    """
+    for joint, (effort,) in _of_joints(full, tips, (efforts,)).items() if tips else ():
         if model.existJointName(joint):
             model.effortLimit[model.joints[model.getJointId(joint)].idx_v] = effort
 
@@ -132,7 +142,7 @@ def _hold(robot: Robot, tool: pin.SE3 | ArrayLike | None, shapes: ToolShapes) ->
     return robot
 
 
-def _load_warnings(robot: Robot, still: list[str], left_out: list[str]) -> Iterator[str]:
+def _load_warnings(robot: Robot, still: dict[str, float], left_out: list[str]) -> Iterator[str]:
     """Warn of parts that are left out, a limit in another unit, and joints locked unasked."""
     if left_out:
         more = [f"{len(left_out) - 2} more"] if len(left_out) > 2 else []
@@ -147,7 +157,8 @@ def _load_warnings(robot: Robot, still: list[str], left_out: list[str]) -> Itera
             f"{units[0]}? A URDF counts in {units[1]}"
         )
     if still:
-        yield f"held still, since they do not move {robot.tip}: {', '.join(still)}"
+        joints = ", ".join(f"{joint} at {at:g}" for joint, at in still.items())
+        yield f"held still, since they do not move {robot.tip}: {joints}"
 
 
 def _find(source: Any) -> tuple[Path | None, tuple[str, ...]]:
