@@ -47,7 +47,10 @@ def load_package() -> ModuleType:
 
     SourceFileLoader.get_code = get_code  # type: ignore[method-assign,assignment]
     try:
-        return import_module("iiwa_dnn")
+        package = import_module("iiwa_dnn")
+        for name in package.__all__:  # some are imported at their first use
+            getattr(package, name)
+        return package
     finally:
         SourceFileLoader.get_code = usual  # type: ignore[method-assign]
 

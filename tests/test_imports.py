@@ -93,10 +93,19 @@ def test_a_wrong_import_is_found_and_a_right_one_passes() -> None:
 def test_an_import_needs_no_extra_and_loads_no_command_and_nothing_slow() -> None:
     code = (
         "import sys; sys.modules.update(mujoco=None, viser=None, imageio_ffmpeg=None)\n"
-        "import iiwa_dnn; iiwa_dnn.load_robot('iiwa7')\n"
+        "import iiwa_dnn; iiwa_dnn.Shield(iiwa_dnn.load_robot('iiwa7'))\n"
         "slow = {'numpy.ma', 'importlib.metadata', 'iiwa_dnn.export', 'scipy', 'matplotlib'}\n"
-        "slow |= {'tyro', 'tomli_w', 'iiwa_dnn.app.track', 'yourdfpy'}\n"
+        "slow |= {'tyro', 'tomli_w', 'iiwa_dnn.app.track', 'yourdfpy', 'multiprocessing'}\n"
+        "slow |= {'iiwa_dnn.results', 'iiwa_dnn.simulation', 'iiwa_dnn.control.shields'}\n"
         "print(slow & set(sys.modules))"
     )
     result = run_python(code)
     assert result.stdout == "set()\n", result.stderr
+
+
+def test_names_that_are_imported_at_their_first_use_are_all_public() -> None:
+    code = "import iiwa_dnn; print(len(dir(iiwa_dnn)) > len(vars(iiwa_dnn)))\n"
+    code += "from iiwa_dnn import *; print(Record, simulate, iiwa_dnn.results.metrics.__name__)"
+    done = run_python(code)
+    assert done.stdout.splitlines()[0] == "True", done.stderr
+    assert "iiwa_dnn.results.metrics" in done.stdout
