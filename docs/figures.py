@@ -850,13 +850,13 @@ def heart() -> Frames:
     path = iiwa_dnn.Heart(scale=7e-3, period=6.0).anchored(start)
     scheme = iiwa_dnn.DoubleIndicator()
     record = iiwa_dnn.simulate(robot, scheme, path, q, dt=2e-3, check=iiwa_dnn.CrossCheck(()))
-    middle = record.position_desired.mean(axis=0) + [0.0, 0.0, 0.13]
-    stage = Stage(robot, [], (243.0, -33.0, 0.95, middle))
+    view = (165.0, -34.0, 1.3, [0.24, 0.2, 0.4])
+    stage = Stage(robot, [], view, (2 * SIZE[0], 2 * SIZE[1]))  # the first picture that is seen
     for sample in range(0, record.steps + 1, round(1.0 / FRAME_RATE / 2e-3)):
         trace = record.position[: sample + 1]
         lines = [(thinned(record.position_desired), 0.0015, (0.6, 0.63, 0.7, 1.0))]
         if sample:
-            lines.append((thinned(trace), 0.004, (1.0, 0.25, 0.35, 1.0)))
+            lines.append((thinned(trace), 0.005, (1.0, 0.25, 0.35, 1.0)))
         yield stage.draw(record.q[sample], lines=lines)
 
 
