@@ -1,17 +1,14 @@
-"""Chunks of a policy on an SO-101 or an FR3: 16 postures at 30 Hz, a new chunk after each 8.
+"""Chunks of a policy, 16 postures at 30 Hz, a new one after each 8: chunks.py [so101|fr3].
 
 `policy` and the last line of the loop stand for yours. The arm passes through the postures without
 lag, and a chunk that does not begin where the last one led makes no jump: docs/policies.md.
 """
 
 import sys
-from typing import Literal
 
 import numpy as np
-import tyro
 
 import iiwa_dnn
-from iiwa_dnn.app.command_line import run_script
 
 SAMPLING = 1.0 / 30.0  # [s]
 USED = 8  # samples of a chunk that are followed before the next one comes
@@ -49,13 +46,6 @@ def run(name, duration):
     return np.array(path), *np.max(found, axis=0)
 
 
-def main(arm: tyro.conf.Positional[Literal["so101", "fr3"]] = "so101", duration: float = 10.0):
-    """Follow chunks for so many seconds."""
-    path, late, off = run(arm, duration)
-    print(
-        f"{len(path) - 1} periods, lag at most {late:.3f} s, at most {off:.3f} rad from the chunks"
-    )
-
-
 if __name__ == "__main__":
-    sys.exit(run_script(main))
+    path, late, off = run(*(sys.argv[1:] or ["so101"]), duration=10.0)
+    print(f"{len(path) - 1} periods, lag at most {late:.3f} s, off by at most {off:.3f} rad")

@@ -15,7 +15,6 @@ import numpy as np
 import tyro
 
 import iiwa_dnn
-from iiwa_dnn.app.command_line import run_script
 
 DT = 8e-3  # [s]
 EVENT = struct.Struct("=IhBB")  # https://docs.kernel.org/input/joydev/joystick-api.html
@@ -68,4 +67,4 @@ def main(
 
 
 if __name__ == "__main__":
-    sys.exit(run_script(main))
+    sys.exit(tyro.cli(main))

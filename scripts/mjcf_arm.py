@@ -1,4 +1,4 @@
-"""An arm out of an MJCF file: the shield reads it, and MuJoCo moves it: mjcf_arm.py arm.xml.
+"""An arm out of an MJCF file: the shield reads it, and MuJoCo moves it: mjcf_arm.py arm.xml [TIP].
 
 Its actuators take joint positions, as those of MuJoCo Menagerie's arms do. MJCF has no limits of
 velocity, acceleration and jerk: state your arm's.
@@ -8,10 +8,8 @@ import sys
 
 import mujoco
 import numpy as np
-import tyro
 
 import iiwa_dnn
-from iiwa_dnn.app.command_line import run_script
 
 DT = 2e-3  # [s]
 SPEED = 0.1  # of the tip [m/s]
@@ -41,11 +39,6 @@ def run(path, seconds, tip=None):
     return robot, np.array(path), np.array(goals)
 
 
-def main(path: tyro.conf.Positional[str], seconds: float = 3.0, tip: str | None = None):
-    """Push the tip around for so many seconds."""
-    robot, found, goals = run(path, seconds, tip)
-    print(f"{robot}\nat most {np.abs(found - goals).max():.3f} rad behind its goals")
-
-
 if __name__ == "__main__":
-    sys.exit(run_script(main))
+    robot, found, goals = run(sys.argv[1], 3.0, *sys.argv[2:])
+    print(f"{robot}\nat most {np.abs(found - goals).max():.3f} rad behind its goals")

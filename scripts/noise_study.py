@@ -32,8 +32,6 @@ DISTURBANCES = {
     "white, the paper's": paper.NOISE,
     "encoder": ENCODER_NOISE,
     "constant": np.ones_like,
-    "ramp": lambda t: t,
-    "sinusoid": lambda t: np.sin(2.0 * np.pi * t),
 }
 CHANCE = ("white, the paper's", "encoder")
 

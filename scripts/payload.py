@@ -4,14 +4,10 @@ Hostile requests, with and without `TorqueLimits`. The torques are Pinocchio's i
 the payload in the hand, as fractions of the limits in the URDF.
 """
 
-import sys
-
 import numpy as np
 import pinocchio as pin
-import tyro
 
 import iiwa_dnn
-from iiwa_dnn.app.command_line import run_script
 
 DT = 1e-3  # [s]
 MASS = 2.0  # [kg]
@@ -44,12 +40,7 @@ def run(steps, is_limited):
     return largest, np.array(path)
 
 
-def main(steps: tyro.conf.Positional[int] = 6000):
-    """Print the largest torque without and with limits."""
-    for words, is_limited in (("without", False), ("with", True)):
-        largest, _ = run(steps, is_limited)
-        print(f"{words} TorqueLimits: at most {largest:.3f} of the torque limits")
-
-
 if __name__ == "__main__":
-    sys.exit(run_script(main))
+    for is_limited in (False, True):
+        largest, _ = run(6000, is_limited)
+        print(f"TorqueLimits {is_limited}: at most {largest:.3f} of the torque limits")

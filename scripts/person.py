@@ -4,13 +4,9 @@ A camera at 30 Hz tells where people are, 0.1 s late; `camera` stands for yours.
 function: docs/people.md.
 """
 
-import sys
-
 import numpy as np
-import tyro
 
 import iiwa_dnn
-from iiwa_dnn.app.command_line import run_script
 
 DT = 4e-3  # [s]
 AGE = 0.1  # of what the camera has seen [s]
@@ -47,12 +43,6 @@ def run(duration):
     return np.array(path)
 
 
-def main(duration: tyro.conf.Positional[float] = 8.0):
-    """Swing for so many seconds."""
-    speed = np.abs(np.diff(run(duration), axis=0)).max(axis=1) / DT
-    rests = DT * np.flatnonzero(speed < 1e-3)
-    print(f"at rest for {DT * rests.size:.1f} of {duration:g} s, nearest at 2.2 to 4 s")
-
-
 if __name__ == "__main__":
-    sys.exit(run_script(main))
+    speed = np.abs(np.diff(run(8.0), axis=0)).max(axis=1) / DT
+    print(f"at rest for {DT * (speed < 1e-3).sum():.1f} of 8 s, the person nearest from 2.2 to 4 s")

@@ -3,13 +3,9 @@
 The request is a joint velocity by damped least squares, which knows of no limit and no other arm.
 """
 
-import sys
-
 import numpy as np
-import tyro
 
 import iiwa_dnn
-from iiwa_dnn.app.command_line import run_script
 
 HANDS = ("left_iiwa7_flange", "right_iiwa7_flange")
 GAIN = 2.0  # [1/s]
@@ -39,11 +35,6 @@ def run(steps, dt=2e-3):
     return np.array(path), command
 
 
-def main(seconds: tyro.conf.Positional[float] = 4.0):
-    """Reach for so many seconds."""
-    _, command = run(round(seconds / 2e-3))
-    print(f"nearest pair {command.margin.distance + 0.03:.3f} m, by {command.active_limits[:2]}")
-
-
 if __name__ == "__main__":
-    sys.exit(run_script(main))
+    _, command = run(2000)
+    print(f"nearest pair {command.margin.distance + 0.03:.3f} m, by {command.active_limits[:2]}")

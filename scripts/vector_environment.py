@@ -3,15 +3,11 @@
 `Shielded` wraps any vector environment that has `joints` (N, n) [rad] and resets in the same step.
 """
 
-import sys
-
 import gymnasium
 import numpy as np
-import tyro
 from gymnasium.vector import AutoresetMode, VectorActionWrapper, VectorEnv
 
 import iiwa_dnn
-from iiwa_dnn.app.command_line import run_script
 
 DT = 0.02  # [s]
 
@@ -47,7 +43,6 @@ class Shielded(VectorActionWrapper):
     """A vector environment whose actions pass shields of its period."""
 
     def __init__(self, env, shields):
-        """Take the environment and as many shields."""
         super().__init__(env)
         self.shields = shields
 
@@ -63,18 +58,12 @@ class Shielded(VectorActionWrapper):
 def make(count):
     """Return the environment."""
     robot = iiwa_dnn.load_robot("so101").with_limits(acceleration=10.0, jerk=200.0)
-    shields = iiwa_dnn.Shields(robot, count, dt=DT, obstacles=[])
-    return Shielded(Reach(robot.start_posture(), count), shields)
-
-
-def main(count: tyro.conf.Positional[int] = 64, steps: int = 300):
-    """Take random actions."""
-    env = make(count)
-    random = np.random.default_rng(0)
-    env.reset(seed=0)
-    ended = sum(env.step(random.normal(0.0, 10.0, (count, 5)))[3].sum() for _ in range(steps))
-    print(f"{count * steps} steps, {ended} episodes")
+    return Shielded(Reach(robot.start_posture(), count), iiwa_dnn.Shields(robot, count, dt=DT))
 
 
 if __name__ == "__main__":
-    sys.exit(run_script(main))
+    env = make(64)
+    random = np.random.default_rng(0)
+    env.reset(seed=0)
+    ended = sum(env.step(random.normal(0.0, 10.0, (64, 5)))[3].sum() for _ in range(300))
+    print(f"{64 * 300} steps, {ended} episodes")
