@@ -73,6 +73,7 @@ from iiwa_dnn.schemes.separation import (
     separation_factor,
     separation_views,
 )
+from iiwa_dnn.schemes.torque import torque_margin
 from iiwa_dnn.schemes.viability import joint_bounds, reaching
 
 TURN = 2.0 * math.pi
@@ -228,6 +229,7 @@ class ArmPlan(NamedTuple):
         scene: Number of the program's block that holds the watched pairs; -1: none are watched, or
             obstacles move in a way of their own.
         separation: Number of that of bodies of bounded speed; -1: there are none.
+        torque: Number of that of the joints' torques; -1: they are not limited.
         width: Length of the log of a step.
         lag: Network time of a step per control period in continuous mode; 0 if the network solves.
         motion: Limits of the joints' motion.
@@ -244,6 +246,7 @@ class ArmPlan(NamedTuple):
     request: int
     scene: int
     separation: int
+    torque: int
     width: int
     lag: float
     motion: MotionConstants
@@ -1275,14 +1278,31 @@ def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
     return joint, distance
 
 
+@compiled
+def torque_of(plan: ArmPlan, memory: Vector) -> float:
+    """Compute the `torque_margin` of an arm's last command; inf without limits of torques."""
+    arm = arm_state(plan, memory)
+    if plan.torque < 0 or not arm.has_begun:
+        return np.inf
+    motion = motion_of(plan, arm)
+    constants = block_constants(plan.step.arrays, plan.torque)
+    return torque_margin(constants, motion.q, motion.before, motion.last, arm.period)
+
+
 @released
 def write_margins(
-    plan: ArmPlan, memories: Matrix, joint: Vector, distance: Vector, separation: Vector
+    plan: ArmPlan,
+    memories: Matrix,
+    joint: Vector,
+    distance: Vector,
+    separation: Vector,
+    torque: Vector,
 ) -> None:
-    """Write the `Margin` of each of N arms, whose memories are (N, k), to three arrays (N,)."""
+    """Write the `Margin` of each of N arms, whose memories are (N, k), to four arrays (N,)."""
     for k in range(len(memories)):
         joint[k], distance[k] = margin_of(plan, memories[k])
         separation[k], _, _ = separation_of(plan, memories[k])
+        torque[k] = torque_of(plan, memories[k])
 
 
 @compiled

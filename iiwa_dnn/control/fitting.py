@@ -49,13 +49,14 @@ def arm_scratch(plan: ArmPlan) -> int:
 
 
 @compiled
-def arm_fits(plan: ArmPlan, collisions: int, separation: int) -> bool:
+def arm_fits(plan: ArmPlan, collisions: int, separation: int, torque: int) -> bool:
     """Test whether the plan of a shield or a controller holds together.
 
     Args:
         plan: The plan.
         collisions: Number of the kernel of collisions.
         separation: Number of that of separation.
+        torque: Number of that of torques.
     """
     n = plan.step.arrays.sizes.joints
     if (
@@ -68,7 +69,18 @@ def arm_fits(plan: ArmPlan, collisions: int, separation: int) -> bool:
     own = plan.sizes
     if not _networks_fit(plan.step, own.network, own.fallback):
         return False
+    if not _is_kernel(plan, plan.torque, torque):
+        return False
     return _parts_fit(plan, collisions) and _bodies_seen_fit(plan, separation)
+
+
+@compiled
+def _is_kernel(plan: ArmPlan, number: int, kernel: int) -> bool:
+    """Test whether a block of the program is that of a kernel, or its number is -1."""
+    table = plan.step.arrays.table
+    if number == -1:
+        return True
+    return _is_within(number, 0, len(table)) and table[number, Column.ADDRESS] == kernel
 
 
 @compiled
@@ -309,9 +321,7 @@ def _bodies_seen_fit(plan: ArmPlan, separation: int) -> bool:
     arrays = plan.step.arrays
     if plan.separation == -1:
         return plan.sizes.bodies == 0
-    if not _is_within(plan.separation, 0, len(arrays.table)):
-        return False
-    if arrays.table[plan.separation, Column.ADDRESS] != separation:
+    if not _is_kernel(plan, plan.separation, separation):
         return False
     constants = block_constants(arrays, plan.separation)
     head = SeparationHead.of(constants[: SeparationHead.width()])

@@ -17,6 +17,7 @@ from iiwa_dnn.control.arms import (
     rest_arm,
     separation_of,
     stopping_time_of,
+    torque_of,
 )
 from iiwa_dnn.control.cycle import ControlLayout
 from iiwa_dnn.control.following import follow_width
@@ -33,6 +34,7 @@ from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.rate_limits import MotionLimits
 from iiwa_dnn.schemes.scene import Body, scene_views
 from iiwa_dnn.schemes.separation import FreeBody, Separation
+from iiwa_dnn.schemes.torque import TorqueLimits
 
 
 class Margin(NamedTuple):
@@ -44,11 +46,14 @@ class Margin(NamedTuple):
             [m]; inf if no pair is watched.
         separation: Least distance of a link that joints move from what a body of bounded speed may
             have reached, less the one to keep [m]; inf if there is no body.
+        torque: Least part of a torque limit that the command leaves, with the lightest and with the
+            heaviest payload; inf without `TorqueLimits`.
     """
 
     joint: float | Vector
     distance: float | Vector
     separation: float | Vector = np.inf
+    torque: float | Vector = np.inf
 
 
 class ArmLayout(NamedTuple):
@@ -104,7 +109,7 @@ class ArmLayout(NamedTuple):
         They are those at the joint positions that an arm's last command starts from.
         """
         separation, _, _ = separation_of(self.plan, memory)
-        return Margin(*margin_of(self.plan, memory), separation)
+        return Margin(*margin_of(self.plan, memory), separation, torque_of(self.plan, memory))
 
     def stopping_time(self, memory: Vector) -> float:
         """Compute the time of the stopping motion from an arm's last command [s]."""
@@ -146,6 +151,7 @@ def lay_out_arm(
         request,
         scene,
         [*program.places_of(Separation), -1][0],
+        [*program.places_of(TorqueLimits), -1][0],
         step.log_layout.width,
         float(step.lag),
         (program.rate_limits or MotionLimits()).constants(robot),

@@ -350,8 +350,9 @@ class Shields:
             joint = np.empty(self.count)
             distance = np.empty(self.count)
             separation = np.empty(self.count)
-            write_margins(layout.plan, self._memories, joint, distance, separation)
-            return Margin(joint, distance, separation)
+            torque = np.empty(self.count)
+            write_margins(layout.plan, self._memories, joint, distance, separation, torque)
+            return Margin(joint, distance, separation, torque)
 
     def stopping_time(self, i: int) -> float:
         """Return the time of arm i's stopping motion from its last command [s]."""

@@ -159,6 +159,24 @@ def write_loads(own: TorqueConstants, q: Vector, v: Vector, a: Vector, load: Vec
 
 
 @compiled
+def torque_margin(constants: Vector, q: Vector, before: Vector, last: Vector, dt: float) -> float:
+    """Return the least part of a torque limit that a command leaves, with either payload.
+
+    Args:
+        constants: `TorqueConstants`, (k,).
+        q: Joint positions [rad], (n,).
+        before: The command before it [rad/s], (n,).
+        last: The command [rad/s], (n,).
+        dt: Control period [s].
+    """
+    a = np.empty(q.size)
+    for i in range(q.size):
+        a[i] = (last[i] - before[i]) / dt
+    load = np.empty(q.size)
+    return 1.0 - write_loads(TorqueConstants.of(constants, q.size), q, before, a, load)
+
+
+@compiled
 def _load_in_period(
     step: StepViews, own: TorqueConstants, motion: Motion, k: int, load: Vector
 ) -> float:

@@ -365,13 +365,13 @@ def test_plans_of_the_desk_fit_and_bent_ones_do_not() -> None:
     plan = shield.layout(shield.robot.tip).plan
     collisions = enter_limit.address(CollisionAvoidance.kernel)
     assert Entry.functions[collisions].__name__ == "collision_rows"
-    assert fitting.arm_fits(plan, collisions, -1)
+    assert fitting.arm_fits(plan, collisions, -1, -1)
     arrays = plan.step.arrays
     for row, column, value in ((0, 3, 1), (1, 4, 500), (1, 6, 10**6), (1, 7, 1), (2, 5, -1)):
         table = arrays.table.copy()
         table[row, column] = value
         bent = plan.step._replace(arrays=arrays._replace(table=table))
-        assert not fitting.arm_fits(plan._replace(step=bent), collisions, -1) or (
+        assert not fitting.arm_fits(plan._replace(step=bent), collisions, -1, -1) or (
             row,
             column,
         ) == (
@@ -380,9 +380,9 @@ def test_plans_of_the_desk_fit_and_bent_ones_do_not() -> None:
         )
     for name in ("frames", "parents", "carriers"):
         robot = plan.robot._replace(**{name: getattr(plan.robot, name) + 50})
-        assert not fitting.arm_fits(plan._replace(robot=robot), collisions, -1)
+        assert not fitting.arm_fits(plan._replace(robot=robot), collisions, -1, -1)
     for name in plan.sizes._fields:
         sizes = plan.sizes._replace(**{name: getattr(plan.sizes, name) + 1001})
-        assert not fitting.arm_fits(plan._replace(sizes=sizes), collisions, -1), name
-    assert not fitting.arm_fits(plan._replace(request=1), collisions, -1)
-    assert not fitting.arm_fits(plan._replace(scene=0), collisions, -1)
+        assert not fitting.arm_fits(plan._replace(sizes=sizes), collisions, -1, -1), name
+    assert not fitting.arm_fits(plan._replace(request=1), collisions, -1, -1)
+    assert not fitting.arm_fits(plan._replace(scene=0), collisions, -1, -1)

@@ -2,6 +2,7 @@
 
 import warnings
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -9,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import iiwa_dnn as d
+from helpers_export import in_armstep
 from helpers_kinematics import Array
 from helpers_simulation import rows_of
 from iiwa_dnn.control.arms import motion_of
@@ -134,7 +136,9 @@ def test_no_request_takes_a_command_or_a_motion_to_rest_beyond_the_torques(
         if k % 75 == 0:
             request = robot.dq_max * random.uniform(-1.2, 1.2, 7)
         command = shield.step(q, request)
-        largest = max(largest, load(q, v, command.dq, dt))
+        taken = load(q, v, command.dq, dt)
+        assert abs(command.margin.torque - (1.0 - taken)) < 1e-9
+        largest = max(largest, taken)
         reasons |= set(command.active_limits)
         q, v = command.next_q, command.dq
         if k % 20 == 0:
@@ -155,6 +159,28 @@ def test_no_request_takes_a_command_or_a_motion_to_rest_beyond_the_torques(
     assert 0.99 < largest <= 1.0 + 1e-9
     assert resting <= 1.0 + 1e-9
     assert any("torque, with 3 kg" in reason for reason in reasons)
+
+
+def test_the_core_answers_to_the_bit_and_many_arms_as_one(tmp_path: Path) -> None:
+    random = np.random.default_rng(5)
+    iiwa7 = d.load_robot("iiwa7")
+    assert d.Shield(iiwa7).step(iiwa7.start_posture(), np.zeros(7)).margin.torque == np.inf
+    shield = d.Shield(PANDA, dt=DT)
+    shield.limits += (TorqueLimits(),)
+    arm = in_armstep(shield, tmp_path)
+    many = d.Shields(shield, 2)
+    q = np.tile(PANDA.start_posture(), (2, 1))
+    for k in range(150):
+        if k % 50 == 0:
+            request = PANDA.dq_max * random.uniform(-1.2, 1.2, 7)
+        there = arm.step(q[0], request)
+        here = many.step(q, [request, -request])
+        assert there.dq.tobytes() == here.dq[0].tobytes()
+        assert there.margin == many.margin(0)
+        q = here.next_q
+    assert there.margin.torque < 1.0
+    torque = many.margin().torque
+    assert (torque[0], torque[1]) == (many.margin(0).torque, many.margin(1).torque)
 
 
 def test_a_posture_that_the_motors_cannot_hold_is_refused_and_never_entered() -> None:

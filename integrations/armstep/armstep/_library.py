@@ -100,6 +100,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "time": (REAL, [POINTER] * 2),
     "followed": (POINTER, [POINTER] * 3),
     "separation": (REAL, [POINTER] * 3),
+    "torque": (REAL, [POINTER] * 3),
     "steps": (SIZE, [*[POINTER] * 3, SIZE, SIZE]),
     "targets": (INT, [*[POINTER] * 3, REAL, POINTER]),
     "save": (INT, [POINTER] * 3),

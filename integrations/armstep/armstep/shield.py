@@ -57,11 +57,13 @@ class Margin(NamedTuple):
         joint: Least distance of a joint from its position limits [rad].
         distance: Distance of the nearest pair less the least one [m]; inf if none is watched.
         separation: That of the nearest person, who may have moved since; inf if there is none.
+        torque: Least part of a torque limit that the command leaves; inf if none is limited.
     """
 
     joint: Any
     distance: Any
     separation: Any
+    torque: Any
 
 
 class ShieldCommand(Decision):
@@ -105,7 +107,8 @@ class ShieldCommand(Decision):
         given = (self.memory.ctypes, scratch.ctypes, joint.ctypes, distance.ctypes)
         ONE.armstep_margin(self.tables.arm, *given)
         separation = ONE.armstep_separation(self.tables.arm, *given[:2])
-        return Margin(joint.item(), distance.item(), separation)
+        torque = ONE.armstep_torque(self.tables.arm, *given[:2])
+        return Margin(joint.item(), distance.item(), separation, torque)
 
     @property
     def stopping_time(self) -> float:

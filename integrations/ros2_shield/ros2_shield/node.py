@@ -406,6 +406,7 @@ class ShieldNode(Node):
                 "margin of joints [rad]": f"{margin.joint:.6g}",
                 "margin of distances [m]": f"{margin.distance:.6g}",
                 "margin of separation [m]": f"{margin.separation:.6g}",
+                "margin of torques": f"{margin.torque:.6g}",
                 "people": self._people.problem,
                 "stopping time [s]": f"{command.stopping_time:.6g}",
                 "longest period [s]": f"{self._drive.worst:.6g}",

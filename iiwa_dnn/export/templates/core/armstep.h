@@ -249,6 +249,9 @@ ARMSTEP_API const double *armstep_followed(const struct armstep *arm, const doub
 /* the least separation of a shield's links from people, less the one to keep, INFINITY without; */
 ARMSTEP_API double armstep_separation(const struct armstep *arm, const double *memory, double *scratch);
 
+/* the least part of a torque limit that a shield's command leaves, with either payload, INFINITY without; */
+ARMSTEP_API double armstep_torque(const struct armstep *arm, const double *memory, double *scratch);
+
 /* time of a shield's motion to rest from its command; */
 ARMSTEP_API double armstep_stopping_time(const struct armstep *arm, const double *memory, double *scratch);
 

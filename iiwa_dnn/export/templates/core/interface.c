@@ -159,7 +159,7 @@ static bool is_laid_out(const struct armstep *arm, struct reader *reader)
     if (reader->is_bad || reader->number != reader->last_number || reader->integer != reader->last_integer) {
         return false;
     }
-    if (!@arm_fits@plan, ARMSTEP_PART_schemes_collisions_collision_rows, ARMSTEP_PART_schemes_separation_separation_rows)
+    if (!@arm_fits@plan, ARMSTEP_PART_schemes_collisions_collision_rows, ARMSTEP_PART_schemes_separation_separation_rows, ARMSTEP_PART_schemes_torque_torque_rows)
         || is_shield(arm) != (plan->request >= 0) || plan->sizes.obstacles != tables->obstacles
         || plan->sizes.n != tables->joints || plan->step.arrays.sizes.frames != tables->frames) {
         return false;
@@ -539,6 +539,17 @@ double armstep_separation(const struct armstep *arm, const double *memory, doubl
         return INFINITY;
     }
     return @separation_of@plan_of(arm), numbers_of(arm, memory)).at[0];
+}
+
+double armstep_torque(const struct armstep *arm, const double *memory, double *scratch)
+{
+    struct arena own_arena = arena_of(arm, scratch);
+    struct arena *const arena = &own_arena;
+    (void)arena;
+    if (!is_shield(arm) || !has_begun(arm, memory)) {
+        return INFINITY;
+    }
+    return @torque_of@plan_of(arm), numbers_of(arm, memory));
 }
 
 double armstep_stopping_time(const struct armstep *arm, const double *memory, double *scratch)
