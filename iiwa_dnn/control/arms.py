@@ -1161,17 +1161,16 @@ def approach_request(
         below = arm.positions[i] - limits.lower[i]
         rates = joint_rates(limits, i)
         most = CUT * min(rates.velocity, FASTEST)
-        if reaches:
-            accel = rates.acceleration
-            rates = Rates(rates.velocity, accel, rates.jerk, accel, np.inf, 0.0)
-            dq[i] = reaching(last, before, left, most, rates, periods)
+        if reaches or follows:
+            dq[i] = wanted
+            if reaches:
+                accel = rates.acceleration
+                rates = Rates(rates.velocity, accel, rates.jerk, accel, np.inf, 0.0)
+                dq[i] = reaching(last, before, left, most, rates, periods)
             if admitted[i] < most:
                 slowest = _towards(-admitted[i], last, rates.jerk, periods)
                 dq[i] = max(dq[i], slowest)
                 dq[i] = min(dq[i], _towards(admitted[i], last, rates.jerk, periods))
-            continue
-        if follows and abs(wanted) <= admitted[i]:
-            dq[i] = wanted
             continue
         if abs(wanted) > most:
             wanted = math.copysign(most, wanted)

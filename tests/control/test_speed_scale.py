@@ -55,6 +55,24 @@ def test_positions_are_reached_at_the_scaled_speed_and_a_scale_outlasts_a_reset(
     assert np.max(speeds) == pytest.approx(0.1, abs=1e-9)
 
 
+def test_chunks_are_followed_within_the_part() -> None:
+    made = shield()
+    made.scale_speed(0.15)
+    made.reset(START)
+    times = np.arange(30) / 30.0
+    ahead = 0.4 * ROBOT.dq_max.min() * TOWARDS * times[:, np.newaxis] ** 2
+    made.follow(times, START + ahead / 2.0)
+    q = START
+    path = [q]
+    for _ in range(1500):
+        q = made.step(q).next_q
+        path.append(q)
+    speeds = np.abs(np.diff(path, axis=0)) / DT / ROBOT.dq_max
+    assert 0.12 < speeds.max() <= 0.15 + 1e-9
+    assert breaches(np.array(path), DT, *ROBOT.limits) == []
+    np.testing.assert_allclose(q, START + ahead[-1] / 2.0, atol=1e-6)
+
+
 def test_a_twist_keeps_its_direction() -> None:
     made = shield()
     twist = np.array([0.0, 0.6, 0.3, 0.0, 0.0, 0.0])

@@ -450,7 +450,11 @@ class Drive:
         Args:
             ask: Returns the request of a period as an argument of `Shield.step`; none: it brakes.
             duration: Length of the motion [s].
+
+        Raises:
+            Exception: `ask` raised it; the arm came to rest first.
         """
+        failure: Exception | None = None
         before = signal.signal(signal.SIGINT, lambda *_: self.hold("interrupted"))
         try:
             start = last = self.now()
@@ -461,13 +465,20 @@ class Drive:
                     self.see(now, q)
                 if now - start > duration:
                     self.hold("the time is over")
-                request = ask()
+                try:
+                    request = {} if failure else ask()
+                except Exception as error:
+                    request = {}
+                    failure = error
+                    self.hold("no request")
                 idle = "" if request else "no request"
                 blind = "" if q is not None else "no joint states"
                 command = self.step(now, now - last, request, blind=blind, idle=idle)
                 last = now
                 if command is not None:
                     self.send(command)
+            if failure:
+                raise failure
             return self.held
         finally:
             signal.signal(signal.SIGINT, before)

@@ -120,6 +120,21 @@ def test_ctrl_c_brings_the_arm_to_rest_within_its_limits(tables: Path) -> None:
     assert breaches(np.array(arm.path), arm.shield.dt, *ROBOT.limits) == []
 
 
+def test_an_error_of_the_request_is_raised_once_the_arm_rests(tables: Path) -> None:
+    arm = Ideal(tables)
+
+    def ask() -> dict[str, Any]:
+        if len(arm.path) == 60:
+            raise ValueError("the stick is gone")
+        return {"dq": np.full(ROBOT.dof, 0.5)}
+
+    with pytest.raises(ValueError, match="the stick is gone"):
+        arm.run(ask)
+    assert arm.is_at_rest
+    assert len(arm.path) > 65
+    assert breaches(np.array(arm.path), arm.shield.dt, *ROBOT.limits) == []
+
+
 @pytest.mark.parametrize(
     ("q", "reason"),
     [(None, "no joint states"), (np.full(ROBOT.dof, 0.4), "does not follow its commands")],
