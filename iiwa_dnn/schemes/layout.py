@@ -15,7 +15,7 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.parts import Cost, Limit, Part, Task, answer_of, enter_rest, idle_arrays
+from iiwa_dnn.schemes.parts import Cost, Limit, Part, Task, answer_of, enter_rest, flat, idle_arrays
 from iiwa_dnn.schemes.program import BlockKind, Column, ProgramArrays, ProgramSizes, assemble
 from iiwa_dnn.schemes.rate_limits import MotionLimits, merged
 from iiwa_dnn.schemes.scene import SceneHead
@@ -90,7 +90,7 @@ class ProgramLayout:
             rows = part.row_count(robot)
             own: Vector = np.asarray(part.constants(robot))
             if part.copies:
-                own = np.concatenate([*map(np.ravel, idle_arrays(part, n, rows).values())])
+                own = flat(idle_arrays(part, n, rows), rows)
             name = part.frame_name(robot)
             target = self.target_frames.index(name) if name in self.target_frames else 0
             start = self.constants.size

@@ -18,7 +18,8 @@ A kernel writes no other array, but that a limit may write the kinds of its boun
 (`StepViews.lower_kind`).
 
 A part of one's own may override a method in numpy instead. The method is called before each step,
-and the kernel copies its arrays out of the constants.
+and the kernel copies its arrays out of the constants. A limit in numpy then has a word on a motion
+to rest, too: along it, its rows and bounds of this step hold.
 """
 
 from dataclasses import fields
@@ -33,7 +34,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.program import real_array
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.schemes.rest import Motion
+from iiwa_dnn.schemes.rest import SLACK, Motion, turning_velocity
 from iiwa_dnn.schemes.step import Step, StepViews
 
 PartT = TypeVar("PartT", bound="Part")
@@ -86,7 +87,8 @@ class Part(Checked):
         kernel: Compiled function that writes the rows; in a class with a method in numpy, the one
             that copies its arrays.
         rest_kernel: Compiled function that tests whether a motion to rest keeps a limit; None if
-            the limit holds at a step only, as one in numpy does.
+            the limit holds at a step only. In a class with a method in numpy, the one that tests
+            the arrays of this step.
         rows: Number of rows; 0 for a cost.
         entry: Function through which compiled code calls the kernels of this kind.
     """
@@ -96,14 +98,16 @@ class Part(Checked):
     rows: int = 0
     entry: ClassVar[Any]
     _copy: Any
+    _copy_rest: ClassVar[Any] = None
     _methods: ClassVar[dict[str, tuple[str, str]]] = {}
 
     def __init_subclass__(cls, **options: Any) -> None:
         """Set the kernel to the one that copies arrays, if the class has a method in numpy."""
         super().__init_subclass__(**options)
-        if not cls._methods.keys().isdisjoint(vars(cls)):
+        is_kind = Part in cls.__bases__  # Cost, Task and Limit only say what there may be
+        if not is_kind and not cls._methods.keys().isdisjoint(vars(cls)):
             cls.kernel = staticmethod(cls._copy)
-            cls.rest_kernel = None
+            cls.rest_kernel = cls._copy_rest
 
     @property
     def copies(self) -> bool:
@@ -165,8 +169,13 @@ def idle_arrays(part: Part, n: int, rows: int) -> dict[str, Matrix]:
     }
 
 
+def flat(arrays: dict[str, Matrix], rows: int) -> Vector:
+    """Return the constants of a part in numpy: its arrays, then its number of rows, (k,)."""
+    return np.concatenate([*map(np.ravel, arrays.values()), [float(rows)]])
+
+
 def answer_of(part: Part, step: Step, n: int, rows: int) -> Vector:
-    """Call a part's methods in numpy, check their arrays and return these one after another, (k,).
+    """Call a part's methods in numpy, check their arrays and return its constants, (k,).
 
     Args:
         part: The part.
@@ -193,7 +202,7 @@ def answer_of(part: Part, step: Step, n: int, rows: int) -> Vector:
                 raise InvalidInputError(type(part).__name__, f"{name} holds {kind}", array)
             arrays[name][tuple(map(slice, shape))] = array
     part._check(arrays)
-    return np.concatenate([array.ravel() for array in arrays.values()])
+    return flat(arrays, rows)
 
 
 def _named(part: Part, names: tuple[str, str], answer: Any) -> dict[str, Matrix]:
@@ -238,14 +247,46 @@ def copy_limit(
 ) -> None:
     """Write G (rows, n) and h (rows,), and tighten lb and ub (n,); for a limit in numpy.
 
-    The constants are the four arrays one after another.
+    The constants are the four arrays one after another, and the number of rows.
     """
     _copy_rows(constants, G, h)
     n = lb.size
-    first = h.size * (n + 1)
+    bounds = constants[h.size * (n + 1) :]
     for i in range(n):
-        lb[i] = max(lb[i], constants[first + i])
-        ub[i] = min(ub[i], constants[first + n + i])
+        lb[i] = max(lb[i], bounds[i])
+        ub[i] = min(ub[i], bounds[n + i])
+
+
+@compiled
+def keeps_copied(step: StepViews, constants: Vector, motion: Motion) -> bool:
+    """Test whether a motion to rest keeps the rows and bounds of this step; for a limit in numpy.
+
+    Where the command itself or rest does not, the motion may go no further beyond them. `constants`
+    are those of `copy_limit`.
+    """
+    rows = int(constants[constants.size - 1])
+    n = (constants.size - 1 - rows) // (rows + 2)
+    bounds = constants[rows * (n + 1) :]
+    for i in range(motion.first.size):
+        x = motion.first[i]
+        b = motion.coefficient[i]
+        if _goes_beyond(x, b, bounds[n + i]) or _goes_beyond(-x, -b, -bounds[i]):
+            return False
+    for j in range(rows):
+        x = 0.0
+        b = 0.0
+        for i in range(motion.first.size):
+            x += constants[n * j + i] * motion.first[i]
+            b += constants[n * j + i] * motion.coefficient[i]
+        if _goes_beyond(x, b, constants[n * rows + j]):
+            return False
+    return True
+
+
+@compiled
+def _goes_beyond(x: float, b: float, most: float) -> bool:
+    """Test whether a rate that begins with x, with coefficient b, goes beyond x, 0 and `most`."""
+    return turning_velocity(x, b) > max(max(most, x), 0.0) * (1.0 + SLACK)
 
 
 class Cost(Part):
@@ -314,12 +355,15 @@ class Limit(Part):
 
     @property
     def title(self) -> str:
-        """Name of the class; behind a limit that no motion to rest is tested for, words for it."""
+        """Name of the class, and in words how long the limit holds, unless that is until rest."""
+        if self.copies:
+            return f"{type(self).__name__} (as at this step)"
         lasts = self.rest_kernel is not None or self.rows_suffice
         return type(self).__name__ + (not lasts) * " (this step only)"
 
     entry = enter_limit
     _copy = staticmethod(copy_limit)
+    _copy_rest = staticmethod(keeps_copied)
     _methods: ClassVar[dict[str, tuple[str, str]]] = {
         "inequalities": ("G", "h"),
         "bounds": ("lb", "ub"),

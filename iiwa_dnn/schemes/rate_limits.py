@@ -16,7 +16,7 @@ from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.parts import Limit, Task
 from iiwa_dnn.schemes.periods import Periods, constant_periods
 from iiwa_dnn.schemes.profiles import Rates, usable_jerk
-from iiwa_dnn.schemes.rest import SLACK, Motion, end_displacement, velocity_at
+from iiwa_dnn.schemes.rest import SLACK, Motion, end_displacement, turning_velocity, velocity_at
 from iiwa_dnn.schemes.step import StepViews
 from iiwa_dnn.schemes.tasks import JointCouplingTask
 from iiwa_dnn.schemes.viability import joint_bounds
@@ -212,10 +212,7 @@ def keeps_joint_limits(step: StepViews, constants: Vector, motion: Motion) -> bo
         bottom = q[i] + min(end_displacement(motion, x, b), 0.0)
         if top > max(limits.upper[i], q[i]) or bottom < min(limits.lower[i], q[i]):
             return False
-        steepest = 6.0 * x + 3.0 * b
-        u = b / steepest if steepest != 0.0 else 0.0
-        fastest = limits.velocity[i] * (1.0 + SLACK)
-        if 0.0 < u < 1.0 and abs(velocity_at(x, b, u, True)) > fastest:
+        if abs(turning_velocity(x, b)) > limits.velocity[i] * (1.0 + SLACK):
             return False
         if limits.lag[i] > 0.0 and not keeps_varying_limit(motion, q, limits, i):
             return False

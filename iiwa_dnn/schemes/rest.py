@@ -74,6 +74,14 @@ def velocity_at(x: float, b: float, u: float, cubic: bool) -> float:
 
 
 @compiled
+def turning_velocity(x: float, b: float) -> float:
+    """Compute the velocity where a motion to rest from x, coefficient b, turns [rad/s]; else 0."""
+    steepest = 6.0 * x + 3.0 * b
+    u = b / steepest if steepest != 0.0 else 0.0
+    return velocity_at(x, b, u, True) if 0.0 < u < 1.0 else 0.0
+
+
+@compiled
 def displacement_after(motion: Motion, x: float, b: float, count: float) -> float:
     """Compute the displacement over the first `count` periods of a motion to rest [rad].
 

@@ -27,6 +27,15 @@ class Slow(Limit):
         return np.full(step.q.size, -0.1), np.full(step.q.size, 0.1)
 
 
+class SlowRows(Limit):
+    """The same as rows."""
+
+    rows = 14
+
+    def inequalities(self, step: Any) -> tuple[np.ndarray, np.ndarray]:
+        return np.vstack([np.eye(7), -np.eye(7)]), np.full(14, 0.1)
+
+
 class Wall(Limit):
     """The tip stays on its side of a plane across x, in numpy, by the frame that it asks for."""
 
@@ -160,30 +169,67 @@ def test_settings_of_a_controller_that_do_not_fit_each_other_are_refused(
 # ---- Parts in Python
 
 
-def driven(shield: d.Shield, steps: int = 600, **request: Any) -> np.ndarray:
-    path = [START]
+def driven(
+    shield: d.Shield, start: np.ndarray = START, steps: int = 600, **request: Any
+) -> np.ndarray:
+    path = [start]
     for _ in range(steps):
         path.append(path[-1] + DT * shield.step(path[-1], **request).dq)
     return np.array(path)
 
 
-def test_a_bound_in_numpy_holds_in_a_shield() -> None:
-    """It was never called: 1 rad/s went for 0.1."""
-    shield = d.Shield(ACCELERATED, DT)
-    shield.limits += (Slow(),)
-    for request in ({"dq": np.ones(7)}, {"position": START + 0.3}, {"twist": TWIST}):
-        path = driven(shield, **request)
-        assert 0.09 < np.abs(np.diff(path, axis=0)).max() / DT <= 0.1 + 1e-9
+@pytest.mark.parametrize("limit", [Slow(), SlowRows()])
+@pytest.mark.parametrize("robot", [ACCELERATED, ROBOT, d.load_robot("panda")])
+def test_a_limit_in_numpy_holds_in_a_shield(robot: d.Robot, limit: Limit) -> None:
+    """It was never called: 1 rad/s went for 0.1; later the jerk limits let 0.105 go."""
+    shield = d.Shield(robot, DT)
+    shield.limits += (limit,)
+    start = np.array(robot.start_posture())
+    for request in ({"dq": np.ones(7)}, {"position": start + 0.3}, {"twist": TWIST}):
+        speeds = np.abs(np.diff(driven(shield, start, **request), axis=0)) / DT
+        assert 0.09 < speeds.max() <= 0.1 + 1e-9
         shield.reset()
+
+
+@pytest.mark.parametrize("limit", [Slow(), SlowRows()])
+def test_a_limit_in_numpy_holds_in_a_controller(limit: Limit) -> None:
+    controller = d.Controller(ROBOT, d.DoubleIndicator(extra_limits=(limit,)), dt=DT)
+    pose = d.Configuration(ROBOT, START)
+    target = d.Target(pose.position + [0.1, 0.1, 0.0], pose.rotation)
+    q, speeds = START, []
+    for k in range(600):
+        command = controller.step(q, k * DT, target)
+        q = command.next_q
+        speeds.append(np.abs(command.dq).max())
+    assert 0.09 < max(speeds) <= 0.1 + 1e-9
+
+
+def test_an_arm_that_a_limit_in_numpy_finds_too_quick_slows_down() -> None:
+    """No motion to rest is within the bounds at once; none may go further beyond them."""
+    shield = d.Shield(ROBOT, DT)
+
+    class Sudden(Slow):
+        def bounds(self, step: Any) -> tuple[np.ndarray, np.ndarray]:
+            return tuple(bound * (1.0 if step.t > 0.5 else 5.0) for bound in super().bounds(step))
+
+    shield.limits += (Sudden(),)
+    speeds = np.abs(np.diff(driven(shield, dq=np.ones(7)), axis=0)) / DT
+    assert speeds[200:250].min() > 0.4
+    assert (speeds[252:300].max(axis=0) <= 0.5 + 1e-9).all()
+    assert 0.09 < speeds[-100:].min() <= speeds[-100:].max() <= 0.1 + 1e-9
 
 
 def test_rows_in_numpy_hold_in_a_shield_by_its_own_kinematics() -> None:
     shield = d.Shield(ACCELERATED.with_limits(acceleration=np.inf), DT)
-    x = [d.Configuration(ROBOT, q).position[0] for q in driven(shield, 800, twist=TWIST)[::20]]
+    x = [
+        d.Configuration(ROBOT, q).position[0] for q in driven(shield, steps=800, twist=TWIST)[::20]
+    ]
     assert max(x) > 0.5
     shield = d.Shield(ACCELERATED.with_limits(acceleration=np.inf), DT)
     shield.limits += (Wall(),)
-    x = [d.Configuration(ROBOT, q).position[0] for q in driven(shield, 800, twist=TWIST)[::20]]
+    x = [
+        d.Configuration(ROBOT, q).position[0] for q in driven(shield, steps=800, twist=TWIST)[::20]
+    ]
     assert 0.44 < max(x) < 0.45 + 1e-4
 
 
@@ -193,7 +239,7 @@ def test_an_obstacle_that_moves_in_its_own_way_is_where_it_is_in_a_shield() -> N
     ball = swinging(d.Sphere, rate=2.0)(center, 0.05, velocity=[0.0, -0.3, 0.0])
     shield = d.Shield(ROBOT, DT, [ball])
     scene = d.CollisionAvoidance([ball]).scene(ROBOT)
-    path = driven(shield, 1000, dq=np.zeros(7))
+    path = driven(shield, steps=1000, dq=np.zeros(7))
     found = [scene.nearest(path[k][None], np.array([k * DT]))[0][0] for k in range(0, 1000, 20)]
     assert min(found) > 0.0
     command = shield.step(path[-1])
@@ -263,7 +309,7 @@ def test_limits_that_are_refused_leave_those_of_before() -> None:
     with pytest.raises(d.InvalidInputError):
         shield.limits = (d.JointLimits(), d.AccelerationLimits([1.0, 2.0]))
     assert shield.limits is before
-    assert np.abs(driven(shield, 50, dq=np.ones(7))).max() > 0.0
+    assert np.abs(driven(shield, steps=50, dq=np.ones(7))).max() > 0.0
 
 
 def test_rates_of_the_limits_count_where_a_position_is_approached() -> None:
@@ -271,7 +317,7 @@ def test_rates_of_the_limits_count_where_a_position_is_approached() -> None:
     shield = d.Shield(d.load_robot("iiwa7"), DT)
     shield.limits = (d.JointLimits(), d.AccelerationLimits(2.0))
     goal = START + 0.2
-    path = driven(shield, 1500, position=goal)
+    path = driven(shield, steps=1500, position=goal)
     assert (path <= goal + 1e-9).all()
     np.testing.assert_allclose(path[-1], goal, atol=1e-6)
 

@@ -285,11 +285,15 @@ def test_a_limit_of_ones_own_has_a_word_on_the_motion_to_rest() -> None:
     assert breaches(np.array(path), 4e-3, *kinds) == []
 
 
-def test_a_limit_says_whether_it_holds_at_a_step_only() -> None:
+def test_a_limit_says_how_long_it_holds() -> None:
+    class Rows(d.Limit):
+        kernel = staticmethod(lambda *arrays: None)
+
     quick = own(d.Limit, bounds=(-np.ones(7), np.ones(7)))
+    assert Rows().title == "Rows (this step only)"
     titles = [each.title for each in (*JERK, beside(0.1, BALL), d.JointLimits(), quick)]
     assert titles[:2] == ["AccelerationLimits", "JerkLimits"]
-    assert titles[2:] == ["CollisionAvoidance", "JointLimits", "Own (this step only)"]
+    assert titles[2:] == ["CollisionAvoidance", "JointLimits", "Own (as at this step)"]
 
 
 def test_an_arm_pressed_into_a_corner_is_answered_within_few_linear_solves() -> None:
