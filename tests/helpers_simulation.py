@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
+from iiwa_dnn.schemes.joint_limits import MotionConstants
 
 UNCHECKED = d.CrossCheck(())
 
@@ -22,6 +23,21 @@ def paper_robot() -> d.Robot:
 def paper_start() -> d.Configuration:
     """The paper's theta(0)."""
     return d.Configuration(paper_robot(), PAPER_Q0)
+
+
+def limits_of_joints(
+    lower: float,
+    upper: float,
+    velocity: float,
+    acceleration: float,
+    jerk: float,
+    varying: tuple[float, float] = (0.0, np.inf),
+    joints: int = 1,
+) -> MotionConstants:
+    """Limits of joints that are alike; offset and deceleration of the position-dependent ones."""
+    own = [lower, upper, velocity, acceleration, jerk, *varying]
+    head = [0.0, True, jerk < np.inf, *[0.0] * 4]
+    return MotionConstants.of(np.concatenate([head, np.repeat(own, joints)]))
 
 
 def heart(period: float = 10.0) -> d.Reference:

@@ -39,7 +39,7 @@ from iiwa_dnn.app.words import WORDS
 from iiwa_dnn.checks import Array
 from iiwa_dnn.files import one_line, parse_toml, read_toml
 from iiwa_dnn.robot.obstacles import make_obstacles
-from iiwa_dnn.schemes.rate_limits import RateLimits, own_rate_limits
+from iiwa_dnn.schemes.joint_limits import RateLimits, own_rate_limits
 from iiwa_dnn.simulation import Disturbances, IdealPlant, Push
 from iiwa_dnn.simulation.estimation import NoiseModel
 

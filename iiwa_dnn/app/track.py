@@ -30,7 +30,7 @@ from iiwa_dnn.results.report import save_run, summary
 from iiwa_dnn.robot.mujoco_model import prepare_renderer
 from iiwa_dnn.robot.robot import Robot, model_limits
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.rate_limits import RateLimits
+from iiwa_dnn.schemes.joint_limits import RateLimits
 from iiwa_dnn.studies.paper import published
 
 OUTPUTS = (

@@ -61,10 +61,15 @@ from iiwa_dnn.qp.dense import all_finite, largest_entry
 from iiwa_dnn.qp.layout import IntVector, copied
 from iiwa_dnn.robot.kinematics import Twist
 from iiwa_dnn.robot.kinematics_kernel import ModelTables, write_kinematics
+from iiwa_dnn.schemes.joint_limits import (
+    MotionConstants,
+    joint_range,
+    joint_rates,
+    motion_constants,
+)
 from iiwa_dnn.schemes.periods import SLACK, Periods, periods_of
 from iiwa_dnn.schemes.profiles import Rates, braking
 from iiwa_dnn.schemes.program import ProgramArrays, block_constants, program_views
-from iiwa_dnn.schemes.rate_limits import MotionConstants, joint_rates
 from iiwa_dnn.schemes.scene import Body, scene_views, write_distances
 from iiwa_dnn.schemes.separation import (
     FREE_BODY,
@@ -232,10 +237,7 @@ class ArmPlan(NamedTuple):
         torque: Number of that of the joints' torques; -1: they are not limited.
         width: Length of the log of a step.
         lag: Network time of a step per control period in continuous mode; 0 if the network solves.
-        motion: Limits of the joints' motion.
         fastest: Largest entry of a twist [m/s], [rad/s]; a larger twist is scaled down to it.
-        lower: Lower position limits [rad], (n,).
-        upper: Upper position limits [rad], (n,).
         velocities: Velocities of the obstacles [m/s], (k, 3).
         settings: Settings of the shield.
         sizes: Sizes of `ArmState`.
@@ -249,10 +251,7 @@ class ArmPlan(NamedTuple):
     torque: int
     width: int
     lag: float
-    motion: MotionConstants
     fastest: float
-    lower: Vector
-    upper: Vector
     velocities: Matrix
     settings: ArmSettings
     sizes: ArmSizes
@@ -614,7 +613,8 @@ def _follow(plan: ArmPlan, arm: ArmState, periods: Periods) -> None:
         return
     motion = motion_of(plan, arm)
     change_spacing(motion, periods.dt)
-    follow_samples(own, arm.positions, motion, plan.motion, periods, arm.time, arm.request)
+    limits = motion_constants(plan.step.arrays)
+    follow_samples(own, arm.positions, motion, limits, periods, arm.time, arm.request)
     arm.answered = FOLLOW
 
 
@@ -726,7 +726,8 @@ def _add_turns(plan: ArmPlan, arm: ArmState, q: Vector) -> None:
 def _is_endless(plan: ArmPlan, i: int) -> bool:
     """Test whether joint i turns, and has no position limits."""
     slides: float = plan.robot.slides[i]
-    return plan.lower[i] == -np.inf and plan.upper[i] == np.inf and slides == 0.0
+    limits = motion_constants(plan.step.arrays)
+    return limits.lower[i] == -np.inf and limits.upper[i] == np.inf and slides == 0.0
 
 
 @compiled
@@ -1005,7 +1006,8 @@ def _take_request(
     if plan.separation >= 0:
         _slow_down(plan, arm, arrays, timing, request, admitted)
     if not request.is_twist:
-        approach_request(arm, motion_of(plan, arm), plan.motion, timing, admitted, state)
+        limits = motion_constants(arrays)
+        approach_request(arm, motion_of(plan, arm), limits, timing, admitted, state)
         copied(request.velocity, state[: arm.positions.size])
 
 
@@ -1028,15 +1030,16 @@ def _scale_request(
         request: The request; a twist is scaled, by the rates that answer it without limits.
         admitted: Largest speeds of the joints for another request [rad/s], (n,), overwritten.
     """
+    limits = motion_constants(arrays)
     dq = np.zeros(admitted.size)
     if request.is_twist:
         twist_rates(arrays, request, dq)
     factor = 1.0
     for i in range(dq.size):
-        admitted[i] = (1.0 - arm.reduction) * min(plan.motion.velocity[i], FASTEST)
+        admitted[i] = (1.0 - arm.reduction) * min(limits.velocity[i], FASTEST)
         wanted = dq[i] if request.is_twist else arm.request[i]
         if arm.answered == Request.POSITION:
-            wanted = _quickest(plan, arm, i, timing.hold)
+            wanted = _quickest(limits, arm, i, timing.hold)
         if abs(wanted) > admitted[i]:
             factor = min(factor, admitted[i] / abs(wanted))
     for i in range(TWIST if request.is_twist else 0):
@@ -1066,22 +1069,23 @@ def _slow_down(
     """
     constants = block_constants(arrays, plan.separation)
     write_bodies(constants, arm.bodies, arm.seen.age)
+    limits = motion_constants(arrays)
     n = arm.positions.size
     dq = np.zeros(n)
     if request.is_twist:
         twist_rates(arrays, request, dq)
     excess = 1.0
     for i in range(n):
-        fastest = min(plan.motion.velocity[i], FASTEST)
+        fastest = min(limits.velocity[i], FASTEST)
         excess = max(excess, abs(dq[i]) / fastest)
         if not request.is_twist and not is_refused(arm):
             wanted = arm.request[i]
             if arm.answered == Request.POSITION:
-                wanted = _quickest(plan, arm, i, timing.hold)
+                wanted = _quickest(limits, arm, i, timing.hold)
             dq[i] = min(max(wanted, -fastest), fastest)
     for i in range(n):
         dq[i] /= excess
-    factor = separation_factor(constants, arrays, plan.motion, dq, timing.longest)
+    factor = separation_factor(constants, arrays, limits, dq, timing.longest)
     factor = min(factor, 1.0 - arm.seen.withheld + RISE * timing.expected)
     arm.seen.withheld = 1.0 - factor
     if factor == 1.0:
@@ -1094,20 +1098,20 @@ def _slow_down(
 
 
 @compiled
-def _quickest(plan: ArmPlan, arm: ArmState, i: int, hold: float) -> float:
+def _quickest(limits: MotionConstants, arm: ArmState, i: int, hold: float) -> float:
     """Return a velocity of joint i on its way to a requested position [rad/s].
 
     No acceleration limit lets it be quicker, nor has it to be, to be there after `hold` [s].
     """
     left = _left(arm, i)
-    quickest = math.sqrt(2.0 * plan.motion.acceleration[i] * abs(left))
+    quickest = math.sqrt(2.0 * limits.acceleration[i] * abs(left))
     return math.copysign(min(quickest, abs(left) / hold), left)
 
 
 @compiled
 def _brake_blindly(plan: ArmPlan, arm: ArmState, motion: MotionState) -> None:
     """Command the next velocity of a motion to rest, for a step that no program can answer."""
-    brake_blindly(motion, plan.motion, plan.step.yielding.cubic)
+    brake_blindly(motion, motion_constants(plan.step.arrays))
     motion.path_lag += arm.period
     arm.fraction = 0.0
     arm.program = ProgramKind.STOPPED
@@ -1157,8 +1161,9 @@ def approach_request(
         before = motion.before[i]
         wanted = 0.0 if brakes else arm.request[i]
         left = _left(arm, i)
-        above = limits.upper[i] - arm.positions[i]
-        below = arm.positions[i] - limits.lower[i]
+        first, end = joint_range(limits, i)
+        above = end - arm.positions[i]
+        below = arm.positions[i] - first
         rates = joint_rates(limits, i)
         most = CUT * min(rates.velocity, FASTEST)
         if reaches or follows:
@@ -1258,9 +1263,10 @@ def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
     """Compute the `Margin` of an arm at the joint positions that its last command starts from."""
     arm = arm_state(plan, memory)
     q = motion_of(plan, arm).q
+    limits = motion_constants(plan.step.arrays)
     joint = np.inf
     for i in range(q.size):
-        joint = min(joint, min(q[i] - plan.lower[i], plan.upper[i] - q[i]))
+        joint = min(joint, min(q[i] - limits.lower[i], limits.upper[i] - q[i]))
     distance = np.inf
     if plan.scene >= 0:
         base = plan.step.arrays
@@ -1309,9 +1315,9 @@ def stopping_time_of(plan: ArmPlan, memory: Vector) -> float:
     """Compute the time of the stopping motion from an arm's last command [s]."""
     arm = arm_state(plan, memory)
     motion = motion_of(plan, arm)
-    cubic = plan.step.yielding.cubic
     dt = motion.spacing
-    periods = least_periods(motion.last, motion.before, plan.motion, dt, cubic, False)
+    limits = motion_constants(plan.step.arrays)
+    periods = least_periods(motion.last, motion.before, limits, dt, False)
     return dt * max(periods, 1.0 if largest_entry(motion.last) > 0.0 else 0.0)
 
 

@@ -411,7 +411,7 @@ class Controller:
         """
         with self._turn():
             control_layout = self.control_layout
-            if control_layout.program.rate_limits is not None:
+            if control_layout.program.joint_limits.rated:
                 return True
             plan = control_layout.plan
             least = self._least

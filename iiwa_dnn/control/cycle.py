@@ -23,7 +23,7 @@ from iiwa_dnn.control.command import (
     note_active,
     note_command,
 )
-from iiwa_dnn.control.fallback import FALLBACK_BUDGET, Yielding, fallback_size
+from iiwa_dnn.control.fallback import FALLBACK_BUDGET, fallback_size
 from iiwa_dnn.control.plan import ControlPlan, Instant, PathColumn, Paths
 from iiwa_dnn.control.state import MotionState, change_spacing
 from iiwa_dnn.control.stopping import periods_to_rest
@@ -53,12 +53,16 @@ from iiwa_dnn.references.base import FeedForward, enter_path
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.schemes.collisions import MEET
-from iiwa_dnn.schemes.joint_limits import JointLimits, PositionConstants
+from iiwa_dnn.schemes.joint_limits import (
+    MotionConstants,
+    check_ranges,
+    motion_constants,
+    state_periods,
+)
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
 from iiwa_dnn.schemes.periods import checked_longest, constant_periods
-from iiwa_dnn.schemes.program import ProgramArrays, assemble, block_constants, program_views
-from iiwa_dnn.schemes.rate_limits import MotionConstants, check_ranges, state_periods
+from iiwa_dnn.schemes.program import ProgramArrays, assemble, program_views
 from iiwa_dnn.schemes.step import StepViews
 
 FEASIBLE_BUDGET = 60.0
@@ -129,7 +133,8 @@ class ControlLayout:
         network = own or _asked(solver, program.sizes, lags * dt)
         self.lag = network.settings.duration / dt
         self.varies = lags or longest is not None
-        if program.rate_limits is not None:
+        limits = program.joint_limits
+        if limits.rated:
             # A program that a few linear solves do not solve most likely has no solution.
             network.settings.budget = min(network.settings.budget, FEASIBLE_BUDGET)
         seen = {} if program.reads_targets else references
@@ -148,12 +153,12 @@ class ControlLayout:
             BRAKE if lags else policy,
             self.timing,
         )
-        if program.rate_limits is not None:
-            check_ranges(yielding.limits, 1.0 / (longest or dt))
+        check_ranges(limits, 1.0 / (longest or dt))
         if yielding.lengthens.any():
-            _check_lengthening(yielding, longest)
+            _check_lengthening(limits, longest)
         if longest is not None:
-            _bound_gains(program, longest)
+            # No period may carry a joint beyond its position limit.
+            limits.gain = min(limits.gain, 1.0 / longest)
 
     @property
     def most_solves(self) -> float:
@@ -161,23 +166,15 @@ class ControlLayout:
         return float(self.plan.network.settings.budget) + FALLBACK_BUDGET
 
 
-def _bound_gains(program: ProgramLayout, longest: float) -> None:
-    """Keep a period of length `longest` [s] from carrying a joint beyond its position limit."""
-    for k in program.places_of(JointLimits):
-        limits = PositionConstants.of(program.constants_of(k))
-        limits.gain = min(limits.gain, 1.0 / longest)
-
-
-def _check_lengthening(yielding: Yielding, longest: float | None) -> None:
+def _check_lengthening(limits: MotionConstants, longest: float | None) -> None:
     """Refuse limits whose motions to rest may have to be longer, where these cannot be.
 
     Raises:
         InvalidInputError: Not all accelerations are limited, or control periods vary.
     """
-    accelerations = yielding.limits.acceleration
-    if not (accelerations.size and np.isfinite(accelerations).all()):
+    if not np.isfinite(limits.acceleration).all():
         problem = "of torques need limits of all accelerations beside them: AccelerationLimits()"
-        raise InvalidInputError("limits", problem, accelerations)
+        raise InvalidInputError("limits", problem, limits.acceleration)
     if longest is not None:
         problem = "is no part of what TorqueLimits promise: their control period is constant"
         raise InvalidInputError("longest_period", problem, longest)
@@ -283,8 +280,8 @@ def take_step(
         return INVALID
     copied(motion_state.q, q)
     change_spacing(motion_state, timing.dt)
-    if timing.vary and plan.yielding.rates >= 0:
-        state_periods(MotionConstants.of(block_constants(arrays, plan.yielding.rates)), timing)
+    if timing.vary:
+        state_periods(motion_constants(arrays), timing)
     copied(next_numbers, numbers)
     copied(next_motion_state.before, motion_state.last)
     next_motion_state.stopping_periods = 0.0

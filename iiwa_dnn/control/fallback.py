@@ -50,7 +50,6 @@ from iiwa_dnn.qp.dense import all_finite, largest_entry, row_dot
 from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, copied, data_size, qp_views
 from iiwa_dnn.qp.residuals import cost_size, is_small_enough, within
 from iiwa_dnn.schemes.program import add_soft
-from iiwa_dnn.schemes.rate_limits import MotionConstants
 
 MAX_LINEAR_SOLVES = 60
 """Linear solves after which a program counts as one without a solution."""
@@ -97,27 +96,20 @@ class Yielding(NamedTuple):
 
     Attributes:
         weights: Weight of each equality row, (p,); 0 for a row of coupled joints.
-        limits: Limits of the joints on a stopping motion; for no joints if the scheme has neither
-            acceleration nor jerk limits.
         tolerance: Tolerance of the residuals of an answer.
-        rates: Index of the scheme's part with acceleration and jerk limits; -1 if it has none.
         rests: Indices of the limits that have a word on a motion to rest, (k,).
         lengthens: For each of them 1 if a longer motion may keep it, else 0, (k,).
         verifies: Whether the rows of one of them do not suffice: a command is then given only if
             all of them agree with its motion to rest.
-        cubic: Whether the jerk of a joint is limited.
         coupled: Whether joints are coupled by a hard `JointCouplingTask`.
         alike: Whether the network of the nominal program is compiled, as for fallback programs.
     """
 
     weights: Vector
-    limits: MotionConstants
     tolerance: float
-    rates: int
     rests: IntVector
     lengthens: Vector
     verifies: bool
-    cubic: bool
     coupled: bool
     alike: bool
 

@@ -17,8 +17,8 @@ from iiwa_dnn.control.requests import RequestConstants
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot.kinematics_kernel import ModelTables
+from iiwa_dnn.schemes.joint_limits import motion_constants
 from iiwa_dnn.schemes.program import BlockKind, Column, ProgramArrays, ProgramSizes, block_constants
-from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.scene import Body, Pair, SceneHead, scene_views
 from iiwa_dnn.schemes.separation import (
     FREE_BODY,
@@ -58,13 +58,7 @@ def arm_fits(plan: ArmPlan, collisions: int, separation: int, torque: int) -> bo
         separation: Number of that of separation.
         torque: Number of that of torques.
     """
-    n = plan.step.arrays.sizes.joints
-    if (
-        not _control_fits(plan.step, plan.robot, collisions, separation)
-        or plan.motion.lower.size != n
-    ):
-        return False
-    if plan.lower.size != n or plan.upper.size != n or not _state_fits(plan):
+    if not _control_fits(plan.step, plan.robot, collisions, separation) or not _state_fits(plan):
         return False
     own = plan.sizes
     if not _networks_fit(plan.step, own.network, own.fallback):
@@ -244,13 +238,9 @@ def _yielding_fits(own: Yielding, arrays: ProgramArrays) -> bool:
     """Test the constants of fallback programs and stopping motions."""
     n = arrays.sizes.joints
     parts = len(arrays.table)
-    if own.weights.size != arrays.sizes.p or not _is_within(own.rates, -1, parts):
+    if own.weights.size != arrays.sizes.p or parts == 0:
         return False
-    if own.rates >= 0:
-        limits = MotionConstants.of(block_constants(arrays, own.rates))
-        if own.limits.lower.size != n or limits.lag.size != n:
-            return False
-    elif own.limits.lower.size > 0 and own.limits.lower.size != n:
+    if motion_constants(arrays).slope.size != n:
         return False
     outside = 0
     for k in range(own.rests.size):

@@ -34,9 +34,9 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
 from iiwa_dnn.qp.layout import IntVector, copied
+from iiwa_dnn.schemes.joint_limits import MotionConstants
 from iiwa_dnn.schemes.periods import Periods
 from iiwa_dnn.schemes.profiles import Rates
-from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.viability import reaching, rest_ahead
 
 SAMPLES = 64

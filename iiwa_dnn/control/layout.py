@@ -31,7 +31,6 @@ from iiwa_dnn.robot.kinematics_kernel import model_tables
 from iiwa_dnn.robot.obstacles import Obstacle
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.layout import ProgramLayout
-from iiwa_dnn.schemes.rate_limits import MotionLimits
 from iiwa_dnn.schemes.scene import Body, scene_views
 from iiwa_dnn.schemes.separation import FreeBody, Separation
 from iiwa_dnn.schemes.torque import TorqueLimits
@@ -154,10 +153,7 @@ def lay_out_arm(
         [*program.places_of(TorqueLimits), -1][0],
         step.log_layout.width,
         float(step.lag),
-        (program.rate_limits or MotionLimits()).constants(robot),
         float(CUT * max(robot.reach, 1.0) * total),  # above what the joints can do anywhere
-        robot.q_lower,
-        robot.q_upper,
         np.array([each.velocity for each in obstacles], dtype=np.float64).reshape(-1, 3),
         settings,
         sizes,

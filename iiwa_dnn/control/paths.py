@@ -20,9 +20,9 @@ from iiwa_dnn.robot.meetings import CLEARANCE
 from iiwa_dnn.robot.robot import model_limits
 from iiwa_dnn.schemes import Limit, OrientationTask, PoseTask, Scheme, TorqueLimits
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.joint_limits import largest_gain
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
-from iiwa_dnn.schemes.rate_limits import largest_gain
 from iiwa_dnn.schemes.tasks import GainTask
 
 References = Reference | Mapping[str, Reference]
@@ -183,10 +183,10 @@ def long_times(times: Mapping[str, float]) -> Iterator[str]:
 
 def _gain_warnings(program: ProgramLayout, dt: float) -> Iterator[str]:
     """Yield a warning if a task's gain is unstable with the rate limits at a period of dt [s]."""
-    if program.rate_limits is None:
+    if not program.joint_limits.rated:
         return
     gains = [min(task.gain, 1.0 / dt) for task in program.tasks if isinstance(task, GainTask)]
-    largest = largest_gain(program.rate_limits.constants(program.robot), 1.0 / dt)
+    largest = largest_gain(program.joint_limits, 1.0 / dt)
     if max(gains, default=0.0) > largest * (1.0 + 1e-9):
         yield (
             f"a gain of {max(gains):.3g} 1/s is above {largest:.3g} 1/s, up to which a loop with "

@@ -111,7 +111,7 @@ def lay_out_shield(shield: Shield, frame: str) -> ArmLayout:
         NotFoundError: The robot has no frame of that name.
     """
     program = Scheme([RequestCost(frame)], [], shield.limits).program(shield.robot)
-    if not program.places_of(JointLimits):
+    if program.joint_limits.gain == 0.0:
         raise InvalidInputError("limits", "need a JointLimits: every command keeps it", program)
     if len(program.places_of(CollisionAvoidance)) > 1:
         problem = "have several CollisionAvoidance: put their obstacles into one"

@@ -14,9 +14,9 @@ from iiwa_dnn.control.plan import ControlPlan, Instant
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.qp.dense import largest_entry
+from iiwa_dnn.schemes.joint_limits import MotionConstants, motion_constants
 from iiwa_dnn.schemes.parts import enter_rest
 from iiwa_dnn.schemes.program import Column, block_constants
-from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.rest import SLACK, Motion, cubic_coefficient, velocity_at
 
 LONGEST = 1e6
@@ -53,7 +53,7 @@ def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float
 
 @compiled
 def least_periods(
-    x: Vector, before: Vector, limits: MotionConstants, dt: float, cubic: bool, vary: bool
+    x: Vector, before: Vector, limits: MotionConstants, dt: float, vary: bool
 ) -> float:
     """Compute the number of periods in which all joints can come to rest together.
 
@@ -65,7 +65,6 @@ def least_periods(
         before: Velocities one period earlier [rad/s], (n,).
         limits: Limits of the joints, of which acceleration and jerk are read.
         dt: Control period [s].
-        cubic: Whether a jerk is limited.
         vary: Whether the later periods may be shorter.
 
     Returns:
@@ -75,7 +74,7 @@ def least_periods(
     for i in range(x.size):
         fewest = math.ceil(abs(x[i]) / (limits.acceleration[i] * dt) * (1.0 - SLACK))
         periods = max(periods, fewest)
-    return rated_periods(x, before, limits, dt, periods, vary) if cubic else periods
+    return rated_periods(x, before, limits, dt, periods, vary) if limits.cubic else periods
 
 
 @compiled
@@ -100,24 +99,21 @@ def rated_periods(
 
 
 @compiled
-def brake_blindly(motion: MotionState, limits: MotionConstants, cubic: bool) -> None:
+def brake_blindly(motion: MotionState, limits: MotionConstants) -> None:
     """Advance a motion by the next command of its motion to rest, where no program can be asked.
 
     That is the stored one; without one, the motion in which all joints come to rest together.
 
     Args:
         motion: State of the motion of n joints, overwritten.
-        limits: Limits of the joints; of none, if neither acceleration nor jerk is limited: the
-            joints stop at once.
-        cubic: Whether a jerk is limited.
+        limits: Limits of the joints; without acceleration and jerk limits they stop at once.
     """
     periods = motion.stopping_periods
-    if periods == 0.0 and limits.acceleration.size > 0 and motion.spacing > 0.0:
-        last = motion.last
-        periods = least_periods(last, motion.before, limits, motion.spacing, cubic, False)
+    if periods == 0.0 and motion.spacing > 0.0:
+        periods = least_periods(motion.last, motion.before, limits, motion.spacing, False)
     for i in range(motion.last.size):
         sent = motion.last[i]
-        motion.last[i] = next_velocity(sent, motion.before[i], periods, cubic)
+        motion.last[i] = next_velocity(sent, motion.before[i], periods, limits.cubic)
         motion.before[i] = sent
     motion.stopping_periods = max(periods - 1.0, 0.0)
 
@@ -217,7 +213,7 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector) -> float:
     yielding = plan.yielding
     if not yielding.verifies:
         return 0.0
-    limits = yielding.limits
+    limits = motion_constants(plan.arrays)
     dt = plan.timing.longest
     ratio = dt / plan.timing.dt
     vary = plan.timing.vary
@@ -225,14 +221,13 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector) -> float:
     coefficient = np.zeros(dq.size)
     if vary:
         _at_longest(dq, ratio, before)
-    rated = limits.lower.size > 0
-    periods = least_periods(dq, before, limits, dt, yielding.cubic, vary) if rated else 1.0
+    periods = least_periods(dq, before, limits, dt, vary) if limits.rated else 1.0
     stored = instant.motion.stopping_periods - 1.0
     grown = periods
     for k in range(TRIES):
         if periods == np.inf:
             return np.inf
-        motion = _motion(plan, dq, before, periods, coefficient)
+        motion = _motion(plan, limits.cubic, dq, before, periods, coefficient)
         refusing = _first_refusing(plan, instant, motion)
         if refusing < 0:
             return periods * ratio
@@ -242,18 +237,22 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector) -> float:
             grown = math.ceil(LONGER * grown)
         # What is left of the stored motion most likely is enough.
         periods = stored if k == 0 and stored > grown else grown
-        if yielding.cubic:
+        if limits.cubic:
             periods = rated_periods(dq, before, limits, dt, periods, vary)
     return np.inf
 
 
 @compiled
 def _motion(
-    plan: ControlPlan, dq: Vector, before: Vector, periods: float, coefficient: Vector
+    plan: ControlPlan,
+    cubic: bool,
+    dq: Vector,
+    before: Vector,
+    periods: float,
+    coefficient: Vector,
 ) -> Motion:
     """Return the motion to rest after a command; its coefficients (n,) are overwritten."""
     timing = plan.timing
-    cubic = plan.yielding.cubic
     if cubic and periods > 0.0:
         write_cubic_coefficients(dq, before, periods, timing.vary, coefficient)
     # If periods vary, the first may be the longest and the others arbitrarily short.
@@ -298,12 +297,11 @@ def store_command(plan: ControlPlan, motion: MotionState, dq: Vector) -> float:
         dq[:] = np.nan
         moves = max(largest_entry(motion.last), largest_entry(motion.before)) > 0.0
         return np.inf if moves else 0.0
-    limits = plan.yielding.limits
-    cubic = plan.yielding.cubic
+    limits = motion_constants(plan.arrays)
     dq[:] = 0.0
-    if limits.velocity.size == 0:
+    if not limits.rated:
         return 0.0
-    if cubic and plan.timing.vary:
+    if limits.cubic and plan.timing.vary:
         rest = stretched(motion.last, motion.before, limits, plan.timing.dt, rest)
     slow_down(plan, motion, rest, dq)
     return max(rest - 1.0, 0.0)
@@ -315,12 +313,12 @@ def slow_down(plan: ControlPlan, motion: MotionState, periods: float, dq: Vector
 
     The command dq [rad/s], (n,), is overwritten, within velocity and acceleration limits.
     """
-    limits = plan.yielding.limits
+    limits = motion_constants(plan.arrays)
     for i in range(motion.q.size):
         last = motion.last[i]
         fastest = max(limits.velocity[i], abs(last))
         change = limits.acceleration[i] * plan.timing.dt
-        dq[i] = next_velocity(last, motion.before[i], periods, plan.yielding.cubic)
+        dq[i] = next_velocity(last, motion.before[i], periods, limits.cubic)
         # After a change of the control period the curve may exceed a limit.
         dq[i] = min(max(dq[i], last - change), last + change)
         dq[i] = min(max(dq[i], -fastest), fastest)

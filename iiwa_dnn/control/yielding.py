@@ -46,11 +46,11 @@ from iiwa_dnn.qp.dense import largest_entry, row_dot, times
 from iiwa_dnn.qp.layout import QPViews, copied
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.references.targets import TargetData
+from iiwa_dnn.schemes.joint_limits import MotionConstants, joint_range, motion_constants
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.profiles import braking
 from iiwa_dnn.schemes.program import program_views
-from iiwa_dnn.schemes.rate_limits import MotionConstants, MotionLimits
 
 NONE, SLOW, RELAX, STOP, _ = map(int, Action)
 BRAKE = -1
@@ -81,21 +81,15 @@ def make_yielding(program: ProgramLayout, tol: float, alike: bool) -> Yielding:
         tol: Tolerance of the residuals of an answer.
         alike: Whether the network of the nominal program is compiled.
     """
-    limits = MotionConstants.zeros(0)
-    if program.rate_limits is not None:
-        limits = program.rate_limits.constants(program.robot)
     weights = program.row_weights
     rests = [k for k, part in enumerate(program.parts) if part.rest_kernel][::-1]  # joints first
     lasting = [program.parts[k] for k in rests]
     return Yielding(
         weights,
-        limits,
         tol,
-        [*program.places_of(MotionLimits), -1][0],
         np.array(rests, dtype=np.int64),
         np.array([float(isinstance(part, Limit) and part.slower_helps) for part in lasting]),
         not all(isinstance(part, Limit) and part.rows_suffice for part in lasting),
-        bool((limits.jerk < np.inf).any()),
         bool((weights == 0.0).any()),
         alike,
     )
@@ -137,7 +131,7 @@ def yield_step(
     nominal_solves = log.stats.iterations
     log.stats.iterations = 0.0
     if action != BRAKE:
-        _widen_bounds(log, qp, yielding.limits)
+        _widen_bounds(log, qp, motion_constants(plan.arrays))
         found, factor = _answer_fallback(log, qp, yielding, plan.fallback, action)
         kind = int(found)
     x = log.point[: qp.q.size].copy()
@@ -250,12 +244,15 @@ def _widen_bounds(log: StepLog, qp: QPViews, limits: MotionConstants) -> None:
     without acceleration or jerk limits, and of a joint outside of its range, which comes back
     within these.
     """
-    for i in range(limits.velocity.size):
-        if log.q[i] < limits.lower[i] or log.q[i] > limits.upper[i]:
+    if not limits.rated:
+        return
+    for i in range(log.q.size):
+        lower, upper = joint_range(limits, i)
+        if log.q[i] < lower or log.q[i] > upper:
             continue
         fastest = limits.velocity[i]
-        qp.lb[i] = min(max(POSITION_GAIN * (limits.lower[i] - log.q[i]), -fastest), fastest)
-        qp.ub[i] = min(max(POSITION_GAIN * (limits.upper[i] - log.q[i]), -fastest), fastest)
+        qp.lb[i] = min(max(POSITION_GAIN * (lower - log.q[i]), -fastest), fastest)
+        qp.ub[i] = min(max(POSITION_GAIN * (upper - log.q[i]), -fastest), fastest)
         log.lower_kind[i] = LimitKind.POSITION if qp.lb[i] > -fastest else LimitKind.VELOCITY
         log.upper_kind[i] = LimitKind.POSITION if qp.ub[i] < fastest else LimitKind.VELOCITY
 
@@ -388,7 +385,7 @@ def _approach_answer(
         x: The answer, overwritten by the command [rad/s], (n,).
     """
     yielding = plan.yielding
-    if yielding.limits.velocity.size == 0:
+    if not motion_constants(plan.arrays).rated:
         return
     copied(instant.next_motion.wanted, x[: instant.motion.q.size])
     # A straight line keeps the ratios of coupled joints.
@@ -408,13 +405,13 @@ def _approach_each(limits: QPViews, plan: ControlPlan, instant: Instant, x: Vect
     those of the program `limits`.
     """
     motion_state = instant.motion
-    yielding = plan.yielding
+    own = motion_constants(plan.arrays)
     for i in range(motion_state.q.size):
-        most = yielding.limits.acceleration[i] * plan.timing.dt
+        most = own.acceleration[i] * plan.timing.dt
         change = min(max(x[i] - motion_state.wanted[i], -most), most)
         behind = motion_state.last[i] - (x[i] - change)
-        rate = yielding.limits.jerk[i]
-        x[i] += braking(behind, limits.lb[i] - x[i], limits.ub[i] - x[i], rate, plan.timing)
+        jerk = own.jerk[i]
+        x[i] += braking(behind, limits.lb[i] - x[i], limits.ub[i] - x[i], jerk, plan.timing)
 
 
 @compiled
@@ -424,18 +421,17 @@ def _approach_together(plan: ControlPlan, instant: Instant, x: Vector) -> None:
     All joints reach it together; if no number of periods is enough, x stays.
     """
     motion_state = instant.motion
-    yielding = plan.yielding
+    limits = motion_constants(plan.arrays)
     dof = motion_state.q.size
     now = np.empty(dof)
     before = np.empty(dof)
     for i in range(dof):
         now[i] = motion_state.last[i] - x[i]
         before[i] = motion_state.before[i] - x[i]
-    dt = plan.timing.dt
-    periods = least_periods(now, before, yielding.limits, dt, yielding.cubic, False)
+    periods = least_periods(now, before, limits, plan.timing.dt, False)
     for i in range(dof):
         if periods < np.inf:
-            x[i] += next_velocity(now[i], before[i], periods, yielding.cubic)
+            x[i] += next_velocity(now[i], before[i], periods, limits.cubic)
 
 
 @compiled
@@ -464,7 +460,7 @@ def _make_stoppable(
     if rest < np.inf:
         return rest
     wanted = log.point[: x.size].copy()
-    if plan.yielding.limits.velocity.size > 0:
+    if motion_constants(plan.arrays).rated:
         _approach_together(plan, instant, wanted)
         nearest_within(limits, wanted, plan.yielding, log.stats)
     brake = np.zeros(x.size)
@@ -525,17 +521,15 @@ def _brake(limits: QPViews, plan: ControlPlan, instant: Instant, log: StepLog, d
     Returns:
         Periods until rest after the command; 0 if no stopping motion from it is verified.
     """
-    yielding = plan.yielding
+    rates = motion_constants(plan.arrays)
     motion = instant.motion
     dq[:] = 0.0
     if motion.stopping_periods > 0.0:
         return store_command(plan, motion, dq)
-    if yielding.limits.velocity.size == 0:
+    if not rates.rated:
         return 0.0
     dof = motion.q.size
-    periods = least_periods(
-        motion.last, motion.before, yielding.limits, plan.timing.dt, yielding.cubic, False
-    )
+    periods = least_periods(motion.last, motion.before, rates, plan.timing.dt, False)
     if periods < np.inf:
         slow_down(plan, motion, periods, dq)
     lb = limits.lb.copy()
@@ -544,11 +538,11 @@ def _brake(limits: QPViews, plan: ControlPlan, instant: Instant, log: StepLog, d
         lb[i] = min(lb[i], max(dq[i], 0.0))
         ub[i] = max(ub[i], min(dq[i], 0.0))
     # Coupled joints keep their ratios as they brake.
-    rates = np.zeros(limits.b.size)
+    coupled = np.zeros(limits.b.size)
     idle = np.empty(limits.h.size)
     idle[:] = np.inf
-    times(limits.A, dq, rates)
-    braking = QPViews(limits.P, limits.q, limits.G, idle, limits.A, rates, lb, ub)
-    nearest_within(braking, dq, yielding, log.stats)
+    times(limits.A, dq, coupled)
+    braking = QPViews(limits.P, limits.q, limits.G, idle, limits.A, coupled, lb, ub)
+    nearest_within(braking, dq, plan.yielding, log.stats)
     rest = periods_to_rest(plan, instant, dq[:dof])
     return rest if rest < np.inf else 0.0

@@ -13,17 +13,17 @@ from iiwa_dnn.schemes.costs import (
     KineticEnergy as KineticEnergy,
     Manipulability as Manipulability,
 )
-from iiwa_dnn.schemes.joint_limits import JointLimits as JointLimits
+from iiwa_dnn.schemes.joint_limits import (
+    AccelerationLimits as AccelerationLimits,
+    JerkLimits as JerkLimits,
+    JointLimits as JointLimits,
+    own_rate_limits as own_rate_limits,
+)
 from iiwa_dnn.schemes.literature import (
     DoubleIndicator as DoubleIndicator,
     PseudoInverse as PseudoInverse,
 )
 from iiwa_dnn.schemes.parts import Cost as Cost, Limit as Limit, Part as Part, Task as Task
-from iiwa_dnn.schemes.rate_limits import (
-    AccelerationLimits as AccelerationLimits,
-    JerkLimits as JerkLimits,
-    own_rate_limits as own_rate_limits,
-)
 from iiwa_dnn.schemes.scheme import Scheme as Scheme
 from iiwa_dnn.schemes.step import Step as Step
 from iiwa_dnn.schemes.tasks import (

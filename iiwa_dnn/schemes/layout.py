@@ -15,9 +15,9 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.joint_limits import MotionConstants, merged, motion_constants
 from iiwa_dnn.schemes.parts import Cost, Limit, Part, Task, answer_of, enter_rest, flat, idle_arrays
 from iiwa_dnn.schemes.program import BlockKind, Column, ProgramArrays, ProgramSizes, assemble
-from iiwa_dnn.schemes.rate_limits import MotionLimits, merged
 from iiwa_dnn.schemes.scene import SceneHead
 from iiwa_dnn.schemes.step import Step, StepViews
 
@@ -29,8 +29,8 @@ class ProgramLayout:
         robot: The robot.
         limits: The scheme's limits.
         tasks: Hard tasks, in the order of the equality rows.
-        parts: The parts in the order costs, hard tasks, soft tasks, limits; acceleration and jerk
-            limits are one, the last.
+        parts: The parts in the order costs, hard tasks, soft tasks, limits; those of the joints
+            are one, the last.
         sizes: ``(n, m, p)`` of the programs.
         target_frames: Names of the frames that tasks track, in the order of the targets; the
             tip's if no task tracks one.
@@ -113,9 +113,9 @@ class ProgramLayout:
         return [*self.target_frames, *own, *further]
 
     @property
-    def rate_limits(self) -> MotionLimits | None:
-        """All acceleration and jerk limits of the scheme; None if it has none."""
-        return next((part for part in self.parts if isinstance(part, MotionLimits)), None)
+    def joint_limits(self) -> MotionConstants:
+        """Limits of the joints, a view of the constants."""
+        return motion_constants(self.arrays)
 
     def constants_of(self, k: int) -> Vector:
         """Return the constants of part k, (size,), a view."""

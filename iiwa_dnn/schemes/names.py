@@ -2,8 +2,8 @@
 
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.schemes.collisions import MEET
+from iiwa_dnn.schemes.joint_limits import is_of_joints
 from iiwa_dnn.schemes.layout import ProgramLayout
-from iiwa_dnn.schemes.rate_limits import RateLimits
 from iiwa_dnn.schemes.tasks import JointCouplingTask
 
 OFF = 1e-6
@@ -29,7 +29,7 @@ class LimitNames:
             about = [{"about": name} for name in names] or [{}] * limit.row_count(program.robot)
             part: dict[str, object] = {"part": type(limit).__name__}
             rows += [part | {"row": number} | name for number, name in enumerate(about, 1)]
-        others = [limit for limit in program.limits if not isinstance(limit, RateLimits)]
+        others = [limit for limit in program.limits if not is_of_joints(limit)]
         self.settings = {
             "rows": rows,
             "pairs": [name for name, _ in program.pairs],

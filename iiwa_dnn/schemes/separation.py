@@ -39,9 +39,9 @@ from iiwa_dnn.robot.kinematics import Placement
 from iiwa_dnn.robot.meetings import Watched
 from iiwa_dnn.robot.obstacles import Box, Capsule, Obstacle, Sphere, names_of
 from iiwa_dnn.schemes.collisions import along
+from iiwa_dnn.schemes.joint_limits import MotionConstants
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.program import ProgramArrays
-from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.rest import Motion, displacement_after, end_displacement
 from iiwa_dnn.schemes.scene import (
     Body,

@@ -16,7 +16,7 @@ v_k: the upper bound is the v_k at which it is the position limit. The stopping 
 and the deceleration A' = A - J' dt, with J' at most A / (8 dt) and dq_max / (8 dt^2)
 (`usable_jerk`): a step with the full limits J and A then brakes no less than the path. Samples are
 above the path by at most `MARGIN`, which is kept free at either limit. A joint needs a range long
-enough to reverse in with J' (`iiwa_dnn.schemes.rate_limits.check_ranges`).
+enough to reverse in with J' (`iiwa_dnn.schemes.joint_limits.check_ranges`).
 
 **Position-dependent velocity limits** (`Robot.position_dependent_velocity`) are zero at :math:`o^2
 / (2 D)` before a position limit. At the distance x from that point, v is below the limit if

@@ -21,8 +21,8 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.robot import model_limits
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import avoidance_of
+from iiwa_dnn.schemes.joint_limits import RateLimits
 from iiwa_dnn.schemes.names import LimitNames
-from iiwa_dnn.schemes.rate_limits import MotionLimits, RateLimits
 from iiwa_dnn.simulation.loop import Loop
 from iiwa_dnn.simulation.motion import MOTIONS, check_motion
 from iiwa_dnn.simulation.noise import SignalChain
@@ -174,7 +174,7 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         solver.solve_integrator if controller.mode == "converged" else solver.advance_integrator
     )
     paths = by_frame(controller.reference, "").values()
-    rates = (program.rate_limits or MotionLimits()).constants(robot)
+    rates = program.joint_limits
     kept = dict(zip(RATES, (rates.acceleration, rates.jerk), strict=True))
     own = [*model_limits(robot.model), *robot.limits[3:]]
     limits: dict[str, Any] = {

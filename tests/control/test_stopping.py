@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import iiwa_dnn as d
-from helpers_simulation import driven, own
+from helpers_simulation import driven, limits_of_joints, own
 from iiwa_dnn.control import stopping
 from iiwa_dnn.control.policies import ProgramKind
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.schemes import rest
-from iiwa_dnn.schemes.rate_limits import MotionConstants
+from iiwa_dnn.schemes.joint_limits import MotionConstants
 from iiwa_dnn.schemes.scene import Pair, second_order
 from judge_limits import breaches
 
@@ -22,13 +22,12 @@ JERK = (d.AccelerationLimits(), d.JerkLimits(500.0))
 
 def limits_of(jerk: float) -> MotionConstants:
     """Limits of three joints."""
-    numbers = np.repeat([-3.0, 3.0, 3.0, 10.0, jerk, 10.0, np.inf, 0.0], 3)
-    return MotionConstants.of(np.concatenate([np.zeros(4), numbers]))
+    return limits_of_joints(-3.0, 3.0, 3.0, 10.0, jerk, joints=3)
 
 
 def way_to_rest(x: np.ndarray, before: np.ndarray, jerk: float, dt: float) -> np.ndarray:
     """Velocities from before x to rest, each from the two before it, as a controller has them."""
-    periods = stopping.least_periods(x, before, limits_of(jerk), dt, jerk < np.inf, False)
+    periods = stopping.least_periods(x, before, limits_of(jerk), dt, False)
     assert np.isfinite(periods)
     cubic = jerk < np.inf
     path = [before, x]
@@ -65,7 +64,7 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
         x = 10.0 ** random.uniform(-2.0, 0.0) * random.uniform(-2.0, 2.0, 3)
         before = x - random.uniform(-1.0, 1.0, 3) * min(10.0, 30.0 * jerk * dt) * dt
         limits = limits_of(jerk)
-        periods = stopping.least_periods(x, before, limits, dt, jerk < np.inf, False)
+        periods = stopping.least_periods(x, before, limits, dt, False)
         least = float(np.ceil(np.abs(x).max() / (10.0 * dt)))
         if jerk < np.inf:
             pairs = list(zip(x, before, strict=True))

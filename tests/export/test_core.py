@@ -176,7 +176,7 @@ def test_tables_that_were_changed_are_refused(text: str, library: Any) -> None:
             "step",
             "arrays",
             "constants",
-            "joint_limits",
+            "motion_limits",
             "velocity",
             3,
             value=9.0,

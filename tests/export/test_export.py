@@ -20,7 +20,7 @@ from iiwa_dnn.compiling.sources import Package
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.export import c99
 from iiwa_dnn.export.folder import run as run_controller, take_exported_kinematics
-from iiwa_dnn.schemes.joint_limits import PositionConstants
+from iiwa_dnn.schemes.joint_limits import MotionConstants
 from iiwa_dnn.studies.runs import paper_robot
 from judge_distances import swinging
 
@@ -231,7 +231,7 @@ def test_the_code_reads_as_c_by_hand(name: str, tmp_path: Path) -> None:
     text = (tmp_path / "armstep.c").read_text(encoding="utf-8")
     kernels = text[text.index("/* ----") :]
     assert not re.search(r"\(\*\w+\)[.[]|&\(\*|[=(] \(\((?!\w+ \*\)&)", kernels)
-    assert "        const double below = step->q.data[i] - limits.lower.data[i];\n" in kernels
+    assert "        const double below = step->q.data[i] - limits->lower.data[i];\n" in kernels
     sections = [text.index(f"/* ---- {title}") for title in SECTIONS if title in text]
     assert sections == sorted(sections)
     for words in (["gcc", *WARNINGS], ["g++", "-std=c++17", "-Wall", "-Werror", "-xc++"]):
@@ -255,8 +255,8 @@ def test_the_code_is_plain_c_and_its_memory_is_stated(heart: Path) -> None:
     assert not re.search(r"__(builtin|atomic|attribute)", code)
     for words in (
         "static inline ptrdiff_t control_cycle_take_step(struct arena *arena, Vector data,",
-        "/* Tighten the bounds lb and ub (n,) [rad/s] to those of `JointLimits`.",
-        " * iiwa_dnn/schemes/joint_limits.py: joint_limits */",
+        "/* Tighten the bounds lb and ub (n,) [rad/s] to those of `JointLimits`; clip",
+        " * iiwa_dnn/schemes/joint_limits.py: motion_limits */",
     ):
         assert words in text
     [header] = [each for each in heart.glob("*.h") if each.stem != "armstep"]
@@ -375,7 +375,6 @@ def test_tables_have_pythons_numbers_by_their_names(name: str, tmp_path: Path) -
     for field, numbers in (
         ("arrays.constants", plan.arrays.constants),
         ("paths.constants", plan.paths.constants),
-        ("yielding.limits", plan.yielding.limits),
     ):
         found = numbers_of(folder, field, tmp_path)
         np.testing.assert_array_equal(found, numbers, field)
@@ -396,7 +395,7 @@ def test_a_reviewer_finds_limits_gains_and_capsules_by_name(kind: str, tmp_path:
     )
     text = " ".join(whole.split()).replace("{ ", "{")
     limit = repr(float(paper_robot().dq_max[3]))
-    about = attributes(cleandoc(PositionConstants.__doc__ or ""))
+    about = attributes(cleandoc(MotionConstants.__doc__ or ""))
     for words in (
         f"double velocity[7]; /* {about['velocity']} */",
         ".velocity = {/* iiwa7_joint_1 */ 1.710422666954443, /* iiwa7_joint_2 */",

@@ -9,29 +9,20 @@ from hypothesis import example, given, settings, strategies as st
 
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array
-from helpers_simulation import heart, paper_robot, paper_start
+from helpers_simulation import heart, limits_of_joints, paper_robot, paper_start
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.schemes.periods import constant_periods, stated_periods
-from iiwa_dnn.schemes.profiles import Rates, braking, usable_jerk
-from iiwa_dnn.schemes.rate_limits import (
-    MotionConstants,
+from iiwa_dnn.schemes.joint_limits import (
     check_ranges,
     largest_gain,
     own_rate_limits,
 )
+from iiwa_dnn.schemes.periods import constant_periods, stated_periods
+from iiwa_dnn.schemes.profiles import Rates, braking, usable_jerk
 from iiwa_dnn.schemes.viability import LEVELS, LOWER, joint_bounds
 from judge_limits import Breach, breaches
 
 INF = math.inf
 Limits = tuple[float, float, float]
-
-
-def motion_constants(
-    lower: float, upper: float, speed: float, acceleration: float, jerk: float
-) -> MotionConstants:
-    """Limits of one joint, without a position-dependent velocity limit."""
-    own = [lower, upper, speed, acceleration, jerk, acceleration, INF, 0.0]
-    return MotionConstants.of(np.array([*[0.0] * 4, *own]))
 
 
 @compiled
@@ -105,6 +96,20 @@ def test_outside_a_position_limit_the_velocity_limit_holds(limits, dt, start) ->
         assert breaches(q[inside[0] :], dt, -1.0, 1.0) == []  # once back, it stays
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_outside_its_range_a_joint_without_rates_keeps_its_velocity_limit(side: float) -> None:
+    """Beside joints with an acceleration limit its bound was infinite."""
+    robot = d.load_robot("iiwa7").with_limits(acceleration=[*[10.0] * 6, INF])
+    q = robot.start_posture()
+    q[6] = side * (robot.q_upper[6] + 0.1)
+    start = d.Configuration(robot, q)
+    target = d.Target(start.position, start.rotation)
+    scheme = d.DoubleIndicator(extra_limits=[d.AccelerationLimits()])
+    qp = scheme.build_qp(start, target, 1e-3)
+    bounds = sorted(-side * np.array([qp.lb[6], qp.ub[6]]))
+    np.testing.assert_allclose(bounds, [0.1 * 20.0, robot.dq_max[6]], rtol=1e-9)
+
+
 def test_outside_a_short_range_a_joint_does_not_come_back_beyond_its_other_side() -> None:
     dt, limits = 1e-2, (2.0, 5.0, INF)
     q, last = 0.3, 0.0  # above a range of 1 mrad
@@ -135,7 +140,7 @@ def test_a_range_that_is_taken_is_long_enough(speed, acceleration, jerk, dt, upp
     limits = (speed, acceleration, jerk)
     while True:
         try:
-            check_ranges(motion_constants(-upper, upper, *limits), 1.0 / dt)
+            check_ranges(limits_of_joints(-upper, upper, *limits), 1.0 / dt)
             break
         except d.InvalidInputError:
             upper *= 1.02
@@ -320,7 +325,7 @@ def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
 )
 @pytest.mark.parametrize("dt", [1e-3, 4e-3])
 def test_a_loop_is_stable_up_to_the_largest_gain(limits: Any, dt: float) -> None:
-    gain = largest_gain(motion_constants(-1.0, 1.0, *limits), 1.0 / dt)
+    gain = largest_gain(limits_of_joints(-1.0, 1.0, *limits), 1.0 / dt)
     calm = np.zeros(int(30.0 / dt))
     noise = 1e-4 * np.random.default_rng(0).standard_normal(calm.size)
     for start in (1e-3, 0.1, 2.0):
@@ -367,7 +372,7 @@ def test_a_robots_own_rates_are_those_that_it_has() -> None:
         robot = d.load_robot(name)
         assert tuple(map(type, own_rate_limits(robot))) == expected
         shield = d.Shield(robot)
-        motion = shield.layout(robot.tip).plan.motion
+        motion = shield.layout(robot.tip).step.program.joint_limits
         rates = [motion.acceleration, motion.jerk]
         np.testing.assert_array_equal(rates, [robot.ddq_max, robot.dddq_max])
     assert own_rate_limits(d.load_robot("iiwa7").with_limits(acceleration=np.inf)) == ()

@@ -136,4 +136,4 @@ def test_what_is_wrong_is_refused_by_name(call: Callable[[], Any], said: str) ->
 
 
 def test_a_jerk_limit_that_suffices_is_taken() -> None:
-    assert d.Controller(ROBOT, COARSE, dt=1e-3).program.rate_limits is not None
+    assert d.Controller(ROBOT, COARSE, dt=1e-3).program.joint_limits.cubic

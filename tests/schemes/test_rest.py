@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from helpers_simulation import limits_of_joints
 from iiwa_dnn.schemes import rest
-from iiwa_dnn.schemes.rate_limits import MotionConstants, keeps_joint_limits
+from iiwa_dnn.schemes.joint_limits import keeps_joint_limits
 from iiwa_dnn.schemes.rest import Motion
 from iiwa_dnn.schemes.step import StepViews
 
@@ -119,17 +120,18 @@ def test_a_motion_to_rest_keeps_the_limits_of_a_joint_in_any_periods(
         a = random.uniform(-4.0, 6.0) / M if cubic else -x / M
         b = rest.cubic_coefficient(x, x - a, M, True) if cubic else 0.0
         motion = Motion(np.array([x]), np.array([b]), M + 1.0, 1.0, cubic, True, False)
-        limits = MotionConstants.of(
-            np.array([0.0] * 4 + [-99.0, 0.0, 99.0, 1.0, 1.0, 1.0, slope, lag])
-        )
+        varying = (slope * lag, slope if lag else np.inf)
+        limits = limits_of_joints(-99.0, 0.0, 99.0, 1.0, 1.0, varying)
+        lost = 0.5 * slope * lag**2  # before the position limit
         too_short = 0.0
         enough = 99.0
         for _ in range(40):
-            limits.upper[0] = 0.5 * (too_short + enough)
+            end = 0.5 * (too_short + enough)
+            limits.upper[0] = end + lost
             if keeps_joint_limits(ALONE, limits, motion):
-                enough = limits.upper[0]
+                enough = end
             else:
-                too_short = limits.upper[0]
+                too_short = end
         for _ in range(10):
             periods = blocks_of(random)
             periods = periods[: np.searchsorted(np.cumsum(periods), M + 2.0)]

@@ -9,7 +9,7 @@ from helpers_kinematics import Array
 from helpers_simulation import driven, paper_robot, paper_start, rows_of
 from iiwa_dnn.control.stopping import least_periods, write_cubic_coefficients
 from iiwa_dnn.schemes import AccelerationLimits, JerkLimits
-from iiwa_dnn.schemes.rate_limits import MotionLimits
+from iiwa_dnn.schemes.joint_limits import MotionLimits
 from iiwa_dnn.schemes.rest import Motion
 from iiwa_dnn.schemes.tip_speed import TipSpeedConstants, keeps_speed, velocity_after
 
@@ -76,7 +76,7 @@ def test_a_motion_to_rest_that_agrees_is_no_quicker_and_one_that_is_slow_agrees(
         x = random.uniform(0.1, 0.5) * robot.dq_max * random.uniform(-1.0, 1.0, 7)
         before = x - 5.0 * DT * random.uniform(-1.0, 1.0, 7)
         cubic = jerk < np.inf
-        periods = least_periods(x, before, limits, DT, cubic, False)
+        periods = least_periods(x, before, limits, DT, False)
         b = np.zeros(7)
         if cubic:
             write_cubic_coefficients(x, before, periods, False, b)

@@ -16,7 +16,7 @@ from helpers_simulation import rows_of
 from iiwa_dnn.control.arms import motion_of
 from iiwa_dnn.control.stopping import least_periods, write_cubic_coefficients
 from iiwa_dnn.schemes import AccelerationLimits, JerkLimits
-from iiwa_dnn.schemes.rate_limits import MotionLimits
+from iiwa_dnn.schemes.joint_limits import MotionLimits
 from iiwa_dnn.schemes.rest import Motion, velocity_at
 from iiwa_dnn.schemes.torque import TorqueLimits, keeps_torque
 
@@ -92,7 +92,7 @@ def test_a_motion_to_rest_that_agrees_keeps_all_torques_and_one_that_is_far_belo
     for q in robot.draw(random, 40):
         x = random.uniform(0.05, 1.0) * robot.dq_max * random.uniform(-1.0, 1.0, 7)
         last = x - DT * random.uniform(-3.0, 3.0, 7)
-        periods = float(round(2.0 * least_periods(x, last, limits, DT, cubic, False)))
+        periods = float(round(2.0 * least_periods(x, last, limits, DT, False)))
         b = np.zeros(7)
         if cubic:
             write_cubic_coefficients(x, last, periods, False, b)

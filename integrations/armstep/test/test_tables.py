@@ -102,7 +102,7 @@ def changed(text: str, seal: bool, *path: Any, value: Any = None) -> str:
     return json.dumps(members)
 
 
-VELOCITY = ("numbers", "plan", "step", "arrays", "constants", "joint_limits", "velocity", 3)
+VELOCITY = ("numbers", "plan", "step", "arrays", "constants", "motion_limits", "velocity", 3)
 TABLE = ("integers", "plan", "step", "arrays", "table", "rows", 1, "address")
 
 
