@@ -4,7 +4,7 @@ Its actuators take joint positions, as those of MuJoCo Menagerie's arms do. MJCF
 velocity, acceleration and jerk: state your arm's.
 """
 
-import sys
+import argparse
 
 import mujoco
 import numpy as np
@@ -40,5 +40,9 @@ def run(path, seconds, tip=None):
 
 
 if __name__ == "__main__":
-    robot, found, goals = run(sys.argv[1], 3.0, *sys.argv[2:])
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("path", help="the MJCF file")
+    parser.add_argument("tip", nargs="?", help="the frame that is pushed")
+    options = parser.parse_args()
+    robot, found, goals = run(options.path, 3.0, options.tip)
     print(f"{robot}\nat most {np.abs(found - goals).max():.3f} rad behind its goals")

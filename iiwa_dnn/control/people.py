@@ -228,11 +228,15 @@ def capsules_of(people: Any) -> Matrix:
     Raises:
         InvalidInputError: They have a wrong shape.
     """
-    if not isinstance(people, np.ndarray) and len(people) > 0:
+    if not isinstance(people, np.ndarray):
         try:
-            people = [np.concatenate([*map(np.ravel, each)]) for each in people]
-        except (TypeError, ValueError) as error:
-            raise InvalidInputError("people", "must be tuples (a, b, radius)", people) from error
+            rows = [np.concatenate([*map(np.ravel, each)]) for each in people]
+        except (TypeError, ValueError):
+            rows = [np.zeros(0)]
+        if any(row.size != CAPSULE for row in rows):
+            problem = "must be tuples (a, b, radius): both ends [m], (3,), and a radius [m]"
+            raise InvalidInputError("people", problem, people)
+        people = rows
     if len(people) == 0:
         people = np.zeros((0, CAPSULE))
     found: Matrix = checks.array("people", people, (-1, CAPSULE))

@@ -779,7 +779,9 @@ class Shield:
 
 def check_held(loop: Any, dt: float | None) -> None:
     """Refuse a stated period [s] above that of a shield or shields whose periods are constant."""
-    if loop.longest_period is None and dt is not None and dt > loop.dt * (1.0 + SLACK):
+    if dt is None or loop.longest_period is not None:
+        return
+    if checks.positive("dt", dt) > loop.dt * (1.0 + SLACK):
         problem = f"must be at most {loop.dt:g} s, the control period, without a longest_period"
         raise InvalidInputError("dt", problem, dt)
 

@@ -202,6 +202,9 @@ def test_settings_that_have_no_meaning_are_refused() -> None:
         Shield(ROBOT).step(ROBOT.start_posture(), REQUEST, people=[])
     with pytest.raises(InvalidInputError, match="people"):
         made().step(ROBOT.start_posture(), REQUEST, people=[([0, 0, 1], 0.1)])
+    for people in (5, [3.0], [([0, 0, 1], [0, 0, 2])]):
+        with pytest.raises(InvalidInputError, match="must be tuples"):
+            made().step(ROBOT.start_posture(), REQUEST, people=people)
     with pytest.raises(InvalidInputError, match="Box with a speed"):
         Separation((Sphere([1, 0, 0], 0.1),))
 

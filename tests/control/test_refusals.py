@@ -37,6 +37,7 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("filter_window", lambda: MovingAverage(0)),
     ("filter_window", lambda: MovingAverage(2.5)),  # type: ignore[arg-type]
     ("dt", lambda: d.Shield(paper_robot(), dt=0.0)),
+    ("dt", lambda: d.Shield(paper_robot()).step(PAPER_Q0, dt="1 ms")),
     ("timeout", lambda: d.Shield(paper_robot(), timeout=-1.0)),
     ("distance", lambda: d.Shield(paper_robot(), distance=-0.1)),
     ("distance", lambda: d.Shield(paper_robot(), 1e-3, d.CollisionAvoidance(), distance=0.05)),

@@ -23,6 +23,8 @@ def tables(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("ur") / "ur5.json"
     iiwa_dnn.export.tables(iiwa_dnn.Shield(ROBOT, DT, obstacles=[]), path)
     iiwa_dnn.export.tables(iiwa_dnn.Shield(ROBOT, 0.05), path.with_name("slow.json"))
+    varying = iiwa_dnn.Shield(ROBOT, DT, longest_period=2.0 * DT)
+    iiwa_dnn.export.tables(varying, path.with_name("varying.json"))
     return path
 
 
@@ -125,6 +127,7 @@ def test_the_arm_brakes_and_says_why(tables: Path, robot: Robot, fault: str) -> 
         ("ur5.json", {"lookahead_time": 0.02}, "lookahead_time: must be 0.03 to 0.2"),
         ("ur5.json", {"gain": 50.0}, "gain: must be 100 to 2000"),
         ("slow.json", {"lookahead_time": 0.04}, "at least the shield's period"),
+        ("varying.json", {}, "longest_period: servoJ's is constant"),
     ],
 )
 def test_a_number_out_of_range_is_refused(

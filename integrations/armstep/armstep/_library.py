@@ -131,7 +131,8 @@ def load(kind: Any) -> Any:
             function = getattr(library, f"armstep_{name}")
             function.restype, function.argtypes = result, arguments
     except (OSError, AttributeError) as error:
-        raise LibraryError(f"armstep has no library for this machine: {error}") from None
+        remedy = f"pip install integrations/armstep compiles one, {ENVIRONMENT} names another"
+        raise LibraryError(f"no library for this machine: {remedy}: {error}") from None
     return library
 
 

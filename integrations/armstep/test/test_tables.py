@@ -250,7 +250,7 @@ def test_a_library_that_is_missing_is_said_in_a_line(tmp_path: Path) -> None:
             text=True,
             check=False,
         )
-        words = "armstep.errors.LibraryError: armstep has no library for this machine: "
+        words = "armstep.errors.LibraryError: no library for this machine: pip install "
         assert done.stderr.splitlines()[-1].startswith(words)
 
 

@@ -1,1 +1,8 @@
-"""Drivers of arms behind a shield, each a module that is imported where it is used."""
+"""Drivers of arms behind a shield: `armstep_drivers.ur.UR`, `armstep_drivers.dynamixel.Dynamixel`.
+
+What a driver needs of its arm's maker is imported where it connects.
+"""
+
+from armstep_drivers import dynamixel, ur
+
+__all__ = ["dynamixel", "ur"]

@@ -34,7 +34,7 @@ class UR(armstep.Drive):
             gain: Gain of servoJ, 100 to 2000.
 
         Raises:
-            InputError: A number is out of range.
+            InputError: A number is out of range, or the shield's periods vary.
         """
         import rtde_control
         import rtde_receive
@@ -43,6 +43,8 @@ class UR(armstep.Drive):
             least, most = RANGES[name]
             if not least <= value <= most:
                 raise armstep.InputError(f"{name}: must be {least:g} to {most:g}")
+        if shield.tables.longest_period is not None:
+            raise armstep.InputError("longest_period: servoJ's is constant; export without one")
         if shield.dt > lookahead_time:
             raise armstep.InputError("lookahead_time: must be at least the shield's period")
         way = (lookahead_time + 2.0 * shield.dt) * float(shield.tables.limits["velocity"].max())
