@@ -143,22 +143,28 @@ class Kept(NamedTuple):
 
 
 class ShieldCommand(Command):
-    """Decision of one step of a shield.
+    """Decision of one step of a shield."""
 
-    Attributes:
-        layout: Layout of the arm's step.
-        memory: Memory of the arm after the step, (k,).
-    """
-
-    __slots__ = ("layout", "memory")
+    __slots__ = ("_arm", "_memory")
 
     def __init__(
         self, data: Vector, layout: ArmLayout, action: Action, periods: Periods, memory: Vector
     ) -> None:
         """Take what a `Command` takes, and the arm's layout and memory, which are not copied."""
         super().__init__(data, layout.step.log_layout, action, periods)
-        self.layout = layout
-        self.memory = memory
+        memory.setflags(False)  # write=False: the shield keeps it
+        self._arm = layout
+        self._memory = memory
+
+    @property
+    def layout(self) -> ArmLayout:
+        """Layout of the arm's step."""
+        return self._arm
+
+    @property
+    def memory(self) -> Vector:
+        """Memory of the arm after the step, (k,), read-only."""
+        return self._memory
 
     @property
     def state(self) -> ArmState:
@@ -669,8 +675,8 @@ class Shield:
                 self._warn(measured, kind, request)
             periods = step.plan.timing
             if step.varies or not dt is elapsed is None:
-                check_held(self, dt)
                 periods = periods_of_step(self, self._warned, dt, elapsed)
+                check_held(self, dt)
             if self._halted:
                 halt_arm(plan, memory)
             self._see(plan, memory, people, obstacles, age)

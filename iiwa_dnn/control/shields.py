@@ -192,13 +192,15 @@ class Shields:
         """
         shape = (self.count, self.robot.dof)
         kind, request = one_request(shape, dq, twist, position)
-        check_held(self, dt)
         stated_periods(self.dt, self.longest_period, dt, elapsed)
+        check_held(self, dt)
         measured = checks.array("q", q, shape)
         inputs = ArmInput(measured.ravel(), kind, request.ravel(), dt or 0.0, elapsed or 0.0, 0.0)
         kinds = self._flags("given", given) * kind
         layout = self._shield.layout(self.frame)
         with self._shield._lock:
+            if kind in self._shield._unseen:
+                self._shield._warn(measured[0], kind, request[0])
             if isinstance(obstacles, Mapping):
                 self._see(people, obstacles, age)
             elif people is not None:

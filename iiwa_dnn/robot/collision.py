@@ -32,7 +32,7 @@ from iiwa_dnn.robot.arms import ARMS, robots_folder
 from iiwa_dnn.robot.fitting import Body, fit_bodies
 from iiwa_dnn.robot.meetings import CLEARANCE, MEETS, SAMPLES, Meetings, Space, Watched, geometry_of
 from iiwa_dnn.robot.obstacles import Box, Capsule
-from iiwa_dnn.robot.robot import Robot
+from iiwa_dnn.robot.robot import Robot, model_limits
 from iiwa_dnn.robot.shapes import read_shapes, source_of, tool_shapes
 
 Part = tuple[str, Body]
@@ -217,15 +217,19 @@ def collision_model(robot: Robot) -> CollisionModel:
 def link_model(robot: Robot) -> CollisionModel:
     """Read the collision geometry of a robot's links; if it has no file, make it from the URDF.
 
-    No file is written. If making takes longer than `LONG`, a warning says how to keep the result.
-    It is made once for all robots that differ in tools and rates alone.
+    It is made in spite of a file, and a warning says so, if a position limit is beyond the URDF's,
+    within which pairs of the file never meet. No file is written. If making takes longer than
+    `LONG`, a warning says how to keep the result. It is made once for all robots that differ in
+    tools and rates alone.
 
     Raises:
         InvalidInputError: The robot does not come from a file.
         FileError: The file of the geometry is damaged, or a mesh cannot be read.
     """
     file = collision_file(robot)
-    if file.exists():
+    least, most = model_limits(robot.model)[:2]
+    is_within = bool((robot.q_lower >= least).all() and (robot.q_upper <= most).all())
+    if file.exists() and is_within:
         return CollisionModel.load(file)
     flange = robot.tools[0].flange if robot.tools else robot.tip
     ranges = robot.limits[:2].tobytes()
@@ -233,7 +237,12 @@ def link_model(robot: Robot) -> CollisionModel:
     if arm not in _made:
         began = process_time()
         _made[arm] = make_collision_model(replace(robot, tip=flange, tools=()))
-        if (taken := process_time() - began) > LONG:
+        if file.exists():
+            warn_caller(
+                f"{robot.name} has position limits beyond those of its file: the pairs that may "
+                f"meet are searched for anew, {file} is not used"
+            )
+        elif (taken := process_time() - began) > LONG:
             warn_caller(
                 f"capsules and pairs of {robot.name} took {taken:.1f} s; "
                 f"`iiwa-dnn collisions` keeps them beside {robot.path}"

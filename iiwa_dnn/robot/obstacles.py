@@ -116,8 +116,16 @@ class Obstacle(checks.Checked, ABC):
 
 
 def names_of(obstacles: Sequence[Obstacle]) -> list[str]:
-    """Return the name of each obstacle: its own, or that of its shape with its number."""
-    return [each.name or f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)]
+    """Return the name of each obstacle: its own, or that of its shape with its number.
+
+    Raises:
+        InvalidInputError: Two have the same one.
+    """
+    names = [each.name or f"{type(each).__name__} {k}" for k, each in enumerate(obstacles, 1)]
+    if len({*names}) < len(names):
+        twice = max(names, key=names.count)
+        raise InvalidInputError("obstacles", f"two go by the name {twice!r}", obstacles)
+    return names
 
 
 @dataclass(frozen=True)

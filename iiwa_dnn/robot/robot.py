@@ -76,6 +76,7 @@ class Robot:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "tip_id", self.frame_id(self.tip))
+        object.__setattr__(self, "limits", checks.read_only(self.limits))
         if self.model.frames[self.tip_id].parentJoint == 0:
             raise InvalidInputError("tip", f"no joint moves frame {self.tip!r}", self.tip)
         for joint, (lower, upper, *rates) in zip(self.joint_names, self.limits.T, strict=True):

@@ -229,8 +229,8 @@ def make_scene(
 
     Raises:
         NotFoundError: `may_touch` has a name that is no body's.
-        InvalidInputError: The robot has no URDF file, a joint has no velocity limit, or no pair is
-            left to be watched.
+        InvalidInputError: The robot has no URDF file, a joint has no velocity limit, an obstacle
+            goes by another body's name, or no pair is left to be watched.
         FileError: The collision geometry of the robot cannot be read.
     """
     if not (robot.dq_max < np.inf).all():
@@ -240,6 +240,8 @@ def make_scene(
     model = collision_model(robot)
     links = [each.link for each in model.bodies]
     names = links + names_of(obstacles)
+    for name in {*links} & {*names[len(links) :]}:
+        raise InvalidInputError("obstacles", f"one goes by the link's name {name!r}", obstacles)
     bodies = _bodies(robot, obstacles)
     numbered = model.pairs(robot) if self_collision else []
     numbered += _obstacle_pairs(robot, bodies, len(links))

@@ -135,6 +135,24 @@ def test_attributes_that_are_set_once_stay(name: str) -> None:
             made.settings.delay = 0.05
 
 
+def test_what_a_command_shows_of_a_shield_is_its_own() -> None:
+    shield = d.Shield(ROBOT, DT)
+    command = shield.step(START, np.full(7, 0.5))
+    margin = command.margin
+    for name in ("memory", "layout"):
+        with pytest.raises(AttributeError):
+            setattr(command, name, np.zeros(2))
+    for array in (command.memory, command.state.numbers, ROBOT.limits):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 9.0
+    command.dq[:] = command.next_q[:] = 9.0
+    assert command.margin == margin
+    twin = d.Shield(ROBOT, DT)
+    twin.step(START, np.full(7, 0.5))
+    answers = [each.step(START, np.full(7, 0.5)).dq for each in (shield, twin)]
+    np.testing.assert_array_equal(*answers)
+
+
 def test_the_threads_of_shields_may_be_set() -> None:
     shields = d.Shields(ROBOT, 3, dt=DT)
     shields.threads = 2

@@ -196,7 +196,13 @@ def test_positions_requested_in_degrees_are_noticed_once() -> None:
     shield = d.Shield(ROBOT)
     with pytest.warns(UserWarning, match=r"requested posture .* are the positions in degrees\?"):
         shield.step(START, position=np.degrees(START + 0.1))
+    many = d.Shields(ROBOT, 2)
+    with pytest.warns(UserWarning, match=r"start posture .* are the positions in degrees\?"):
+        many.step(np.degrees([START, START]), np.zeros((2, 7)))
+    with pytest.warns(UserWarning, match=r"requested posture .* are the positions in degrees\?"):
+        many.step([START, START], position=np.degrees([START, START]))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
+        many.step([START, START], position=np.degrees([START, START]))
         shield.step(START, position=np.degrees(START))
         d.Shield(ROBOT).step(START, position=START + 3.0)  # beyond the limits, but no degrees

@@ -193,6 +193,7 @@ def test_a_wrong_input_changes_no_arm() -> None:
         {"dq": np.ones((3, 7)), "obstacles": [[0.0, np.nan, 0.0]]},
         {"dq": np.ones((3, 7)), "elapsed": 1e-3},
         {"dq": np.ones((3, 7)), "dt": -1.0},
+        {"dq": np.ones((3, 7)), "dt": "1e-3"},
         {"dq": [["a"] * 7] * 3},
     ]
     for own in wrong:

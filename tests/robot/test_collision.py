@@ -18,6 +18,7 @@ from iiwa_dnn.robot import collision
 from iiwa_dnn.robot.arms import robots_folder
 from iiwa_dnn.robot.collision import (
     collision_model,
+    link_model,
     make_collision_model,
     unwatched_links,
 )
@@ -257,6 +258,19 @@ def test_pairs_that_take_long_are_said(tmp_path, monkeypatch) -> None:
     said = f"^capsules and pairs of arm took 2.5 s; .* beside {robot.path}$"
     with pytest.warns(UserWarning, match=said):
         collision_model(robot.with_limits(upper=0.5))
+
+
+def test_a_file_counts_within_the_position_limits_of_the_urdf(tmp_path) -> None:
+    robot = arm_of(tmp_path, base=COVER, p3=COVER)
+    made = collision_model(robot)
+    assert ("base", "p3", "never") in made.left_out
+    made.save(tmp_path / "arm.collisions.toml")
+    assert link_model(robot.with_limits(lower=-0.5)).left_out == made.left_out
+    with pytest.warns(UserWarning, match="arm has position limits beyond those of its file: "):
+        wide = link_model(robot.with_limits(lower=-2.5, upper=2.5))  # the arm folds back
+    assert [(wide.bodies[a].link, wide.bodies[b].link) for a, b, _ in wide.watched or ()] == [
+        ("base", "p3")
+    ]
 
 
 def test_a_controller_warns_of_links_that_no_row_watches(tmp_path, monkeypatch) -> None:

@@ -166,3 +166,17 @@ def test_a_file_is_what_python_says(tmp_path: Path) -> None:
     read = iiwa_dnn.CollisionAvoidance.from_toml(path)
     assert read.obstacles == (BALL, HalfSpace([0.0, 0.0, 1.0], -0.1))
     assert read.distance == 0.03
+
+
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        (("ball", "ball"), "two go by the name 'ball'"),
+        ((None, "Sphere 1"), "two go by the name 'Sphere 1'"),
+        (("iiwa7_link_5", None), "one goes by the link's name 'iiwa7_link_5'"),
+    ],
+)
+def test_a_name_is_that_of_one_body(names: tuple[str | None, str | None], words: str) -> None:
+    balls = [Sphere([1.0, k, 0.0], 0.1, name=name) for k, name in enumerate(names)]
+    with pytest.raises(iiwa_dnn.InvalidInputError, match=words):
+        iiwa_dnn.CollisionAvoidance(balls).scene(iiwa_dnn.load_robot("iiwa7"))

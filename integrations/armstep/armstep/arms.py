@@ -7,7 +7,7 @@ import os
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from contextlib import suppress
 from typing import Any, Generic, NamedTuple, TypeVar, cast
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from armstep._library import MANY, ONE, SAVED, Batch, Input
 from armstep.errors import InputError, TablesError
-from armstep.tables import Array, Path, Tables, load_tables
+from armstep.tables import Array, Fixed, Path, Tables, load_tables
 
 TWIST = 6
 """Numbers of a twist: linear, then angular velocity."""
@@ -80,8 +80,7 @@ class Buffers(NamedTuple):
     scratch: Array
 
 
-@dataclass(slots=True)
-class Decision:
+class Decision(NamedTuple):
     """Command of one step of an arm.
 
     Attributes:
@@ -138,7 +137,7 @@ Answer = TypeVar("Answer")
 """What a step returns: the decision of one arm, or those of many."""
 
 
-class Arms(Generic[Answer]):
+class Arms(Fixed, Generic[Answer]):
     """Memory of one arm, or of N. Threads may share it; copies, pickles and forks carry it along.
 
     Attributes:
@@ -204,11 +203,6 @@ class Arms(Generic[Answer]):
         self._lock = threading.RLock()
         self._pool: tuple[int, ThreadPoolExecutor] | None = None
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        if not name.startswith("_"):
-            raise InputError(f"{name}: is fixed when the object is made")
-        super().__setattr__(name, value)
-
     def __getstate__(self) -> tuple[Any, ...]:
         """Return arguments of `_begin` for a copy."""
         with self._lock:
@@ -238,9 +232,10 @@ class Arms(Generic[Answer]):
         if elapsed is not None and (dt is not None or is_fixed):
             raise InputError("elapsed: must be alone, without dt, and needs a longest_period")
         most = self.dt * (1.0 + ROUNDING) if is_fixed else LONGEST
-        if not 0.0 < (elapsed if dt is None else dt) <= most:  # type: ignore[operator]
-            raise InputError(f"dt, elapsed: must be above 0 s, at most {most:g} s")
-        return float(dt or 0.0), float(elapsed or 0.0)
+        with suppress(TypeError):
+            if 0.0 < (elapsed if dt is None else dt) <= most:  # type: ignore[operator]
+                return float(dt or 0.0), float(elapsed or 0.0)
+        raise InputError(f"dt, elapsed: must be above 0 s, at most {most:g} s")
 
     def _take(
         self,
@@ -306,12 +301,17 @@ class Arms(Generic[Answer]):
         Raises:
             InputError: They have a wrong shape, or are not finite.
         """
+        centers = self._centers(obstacles)
+        for i, memory in self._each():
+            ONE.armstep_place(self.tables.arm, memory, centers[i].ctypes)
+
+    def _centers(self, obstacles: ArrayLike) -> Array:
+        """Return centres of obstacles [m] as those of each arm, (N, k, 3)."""
         found = np.asarray(obstacles)
         shape = (len(self.tables.obstacle_names), 3)
         many = self._many if found.ndim == len(self._many) + len(shape) else ()
-        places = pointed("obstacles", found, (*many, *shape), FINITE)
-        for i, memory in self._each():
-            ONE.armstep_place(self.tables.arm, memory, (places[i] if many else places).ctypes)
+        centers = pointed("obstacles", found, (*many, *shape), FINITE)
+        return np.broadcast_to(centers, (self.count, *shape))
 
     def halt(self, mask: ArrayLike | None = None) -> None:
         """Brake from now on, whatever is asked, until `reset`; of many those of a mask (N,)."""

@@ -177,12 +177,13 @@ class _Shields(Arms[Answer]):
         request = self._request(dq, twist, position)
         periods = self._periods(dt, elapsed)
         mask = None if given is None else self._mask("given", given)
+        centers = None if obstacles is None else self._centers(obstacles)
         with self._lock:
-            if obstacles is not None:
-                self.place(obstacles)
             if time is not None or lead is not None:
                 self._pass(position, time, 1 if lead is None else lead, mask)
                 request = 0, None
+            if centers is not None:
+                self.place(centers)
             self._batch.given = None if mask is None else self._given
             if mask is not None:
                 self._buffers.given[...] = mask

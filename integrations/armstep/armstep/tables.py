@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from armstep._library import LAID_OUT, LIMITS, NAMED, ONE, OwnPart, TablesStruct
-from armstep.errors import TablesError
+from armstep.errors import InputError, TablesError
 
 Array = NDArray[np.float64]
 Path = str | os.PathLike[str]
@@ -36,7 +36,16 @@ STATUS = {
 """Words for what `armstep_load` refuses."""
 
 
-class Tables:
+class Fixed:
+    """Base of objects whose public attributes are set once: memory is laid out by them."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not name.startswith("_"):
+            raise InputError(f"{name}: is fixed when the object is made")
+        super().__setattr__(name, value)
+
+
+class Tables(Fixed):
     """All that a step has to know of an arm; `load_tables` reads them from a file.
 
     Attributes:
@@ -73,6 +82,7 @@ class Tables:
     memory: int
     scratch: int
     members: Mapping[str, Any]
+    arm: Any
 
     def __init__(self, members: Mapping[str, Any], own: str | None = None) -> None:
         """Check the members of a file, and lay them out in C.
@@ -91,8 +101,8 @@ class Tables:
         kept = {key: value for key, value in members.items() if key != "vectors"}
         if members["checksum"] != checksum(kept):
             raise TablesError("is damaged: its checksum is another one")
-        vars(self).update(_attributes(members))
-        self.members = kept
+        arm = (ctypes.c_double * LAID_OUT)()
+        vars(self).update(_attributes(members), members=kept, arm=arm)
         self._own = own
         struct = TablesStruct(
             digest=int(self.digest, 16),
@@ -105,8 +115,7 @@ class Tables:
         parts = _own_parts(self.name, members["own"], own)
         struct.own, struct.own_count = ctypes.addressof(parts), len(parts)
         self._kept = struct, parts, _arrays(struct, members)  # what C points to
-        self.arm = (ctypes.c_double * LAID_OUT)()
-        status = ONE.armstep_load(self.arm, ctypes.byref(struct))
+        status = ONE.armstep_load(arm, ctypes.byref(struct))
         sizes = {each.size for each in self.limits.values()}
         if status or sizes != {len(self.joint_names)} or not 0.0 < self.dt < np.inf:
             raise TablesError(f"is damaged: {STATUS.get(status, STATUS[3])}")

@@ -184,7 +184,9 @@ def test_other_types_of_numbers_are_computed_in_float64(package: Any) -> None:
         {"dq": ["a"] * 7},
         {"dq": START, "twist": np.zeros(6)},
         {"dt": 0.0},
+        {"dt": "1e-3"},
         {"dt": DT, "elapsed": DT},
+        {"position": START, "lead": 5, "obstacles": [[0.5, 0.5, 0.5]]},
         {"obstacles": [[0.0, 0.0, np.inf]]},
         {"obstacles": np.zeros((2, 3))},
     ],
@@ -193,7 +195,7 @@ def test_wrong_input_is_an_error_and_changes_nothing(package: Any, own: dict[str
     shield = package.Shield()
     shield.step(START, dq=np.ones(7))
     before = shield.save().tobytes()
-    with pytest.raises(armstep.InputError, match=r"must|pass"):
+    with pytest.raises(armstep.InputError, match=r"must|pass|lead"):
         shield.step(**{"q": START, **own})
     assert shield.save().tobytes() == before
 
@@ -242,6 +244,10 @@ def test_it_says_what_it_is(package: Any) -> None:
     assert command.reason is armstep.Reason.NONE
     with pytest.raises(armstep.InputError, match="dt: is fixed"):
         shield.dt = 0.1
+    with pytest.raises(armstep.InputError, match="scratch: is fixed"):
+        own.scratch = 1
+    with pytest.raises(AttributeError):
+        command.memory = np.zeros(1)
     with pytest.raises(ValueError, match="read-only"):
         own.limits["upper"][0] = 9.0
 
