@@ -74,8 +74,9 @@ from iiwa_dnn.control.requests import (
 )
 from iiwa_dnn.errors import InvalidInputError, warn_caller
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot.obstacles import names_of
 from iiwa_dnn.schemes import (
     CollisionAvoidance,
     JointLimits,
@@ -130,8 +131,29 @@ def see(plan: ArmPlan, memory: Vector, news: News) -> None:
         see_body(plan, memory, number, box, news.age)
 
 
+def place(layout: ArmLayout, memories: Matrix, obstacles: ArrayLike) -> None:
+    """Place the centres of the obstacles of N arms, whose memories (N, k) are overwritten.
+
+    Args:
+        layout: Layout of the arms' steps.
+        memories: The memories.
+        obstacles: Present centres [m], (j, 3) for all arms or (N, j, 3).
+
+    Raises:
+        InvalidInputError: They have another shape, are not finite, or move in a way of their own.
+    """
+    if movers := own_movers(layout.step.program):
+        problem = f"move in a way of their own: {', '.join(names_of(movers))}"
+        raise InvalidInputError("obstacles", problem, obstacles)
+    shape = (len(memories), layout.plan.sizes.obstacles, 3)
+    given = shape if np.ndim(obstacles) == len(shape) else shape[1:]
+    centers = checks.finite_array("obstacles", obstacles, given)
+    for memory, own in zip(memories, np.broadcast_to(centers, shape), strict=True):
+        place_arm(layout.plan, memory, own)
+
+
 class Kept(NamedTuple):
-    """What a shield keeps from step to step; a step makes new arrays.
+    """State of an arm that a shield keeps from step to step; a step makes new arrays.
 
     Attributes:
         memory: Memory of the arm, (k,).
@@ -622,7 +644,7 @@ class Shield:
         lead: int | None = None,
         frame: str | None = None,
         people: ArrayLike | Sequence[Any] | None = None,
-        obstacles: Mapping[str, Any] | None = None,
+        obstacles: ArrayLike | Mapping[str, Any] | None = None,
         age: float | None = None,
         dt: float | None = None,
         elapsed: float | None = None,
@@ -647,8 +669,10 @@ class Shield:
             people: All bodies in the field as a sensor saw them: both ends and the radius, with the
                 error of the place, of each [m], tuples (a, b, radius) or (k, 7). [] is nobody in
                 the field, None no news. What has no meaning is none: the arm comes to rest.
-            obstacles: Or the place of each body with a speed that was seen, by its name: the center
-                of a sphere or a box [m], (3,), center and rotation of a box, a capsule's ends.
+            obstacles: Present centres of the k obstacles [m], (k, 3); None: they are where they
+                were, or where their velocities have led them. Or the place of each body with a
+                speed that was seen, by its name: the center of a sphere or a box [m], (3,), center
+                and rotation of a box, a capsule's ends.
             age: Time since they were seen [s]; None: the latency.
             dt: Period for which this command will be held [s]; without a `longest_period` at most
                 the control period.
@@ -679,7 +703,7 @@ class Shield:
                 check_held(self, dt)
             if self._halted:
                 halt_arm(plan, memory)
-            self._see(plan, memory, people, obstacles, age)
+            self._see(layout, memory, people, obstacles, age)
             if not time is lead is None:
                 self._stream(plan, memory, kind, request, time, lead)
                 kind = Request.NONE
@@ -690,10 +714,15 @@ class Shield:
             object.__setattr__(self, "_kept", Kept(memory, seen))
             return command
 
-    def _see(self, plan: ArmPlan, memory: Vector, people: Any, obstacles: Any, age: Any) -> None:
-        """Take what was seen of bodies of bounded speed, if there is news."""
-        if people is not None or obstacles is not None:
-            see(plan, memory, News(separation_in(self._limits), people, obstacles, age))
+    def _see(
+        self, layout: ArmLayout, memory: Vector, people: Any, obstacles: Any, age: Any
+    ) -> None:
+        """Take where obstacles are, and what was seen of bodies of bounded speed, if it is told."""
+        bodies = obstacles if isinstance(obstacles, Mapping) else None
+        if obstacles is not None and bodies is None:
+            place(layout, memory[np.newaxis], obstacles)
+        if people is not None or bodies is not None:
+            see(layout.plan, memory, News(separation_in(self._limits), people, bodies, age))
 
     def _stream(
         self,

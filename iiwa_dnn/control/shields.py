@@ -19,7 +19,6 @@ from iiwa_dnn.control.arms import (
     follow_arm,
     halt_arm,
     motion_of,
-    place_arm,
     rest_arm,
     scale_speed,
     step_arms,
@@ -29,7 +28,7 @@ from iiwa_dnn.control.following import KEEPS, checked_times, stream_mode
 from iiwa_dnn.control.layout import Margin
 from iiwa_dnn.control.people import News, is_of_each, separation_in
 from iiwa_dnn.control.requests import one_request
-from iiwa_dnn.control.shield import Shield, check_held, see
+from iiwa_dnn.control.shield import Shield, check_held, place, see
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import IntVector
@@ -206,7 +205,7 @@ class Shields:
             elif people is not None:
                 self._see(people, None, age)
             if obstacles is not None and not isinstance(obstacles, Mapping):
-                self._place(obstacles)
+                place(layout, self._memories, obstacles)
             if not time is lead is None:
                 mode = stream_mode(kind, lead, self._shield.samples)
                 stamp = None if time is None else np.full(1, checks.finite("time", time))
@@ -289,15 +288,6 @@ class Shields:
         if flags.shape != (self.count,) or flags.dtype.kind != "b":
             raise InvalidInputError(name, f"must be booleans of shape ({self.count},)", value)
         return flags.astype(np.int64)
-
-    def _place(self, obstacles: ArrayLike) -> None:
-        """Place the centres of the obstacles, (k, 3) or (N, k, 3) [m]."""
-        plan = self._shield.layout(self.frame).plan
-        shape = (self.count, plan.sizes.obstacles, 3)
-        given = shape if np.ndim(obstacles) == len(shape) else shape[1:]
-        centers = checks.finite_array("obstacles", obstacles, given)
-        for i, own in enumerate(np.broadcast_to(centers, shape)):
-            place_arm(plan, self._memories[i], own)
 
     def reset(self, mask: ArrayLike | None = None, q: ArrayLike | None = None) -> None:
         """Reset arms to rest: requests, halts and the last commands no longer count.

@@ -282,3 +282,35 @@ def test_obstacles_that_move_do_so_for_many_arms_too() -> None:
         )
         q = command.next_q
     assert arms.margin(0).distance == pytest.approx(command.margin.distance, abs=1e-9)
+
+
+class Pendulum(d.Sphere):
+    """A ball that swings in a way of its own."""
+
+    def shift(self, t: float) -> np.ndarray:
+        return np.array([0.1 * np.sin(t), 0.0, 0.0])
+
+
+@pytest.mark.usefixtures("kernels_kinematics")
+def test_a_shield_takes_places_of_obstacles_as_many_do() -> None:
+    """To the bit; what cannot be taken changes nothing."""
+    shield = d.Shield(SMOOTH, DT, [BALL])
+    arms = d.Shields(SMOOTH, 1, dt=DT, obstacles=[BALL])
+    q = START
+    for k in range(400):
+        request = np.full(7, 0.5 * (-1) ** (k // 100))
+        places = np.array([BALL.center]) + [0.0, 3e-4 * k, 0.0]
+        if k % 50 == 10:
+            for wrong in (places[0], [*places, *places], [[0.0, np.inf, 0.0]]):
+                with pytest.raises(d.InvalidInputError, match=r"^obstacles"):
+                    shield.step(q, request, obstacles=wrong)
+        many = arms.step([q], [request], obstacles=places)
+        command = shield.step(q, request, obstacles=places)
+        np.testing.assert_array_equal(command.dq, many.dq[0])
+        assert command.margin == arms.margin(0)
+        if k < 399:
+            q = command.next_q
+    there = d.Shield(SMOOTH, DT, [d.Sphere(places[0], BALL.radius)])
+    assert there.step(q).margin.distance == pytest.approx(command.margin.distance, abs=1e-12)
+    with pytest.raises(d.InvalidInputError, match=r"^obstacles: move in a way of their own: Pend"):
+        d.Shield(SMOOTH, DT, [Pendulum(*BALL.settings())]).step(q, obstacles=places)
