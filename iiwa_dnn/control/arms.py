@@ -1121,7 +1121,7 @@ def _brake_blindly(plan: ArmPlan, arm: ArmState, motion: MotionState) -> None:
 @compiled
 def _place_obstacles(plan: ArmPlan, arm: ArmState, t: float, constants: Vector) -> None:
     """Write the centres of the obstacles at time t [s] into the constants (k,) of a scene."""
-    bodies = scene_views(constants, arm.positions.size).bodies
+    bodies = scene_views(constants).bodies
     first = len(bodies) - len(arm.obstacles)
     for k in range(len(arm.obstacles)):
         body = Body.of(bodies[first + k])
@@ -1275,9 +1275,9 @@ def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
         write_kinematics(plan.robot, q, jacobian, placements, base.inertia)
         constants = block_constants(base, plan.scene).copy()
         _place_obstacles(plan, arm, arm.time - arm.period, constants)
-        scene = scene_views(constants, q.size)
+        scene = scene_views(constants)
         distances = np.empty(len(scene.pairs))
-        write_distances(constants, q.size, placements, distances)
+        write_distances(constants, placements, distances)
         for k in range(distances.size):
             distance = min(distance, distances[k] - scene.head.least)
     return joint, distance

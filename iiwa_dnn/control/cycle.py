@@ -280,8 +280,9 @@ def take_step(
         return INVALID
     copied(motion_state.q, q)
     change_spacing(motion_state, timing.dt)
+    limits = motion_constants(arrays)
     if timing.vary:
-        state_periods(motion_constants(arrays), timing)
+        state_periods(limits, timing)
     copied(next_numbers, numbers)
     copied(next_motion_state.before, motion_state.last)
     next_motion_state.stopping_periods = 0.0
@@ -301,6 +302,8 @@ def take_step(
         log.lower_kind,
         log.upper_kind,
         log.row_pair,
+        limits.velocity,
+        limits.acceleration,
     )
     instant = Instant(step, motion_state, next_motion_state)
     assemble(log.program, arrays, step)

@@ -252,17 +252,17 @@ def _yielding_fits(own: Yielding, arrays: ProgramArrays) -> bool:
 def _scene_fits(constants: Vector, arrays: ProgramArrays) -> bool:
     """Test the constants of a scene: bodies in frames, and pairs of bodies."""
     n = arrays.sizes.joints
-    if constants.size < SceneHead.width() + n:
+    if constants.size < SceneHead.width():
         return False
     head = SceneHead.of(constants[: SceneHead.width()])
     if not _is_within(head.bodies, 0, MOST) or not _is_within(head.pairs, 0, MOST):
         return False
     tables = Body.width() * head.bodies + head.pair_size * head.pairs
-    if head.pair_size < 0 or constants.size != SceneHead.width() + n + tables:
+    if head.pair_size < 0 or constants.size != SceneHead.width() + tables:
         return False
     if not _is_within(head.first, 0, arrays.sizes.pairs + 1 - head.pairs):
         return False
-    scene = scene_views(constants, n)
+    scene = scene_views(constants)
     for k in range(head.bodies):
         body = Body.of(scene.bodies[k])
         if not _is_within(body.frame, 0, len(arrays.placements)):

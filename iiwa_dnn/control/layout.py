@@ -160,7 +160,7 @@ def lay_out_arm(
     )
     memory = ArmState.zeros(*sizes)
     if obstacles:
-        bodies = scene_views(avoidance.scene(robot).constants, robot.dof).bodies
+        bodies = scene_views(avoidance.scene(robot).constants).bodies
         centers = [Body.of(body).center for body in bodies[-len(obstacles) :]]
         memory.obstacles = np.array(centers)
     rest_arm(plan, memory.numbers, np.zeros(0))

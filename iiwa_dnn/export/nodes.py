@@ -203,7 +203,7 @@ def table_node(rows: Sequence[Sequence[int]], columns: type[IntEnum]) -> Node:
 def robot_labels(robot: Robot, frames: Sequence[int]) -> Labels:
     """Return comments with the names of joints and frames; `frames` are those of the kinematics."""
     names = [frame.name for frame in robot.model.frames]
-    of_joints = ("n", "parents", "joints", "slides", "armature", "lower", "upper", "dq_max")
+    of_joints = ("n", "parents", "joints", "slides", "armature", "lower", "upper")
     of_frames = ("frames", "carriers", "offsets")
     labels: dict[str, Sequence[str]] = dict.fromkeys(of_joints, robot.joint_names)
     return labels | dict.fromkeys(of_frames, tuple(names[k] for k in frames)) | {"support": names}
@@ -212,7 +212,7 @@ def robot_labels(robot: Robot, frames: Sequence[int]) -> Labels:
 def part_constants(part: Part, robot: Robot, numbers: Vector, labels: Labels) -> Node:
     """Make a node of the constants of a part, (k,), by their names."""
     if isinstance(part, CollisionAvoidance):
-        scene = scene_views(numbers, robot.dof)
+        scene = scene_views(numbers)
         frames = robot.model.frames
         pairs = part.scene(robot).pairs
         bodies = [frames[Body.of(body).frame].name for body in scene.bodies]

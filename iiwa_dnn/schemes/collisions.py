@@ -74,7 +74,7 @@ def collision_rows(
     more ends than rows, step.row_pair too. lb and ub stay.
     """
     dof = step.q.size
-    scene = scene_views(constants, dof)
+    scene = scene_views(constants)
     candidates = ENDS * len(scene.pairs)
     gradients = np.zeros((candidates, dof))
     limits = np.empty(candidates)
@@ -134,7 +134,7 @@ def _write_ends(
     most = speed - gain * (contact.distance - least - CLEARANCE)
     for j in range(step.q.size):
         travel[j] = abs(step.last[j]) / step.rate
-        most += abs(pair.radii[j]) * scene.dq_max[j]
+        most += abs(pair.radii[j]) * step.velocity_limits[j]
     if most <= 0.0:
         return
     ends = ends_of(scene, placed, pair.second)
@@ -151,7 +151,7 @@ def _write_ends(
             if pair.support[j] != 0.0:
                 rate = rate_along(step.jacobian, j, ends[at], contact.normal)
                 gradients[row, j] = -pair.support[j] * rate
-                fastest += abs(rate) * scene.dq_max[j]
+                fastest += abs(rate) * step.velocity_limits[j]
         slacks[row] = limits[row] - fastest
         limits[row] -= gain * eps
         if left < eps and step.rate < np.inf:
@@ -213,7 +213,7 @@ def keeps_distances(step: StepViews, constants: Vector, motion: Motion) -> bool:
         motion: The motion, of n joints.
     """
     n = motion.first.size
-    scene = scene_views(constants, n)
+    scene = scene_views(constants)
     placed = np.empty((len(scene.bodies), Placement.width()))
     place_bodies(scene, step.placements, placed)
     M = motion.periods

@@ -231,6 +231,7 @@ class ProgramLayout:
         """Return one instant, with the kinematics at q; the arguments are those of `qp_at`."""
         self.kinematics.update(q)
         arrays = self.arrays
+        limits = motion_constants(arrays)
         return StepViews(
             t=float(t),
             rate=1.0 / dt if dt < np.inf else np.inf,
@@ -246,6 +247,8 @@ class ProgramLayout:
             lower_kind=self.kinds[0],
             upper_kind=self.kinds[1],
             row_pair=self.kinds[2],
+            velocity_limits=limits.velocity,
+            acceleration_limits=limits.acceleration,
         )
 
 

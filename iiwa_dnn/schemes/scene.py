@@ -122,13 +122,11 @@ class SceneViews(NamedTuple):
 
     Attributes:
         head: Settings of the scene.
-        dq_max: Velocity limits of the joints [rad/s], (n,).
         bodies: A `Body` in each row, (b, 17).
         pairs: A `Pair` in each row, (k, 4 + 2 n).
     """
 
     head: SceneHead
-    dq_max: Vector
     bodies: Matrix
     pairs: Matrix
 
@@ -170,8 +168,8 @@ class Scene(NamedTuple):
 
     def move(self, constants: Vector, t: float) -> None:
         """Write the centres of moving obstacles at time t [s] to a copy of the constants, (k,)."""
-        begun = scene_views(self.constants, self.robot.dof).bodies
-        moved = scene_views(constants, self.robot.dof).bodies
+        begun = scene_views(self.constants).bodies
+        moved = scene_views(constants).bodies
         for obstacle, k in self.moving:
             Body.of(moved[k]).center = Body.of(begun[k]).center + obstacle.shift(t)
 
@@ -191,7 +189,7 @@ class Scene(NamedTuple):
         for row, posture, time in zip(found, q, t, strict=True):
             self.move(constants, float(time))
             kinematics.update(posture)
-            write_distances(constants, self.robot.dof, kinematics.placements, row)
+            write_distances(constants, kinematics.placements, row)
         return found
 
     def nearest(self, q: Matrix, t: Vector) -> tuple[Vector, NDArray[np.int64]]:
@@ -248,7 +246,7 @@ def make_scene(
     rows = [make_pair(robot, bodies, each, distances[0]) for each in numbered]
     pairs = np.reshape(rows, (-1, Pair.width(robot.dof)))
     frames = tuple(dict.fromkeys(links))
-    moved = _moved_ends(robot, frames, _constants(robot, distances, bodies, pairs))
+    moved = _moved_ends(robot, frames, _constants(distances, bodies, pairs))
     unmoved = np.where(moved.all(axis=1), 0, 1 + moved[:, 0])
     for row, end in zip(pairs, unmoved, strict=True):
         Pair.of(row).unmoved_end = end
@@ -261,7 +259,7 @@ def make_scene(
         raise InvalidInputError("obstacles", problem, obstacles)
     reasons = np.where(moved.any(axis=1), "may touch", "no joint moves it").tolist()
     left = tuple((*named[at], reasons[at]) for at in np.flatnonzero(~watched))
-    constants = _constants(robot, distances, bodies, pairs[watched])
+    constants = _constants(distances, bodies, pairs[watched])
     moving = [(each, k) for k, each in enumerate(obstacles, len(links)) if each.speed]
     return Scene(robot, [*itertools.compress(named, watched)], frames, moving, constants, left)
 
@@ -331,7 +329,7 @@ def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArr
         frames: Links whose placements are needed.
         constants: Constants of a scene of all pairs, (k,).
     """
-    scene = scene_views(constants, robot.dof)
+    scene = scene_views(constants)
     pairs = Pair.of(scene.pairs)
     kinematics = Kinematics(robot, frames)
     rates = np.zeros((len(pairs), 2))
@@ -343,13 +341,10 @@ def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArr
     return np.array(((rates.T > UNMOVED) | alone) & supported).T
 
 
-def _constants(
-    robot: Robot, distances: tuple[float, float], bodies: list[Body], pairs: Matrix
-) -> Vector:
+def _constants(distances: tuple[float, float], bodies: list[Body], pairs: Matrix) -> Vector:
     """Return the constants of a scene, (k,).
 
     Args:
-        robot: The robot, n joints.
         distances: As in `make_scene`.
         bodies: All bodies.
         pairs: A `Pair` in each row, (pairs, 4 + 2 n).
@@ -359,7 +354,7 @@ def _constants(
     head = SceneHead.make(
         least=least, gain=gain, bodies=len(bodies), pairs=count, pair_size=size, first=0, row=0
     )
-    return np.concatenate([head, robot.dq_max, *bodies, pairs.ravel()])
+    return np.concatenate([head, *bodies, pairs.ravel()])
 
 
 def make_pair(robot: Robot, bodies: list[Body], watched: Watched, distance: float) -> Pair:
@@ -397,15 +392,13 @@ def make_pair(robot: Robot, bodies: list[Body], watched: Watched, distance: floa
 
 
 @compiled
-def scene_views(constants: Vector, dof: int) -> SceneViews:
-    """Return views of a scene's constants (k,), for a robot with `dof` joints."""
-    at_speeds = SceneHead.width()
-    head = SceneHead.of(constants[:at_speeds])
-    at_bodies = at_speeds + dof
+def scene_views(constants: Vector) -> SceneViews:
+    """Return views of a scene's constants (k,)."""
+    at_bodies = SceneHead.width()
+    head = SceneHead.of(constants[:at_bodies])
     at_pairs = at_bodies + Body.width() * head.bodies
     return SceneViews(
         head,
-        constants[at_speeds:at_bodies],
         constants[at_bodies:at_pairs].reshape(head.bodies, Body.width()),
         constants[at_pairs:].reshape(head.pairs, head.pair_size),
     )
@@ -504,16 +497,15 @@ def height_of(end: Vector3, contact: Contact) -> float:
 
 
 @compiled
-def write_distances(constants: Vector, dof: int, placements: Matrix, distances: Vector) -> None:
+def write_distances(constants: Vector, placements: Matrix, distances: Vector) -> None:
     """Write the distance of each pair [m].
 
     Args:
         constants: Constants of the scene, (k,).
-        dof: Number of joints of the robot.
         placements: `Kinematics.placements`, (frames, 12).
         distances: The distances, (pairs,), overwritten.
     """
-    scene = scene_views(constants, dof)
+    scene = scene_views(constants)
     placed = np.empty((len(scene.bodies), Placement.width()))
     place_bodies(scene, placements, placed)
     for k in range(distances.size):
@@ -531,7 +523,7 @@ def raise_end_rates(constants: Vector, jacobian: Matrix, placements: Matrix, rat
         rates: Largest rates [m/rad], (pairs, 2), raised to those of this posture.
     """
     dof = len(jacobian)
-    scene = scene_views(constants, dof)
+    scene = scene_views(constants)
     placed = np.empty((len(scene.bodies), Placement.width()))
     place_bodies(scene, placements, placed)
     for k in range(len(scene.pairs)):

@@ -46,6 +46,8 @@ class StepViews(NamedTuple):
         upper_kind: The same for the upper bounds, (n,).
         row_pair: Number from 1 of the watched pair that each inequality row belongs to, where that
             changes from step to step, else 0, (m,).
+        velocity_limits: Velocity limits of the joints [rad/s], (n,).
+        acceleration_limits: Their acceleration limits [rad/s^2], (n,); inf for none.
     """
 
     t: float
@@ -62,6 +64,8 @@ class StepViews(NamedTuple):
     lower_kind: Vector
     upper_kind: Vector
     row_pair: Vector
+    velocity_limits: Vector
+    acceleration_limits: Vector
 
 
 class Step:

@@ -60,7 +60,6 @@ class TorqueConstants(Record):
         heaviest: Its largest mass [kg].
         slides: Whether a joint slides.
         limit: Largest torque of each joint [N m], (n,).
-        acceleration: Largest acceleration of each joint [rad/s^2], (n,).
         inertia: Square root of a bound on each diagonal entry of the inertia matrix, (n,).
         weight: Bound on each torque of gravity [N m], (n,).
         dynamics: `Dynamics` of the robot.
@@ -70,7 +69,6 @@ class TorqueConstants(Record):
     heaviest: float
     slides: bool
     limit: Vector = part()
-    acceleration: Vector = part()
     inertia: Vector = part()
     weight: Vector = part()
     dynamics: Vector = part("dynamics")
@@ -123,7 +121,7 @@ def torque_rows(
             entry = sign * (inertia[j, i] + mass * slopes[j, i])
             G[row, j] = entry
             length += entry * entry
-            most += abs(entry) * own.acceleration[j]
+            most += abs(entry) * step.acceleration_limits[j]
         if most <= own.limit[i]:
             G[row, :] = 0.0
             continue
@@ -404,7 +402,6 @@ class TorqueLimits(Limit):
             heaviest=masses[0],
             slides=bool(robot.slides),
             limit=self.largest(robot),
-            acceleration=robot.ddq_max,
             inertia=np.sqrt(inertia),
             weight=weight,
             dynamics=dynamics.numbers,

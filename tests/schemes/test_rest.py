@@ -12,7 +12,7 @@ from iiwa_dnn.schemes.joint_limits import keeps_joint_limits
 from iiwa_dnn.schemes.rest import Motion
 from iiwa_dnn.schemes.step import StepViews
 
-ALONE = StepViews(0.0, 1.0, *np.zeros((3, 1)), *np.zeros((5, 1, 1)), *np.zeros((4, 1)))
+ALONE = StepViews(0.0, 1.0, *np.zeros((3, 1)), *np.zeros((5, 1, 1)), *np.zeros((6, 1)))
 """An instant of one joint at 0."""
 
 
