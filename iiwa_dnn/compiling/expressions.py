@@ -181,7 +181,7 @@ class Use(IntEnum):
 
     @property
     def is_read(self) -> bool:
-        """Whether somebody reads the C."""
+        """Test whether the C is exported, so that it has to be readable."""
         return self >= Use.CORE
 
 

@@ -170,7 +170,7 @@ def split_bodies(obstacles: Any) -> tuple[list[Obstacle], list[Obstacle]]:
 
 
 class News:
-    """What was seen of bodies of bounded speed since the last step, checked.
+    """Places of bodies of bounded speed that a sensor reported since the last step, checked.
 
     Attributes:
         age: Time since it was seen [s].

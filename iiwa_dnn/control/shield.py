@@ -153,7 +153,7 @@ def place(layout: ArmLayout, memories: Matrix, obstacles: ArrayLike) -> None:
 
 
 class Kept(NamedTuple):
-    """State of an arm that a shield keeps from step to step; a step makes new arrays.
+    """State of a shield from step to step; a step makes new arrays.
 
     Attributes:
         memory: Memory of the arm, (k,).
@@ -209,7 +209,7 @@ class ShieldCommand(Command):
 
     @property
     def _followed(self) -> FollowState | None:
-        """What the arm follows, or None."""
+        """State of the samples that the arm follows; None without samples."""
         plan = self.layout.plan
         own = follow_of(plan, self.state) if plan.sizes.following else None
         return own if own is not None and own.count else None

@@ -89,7 +89,7 @@ class Obstacle(checks.Checked, ABC):
 
     @property
     def is_free(self) -> bool:
-        """Whether it has a bounded speed in any direction."""
+        """Test whether the obstacle moves in any direction at a bounded speed."""
         return self.speed > 0.0 and not np.any(self.velocity)
 
     @property
