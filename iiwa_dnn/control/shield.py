@@ -703,7 +703,8 @@ class Shield:
                 check_held(self, dt)
             if self._halted:
                 halt_arm(plan, memory)
-            self._see(layout, memory, people, obstacles, age)
+            if not obstacles is people is None:
+                self._see(layout, memory, people, obstacles, age)
             if not time is lead is None:
                 self._stream(plan, memory, kind, request, time, lead)
                 kind = Request.NONE
@@ -717,9 +718,11 @@ class Shield:
     def _see(
         self, layout: ArmLayout, memory: Vector, people: Any, obstacles: Any, age: Any
     ) -> None:
-        """Take where obstacles are, and what was seen of bodies of bounded speed, if it is told."""
-        bodies = obstacles if isinstance(obstacles, Mapping) else None
-        if obstacles is not None and bodies is None:
+        """Take where obstacles are, or what was seen of bodies of bounded speed."""
+        bodies = None
+        if isinstance(obstacles, Mapping):
+            bodies = obstacles
+        elif obstacles is not None:
             place(layout, memory[np.newaxis], obstacles)
         if people is not None or bodies is not None:
             see(layout.plan, memory, News(separation_in(self._limits), people, bodies, age))

@@ -134,7 +134,7 @@ class Tables:
 
     @property
     def has_reference(self) -> bool:
-        """Test whether a controller has paths, from which it samples targets where none are given."""
+        """Test whether a controller has paths from which it samples targets."""
         return "paths" in self.flat.named["plan"].value["step"].value
 
     @property

@@ -313,4 +313,4 @@ def test_a_shield_takes_places_of_obstacles_as_many_do() -> None:
     there = d.Shield(SMOOTH, DT, [d.Sphere(places[0], BALL.radius)])
     assert there.step(q).margin.distance == pytest.approx(command.margin.distance, abs=1e-12)
     with pytest.raises(d.InvalidInputError, match=r"^obstacles: move in a way of their own: Pend"):
-        d.Shield(SMOOTH, DT, [Pendulum(*BALL.settings())]).step(q, obstacles=places)
+        d.Shield(SMOOTH, DT, [Pendulum(BALL.center, BALL.radius)]).step(q, obstacles=places)
