@@ -301,7 +301,10 @@ class Arms(Fixed, Generic[Answer]):
         Raises:
             InputError: They have a wrong shape, or are not finite.
         """
-        centers = self._centers(obstacles)
+        self._place(self._centers(obstacles))
+
+    def _place(self, centers: Array) -> None:
+        """Place the centres of each arm's obstacles (N, k, 3) [m]."""
         for i, memory in self._each():
             ONE.armstep_place(self.tables.arm, memory, centers[i].ctypes)
 

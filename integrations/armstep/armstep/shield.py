@@ -183,7 +183,7 @@ class _Shields(Arms[Answer]):
                 self._pass(position, time, 1 if lead is None else lead, mask)
                 request = 0, None
             if centers is not None:
-                self.place(centers)
+                self._place(centers)
             self._batch.given = None if mask is None else self._given
             if mask is not None:
                 self._buffers.given[...] = mask
