@@ -408,7 +408,7 @@ def see_people(plan: ArmPlan, memory: Vector, capsules: Matrix, age: float) -> b
 
 @compiled
 def see_body(plan: ArmPlan, memory: Vector, number: int, box: Vector, age: float) -> bool:
-    """Place one body, as `see_people`; others grow older.
+    """Place one body, as `see_people`; others grow older. Without one of this number do nothing.
 
     Args:
         plan: Layout of the steps.
@@ -418,6 +418,12 @@ def see_body(plan: ArmPlan, memory: Vector, number: int, box: Vector, age: float
         age: Time since it was seen [s].
     """
     arm = arm_state(plan, memory)
+    named = len(arm.bodies)
+    if plan.separation >= 0:
+        own = separation_views(block_constants(plan.step.arrays, plan.separation))
+        named -= own.head.people
+    if not 0 <= number < named:
+        return False
     taken = take_body(FreeBody.of(arm.bodies[number]), box, age)
     arm.seen.is_refused = not taken
     return taken
@@ -569,12 +575,12 @@ def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> None:
 @compiled
 def _measure(arm: ArmState, inputs: ArmInput) -> None:
     """Set the positions and the time of a controller's arm to the measured ones."""
-    arm.time = inputs.t
-    if largest_entry(inputs.q) <= LARGEST:
-        arm.has_begun = True
-        copied(arm.positions, inputs.q)
-    else:
+    if not math.isfinite(inputs.t) or not largest_entry(inputs.q) <= LARGEST:
         arm.reasons[Reason.Q_NOT_FINITE] = 1.0
+        return
+    arm.has_begun = True
+    arm.time = inputs.t
+    copied(arm.positions, inputs.q)
 
 
 @compiled
@@ -919,10 +925,12 @@ def _answer(
     state = network if is_twist or _tracks(plan) else np.zeros(network.size)
     is_valid = True
     if _tracks(plan):
-        motion.halts = arm.reason == Reason.HALTED or arm.is_misplaced
         refused = arm.reasons[Reason.PERIOD_REFUSED] + arm.reasons[Reason.Q_NOT_FINITE]
         lag = motion.path_lag
         is_valid = refused == 0.0 and _take_targets(plan, inputs, lag, timing.expected, log.targets)
+        motion.halts = arm.reason == Reason.HALTED or arm.is_misplaced or not is_valid
+        if not is_valid:
+            log.targets.reshape(log.targets.size)[:] = 0.0
     else:
         log.targets.reshape(log.targets.size)[:] = 0.0
         _take_request(plan, arm, arrays, timing, state)
@@ -939,19 +947,18 @@ def _answer(
         timing,
     )
     next_motion_state = np.empty(arm.motion.size)
-    action = INVALID
-    if is_valid:
-        action = take_step(
-            data, step, arm.positions, arm.motion, next_motion_state, state, arm.time
-        )
-    if action == INVALID:
+    action = take_step(data, step, arm.positions, arm.motion, next_motion_state, state, arm.time)
+    if not is_valid or action == INVALID:
         arm.reasons[Reason.Q_NOT_FINITE] = 1.0
+    if action == INVALID:
         _brake_blindly(plan, arm, motion)
         return action
     copied(arm.motion, next_motion_state)
     arm.fraction = log.fraction
     arm.program = log.kind
     copied(arm.limiting, log.limiting)
+    if not is_valid:
+        return INVALID
     if _tracks(plan):
         _note_targets(arm)
     else:
@@ -962,7 +969,7 @@ def _answer(
 
 @compiled
 def _take_targets(plan: ArmPlan, inputs: ArmInput, lag: float, dt: float, targets: Matrix) -> bool:
-    """Write the targets of a controller's step, (frames, 18); return if there are any.
+    """Write the targets of a controller's step, (frames, 18); return if there are any, all finite.
 
     Args:
         plan: Layout of the step.
@@ -976,7 +983,8 @@ def _take_targets(plan: ArmPlan, inputs: ArmInput, lag: float, dt: float, target
         copied(targets.reshape(targets.size), inputs.request)
     else:
         sample_targets(paths, inputs.t - lag, dt, targets)
-    return inputs.request.size + len(paths.table) > 0
+    flat = targets.reshape(targets.size)
+    return inputs.request.size + len(paths.table) > 0 and all_finite(flat, 0, flat.size)
 
 
 @compiled
@@ -1111,7 +1119,8 @@ def _quickest(limits: MotionConstants, arm: ArmState, i: int, hold: float) -> fl
 @compiled
 def _brake_blindly(plan: ArmPlan, arm: ArmState, motion: MotionState) -> None:
     """Command the next velocity of a motion to rest, for a step that no program can answer."""
-    brake_blindly(motion, motion_constants(plan.step.arrays))
+    copied(motion.q, arm.positions)
+    brake_blindly(motion, motion_constants(plan.step.arrays), arm.period)
     motion.path_lag += arm.period
     arm.fraction = 0.0
     arm.program = ProgramKind.STOPPED

@@ -178,6 +178,8 @@ def _row_fits(arrays: ProgramArrays, k: int) -> bool:
         rows = arrays.sizes.p
     elif kind == BlockKind.SOFT_TASK:
         more = 1  # the weight
+    if entry[Column.ADDRESS] <= 0:  # no kernel
+        return False
     if not _is_within(entry[Column.ROWS], 0, MOST) or not _is_within(entry[Column.FIRST], 0, MOST):
         return False
     fills = kind == BlockKind.TASK or kind == BlockKind.LIMIT

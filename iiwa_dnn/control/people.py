@@ -35,6 +35,9 @@ CAPSULE = 7
 ROUNDING = 1e-9
 """Part of its age by which a frame may seem older than the last one."""
 
+ORTHOGONAL = 1e-6
+"""Product of two axes, or error of a squared length, up to which a box has a rotation."""
+
 POINT = 1e-12
 """Length up to which a segment has no direction [m]."""
 
@@ -113,9 +116,25 @@ def take_body(body: FreeBody, numbers: Vector, age: float) -> bool:
     if not is_newer(age, body.age) or not all_finite(numbers, 0, numbers.size):
         return False
     box = BoxPlace.of(numbers)
+    if not _is_box(box):
+        return False
     copied(body.half, box.half)
     copied(body.place.numbers, box.place.numbers)
     body.age = age
+    return True
+
+
+@compiled
+def _is_box(box: BoxPlace) -> bool:
+    """Test whether no half-extent is negative, and axes of length 1 are at right angles."""
+    axes = box.place.axes
+    for i in range(box.half.size):
+        if box.half[i] < 0.0:
+            return False
+        for j in range(box.half.size):
+            expected = 1.0 if i == j else 0.0
+            if abs(dot(triple(axes[i]), triple(axes[j])) - expected) > ORTHOGONAL:
+                return False
     return True
 
 

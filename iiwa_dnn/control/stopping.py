@@ -11,13 +11,20 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.plan import ControlPlan, Instant
-from iiwa_dnn.control.state import MotionState
+from iiwa_dnn.control.state import MotionState, change_spacing
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.qp.dense import largest_entry
-from iiwa_dnn.schemes.joint_limits import MotionConstants, motion_constants
+from iiwa_dnn.schemes.joint_limits import (
+    MotionConstants,
+    joint_range,
+    joint_rates,
+    motion_constants,
+)
 from iiwa_dnn.schemes.parts import enter_rest
+from iiwa_dnn.schemes.periods import constant_periods
 from iiwa_dnn.schemes.program import Column, block_constants
 from iiwa_dnn.schemes.rest import SLACK, Motion, cubic_coefficient, velocity_at
+from iiwa_dnn.schemes.viability import joint_bounds
 
 LONGEST = 1e6
 """Number of periods above which no motion to rest is searched for."""
@@ -99,23 +106,38 @@ def rated_periods(
 
 
 @compiled
-def brake_blindly(motion: MotionState, limits: MotionConstants) -> None:
+def brake_blindly(motion: MotionState, limits: MotionConstants, dt: float) -> None:
     """Advance a motion by the next command of its motion to rest, where no program can be asked.
 
-    That is the stored one; without one, the motion in which all joints come to rest together.
+    That is the stored one; without one, that in which all joints come to rest together, within the
+    bounds of their own limits.
 
     Args:
         motion: State of the motion of n joints, overwritten.
-        limits: Limits of the joints; without acceleration and jerk limits they stop at once.
+        limits: Limits of the joints; one without acceleration and jerk limits stops at once.
+        dt: Control period [s].
     """
+    change_spacing(motion, dt)
+    is_stored = motion.stopping_periods > 0.0
     periods = motion.stopping_periods
-    if periods == 0.0 and motion.spacing > 0.0:
-        periods = least_periods(motion.last, motion.before, limits, motion.spacing, False)
+    if not is_stored:
+        periods = min(least_periods(motion.last, motion.before, limits, dt, False), LONGEST)
+    elif limits.cubic:
+        periods = stretched(motion.last, motion.before, limits, dt, periods)
     for i in range(motion.last.size):
         sent = motion.last[i]
-        motion.last[i] = next_velocity(sent, motion.before[i], periods, limits.cubic)
+        rates = joint_rates(limits, i)
+        first, end = joint_range(limits, i)
+        dq = next_velocity(sent, motion.before[i], periods, limits.cubic)
+        if not is_stored and min(rates.acceleration, rates.jerk) < np.inf:
+            at = motion.q[i]
+            lower, upper, _, _ = joint_bounds(
+                sent, motion.before[i], end - at, at - first, rates, constant_periods(dt)
+            )
+            dq = min(max(dq, lower), upper)
+        motion.last[i] = dq
         motion.before[i] = sent
-    motion.stopping_periods = max(periods - 1.0, 0.0)
+    motion.stopping_periods = max(periods - 1.0, 0.0) if is_stored else 0.0
 
 
 @compiled

@@ -5,6 +5,7 @@ import json
 import struct
 import subprocess
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,19 +14,23 @@ import pytest
 
 from export_settings import drawing, with_limits
 from helpers_export import WARNINGS, compiled_core, needs, run, use_armstep
-from hostile_arms import START, make_shield
+from hostile_arms import DT, ROBOT, START, make_shield
 from iiwa_dnn import (
     AccelerationLimits,
     Configuration,
+    Controller,
+    DoubleIndicator,
     InvalidInputError,
     JerkLimits,
     Limit,
     Robot,
+    Shield,
     Shields,
+    Sphere,
     export,
 )
 from iiwa_dnn.compiling.library import Entry
-from iiwa_dnn.control import fitting
+from iiwa_dnn.control import arms, fitting
 from iiwa_dnn.control.requests import Reason
 from iiwa_dnn.export.arm_tables import STATE
 from iiwa_dnn.export.core import LAID_OUT, core
@@ -33,6 +38,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.schemes import CollisionAvoidance
 from iiwa_dnn.schemes.parts import enter_limit
 from iiwa_dnn.schemes.step import StepViews
+from judge_limits import breaches
 
 pytestmark = needs("gcc")
 
@@ -112,12 +118,17 @@ class Arm:
     def begin(self) -> None:
         self.call("begin", self.scratch)
 
-    def step(self, q: Vector, kind: int = 0, request: Vector | None = None, **own: float) -> Any:
+    def step(
+        self, q: Vector | None, kind: int = 0, request: Vector | None = None, **own: float
+    ) -> Any:
         """Take a step; return its result and its command."""
         dq = np.full(self.n, 77.0)
         asked = None if request is None else request.ctypes.data
         given = use_armstep()._library.Input(
-            q.ctypes.data, kind, asked, *(own.get(k, 0.0) for k in ("t", "dt", "elapsed"))
+            None if q is None else q.ctypes.data,
+            kind,
+            asked,
+            *(own.get(k, 0.0) for k in ("t", "dt", "elapsed")),
         )
         return self.call("step", self.scratch, ctypes.byref(given), dq), dq
 
@@ -156,6 +167,147 @@ def test_tables_in_json_give_the_bits_of_shields(text: str, library: Any) -> Non
         assert dq.tobytes() == expected.dq[0].tobytes()
         assert result == expected.reason[0]
         q = expected.next_q[0]
+
+
+def exported(made: Any, folder: Path, library: Any, **settings: Any) -> Arm:
+    """Return an arm of the library that has begun, by the tables of a shield or a controller."""
+    path = export.tables(made, folder / "arm.json", **settings)
+    arm = Arm(path.read_text(encoding="utf-8"), library)
+    assert arm.status == OK
+    arm.begin()
+    return arm
+
+
+@pytest.mark.parametrize("longest", [None, 4e-3])
+def test_positions_that_cannot_be_read_brake_within_the_limits(
+    longest: float | None, library: Any, tmp_path: Path
+) -> None:
+    """Without a pointer to them the arm went 0.06 rad beyond a position limit."""
+    shield = Shield(ROBOT, DT, tracking_error=1.0, longest_period=longest)
+    arm = exported(shield, tmp_path, library)
+    twin = exported(shield, tmp_path, library)
+    toward = ROBOT.dq_max * np.array([1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0])
+    path = [START]
+    stated = {} if longest is None else {"elapsed": DT}
+    for k in range(3000):
+        q = None if k % 700 > 400 else path[-1]
+        result, dq = arm.step(q, 1, toward, **stated)
+        nan = np.full(7, np.nan) if q is None else q
+        assert twin.step(nan, 1, toward, **stated)[1].tobytes() == dq.tobytes()
+        assert (result == Reason.Q_NOT_FINITE) == (q is None)
+        path.append(path[-1] + DT * dq)
+    assert breaches(np.array(path), DT, *ROBOT.limits) == []
+    assert np.ptp(path, axis=0).max() > 1.0
+
+
+@pytest.mark.parametrize("longest", [None, 10e-3])
+def test_braking_without_a_program_keeps_the_limits(longest: float | None) -> None:
+    """It passed position limits, kept the last step's period, and gave NaN after `send`."""
+    shield = Shield(ROBOT, DT, longest_period=longest)
+    plan = shield.layout(ROBOT.tip).plan
+    random = np.random.default_rng(0)
+    q = START
+    for _ in range(60):
+        request = 4.0 * random.standard_normal(7)
+        for _ in range(random.integers(20, 300)):
+            stated = {} if longest is None else {"dt": random.choice([1e-4, DT, longest])}
+            command = shield.step(q, request, **stated)
+            q = command.next_q
+        memory = command.memory.copy()
+        before, last = command.log.last, command.dq
+        spacing = command.state.period
+        now = q.copy()
+        for _ in range(3000):
+            arms.brake_arm(plan, memory)
+            dq = np.array(arms.motion_of(plan, arms.arm_state(plan, memory)).last)
+            slope, was = (dq - last) / DT, (last - before) / spacing
+            assert (np.abs(slope) <= ROBOT.ddq_max * (1.0 + 1e-9)).all()
+            assert (np.abs(slope - was) / DT <= ROBOT.dddq_max * (1.0 + 1e-6)).all()
+            before, last, spacing = last, dq, DT
+            now = now + DT * dq
+            assert (now >= ROBOT.q_lower - 1e-9).all()
+            assert (now <= ROBOT.q_upper + 1e-9).all()
+        assert not dq.any()
+    shield.reset()
+    shield.step(START)
+    shield.send(np.full(7, 0.0105))
+    memory = shield._kept.memory.copy()
+    arms.brake_arm(plan, memory)
+    assert np.isfinite(memory).all()
+
+
+def test_a_controllers_arguments_without_a_meaning_brake_within_the_limits(
+    library: Any, tmp_path: Path
+) -> None:
+    rates = AccelerationLimits(), JerkLimits()
+    scheme = DoubleIndicator(orientation="none", extra_limits=rates)
+    controller = Controller(ROBOT, scheme, dt=DT)
+    arm = exported(controller, tmp_path, library, q0=START)
+    far = np.zeros(18)
+    far[3:12] = np.eye(3).ravel()
+    path = [START]
+    for k in range(4000):
+        far[:3] = [2.0 * np.sin(k // 400), 2.0 * np.cos(k // 400), 0.1]
+        asked = np.where(k % 400 > 250, np.nan, far)
+        path.append(path[-1] + DT * arm.step(path[-1], 0, asked, t=k * DT)[1])
+    assert breaches(np.array(path), DT, *ROBOT.limits) == []
+    assert np.ptp(path, axis=0).max() > 0.5
+
+
+def test_frames_and_bodies_without_a_meaning_are_refused(library: Any, tmp_path: Path) -> None:
+    """A count of -1 was nobody, and a body's number that of a person."""
+    hand = Sphere([1.5, 0.0, 0.5], 0.1, speed=1.0, name="hand")
+    shield = Shield(ROBOT, DT, [hand], people=2, field=3.0)
+    arm = exported(shield, tmp_path, library)
+    age = ctypes.c_double(0.0)
+    capsules = np.array([[1.5, 0.0, 0.0, 1.5, 0.0, 1.0, 0.2]] * 2)
+    box = np.concatenate([np.full(3, 0.1), np.eye(3).ravel(), [1.5, 0.0, 0.5]])
+
+    def people(given: Any, count: int) -> int:
+        return int(arm.call("people", given, ctypes.c_ssize_t(count), age))
+
+    def body(number: int, numbers: Vector) -> int:
+        return int(arm.call("body", ctypes.c_ssize_t(number), numbers, age))
+
+    assert people(capsules, 2) == OK
+    assert people(None, 0) == OK
+    assert people(capsules, -1) == people(None, 2) == people(capsules, 3) == NOT_FINITE
+    assert body(0, box) == OK
+    for number in (-1, 1, 2, 3):
+        assert body(number, box) != OK
+    for k, value in ((0, -5.0), (3, 0.0), (4, 0.5), (13, np.nan)):
+        wrong = box.copy()
+        wrong[k] = value
+        assert body(0, wrong) == NOT_FINITE
+    alone = exported(Shield(ROBOT, DT), tmp_path, library)
+    assert alone.call("people", capsules, ctypes.c_ssize_t(2), age) == WRONG_KIND
+    assert alone.step(START)[0] != Reason.FRAME_REFUSED
+
+
+def test_sent_commands_have_a_period_and_a_fraction(library: Any, tmp_path: Path) -> None:
+    arm = exported(Shield(ROBOT, DT), tmp_path, library)
+    for period, fraction in ((1e308, 1.0), (0.0, 1.0), (DT, -7.0), (DT, 1.5), (DT, np.nan)):
+        numbers = ctypes.c_double(period), ctypes.c_double(fraction)
+        assert arm.call("send", np.zeros(7), *numbers) == NOT_FINITE
+    assert arm.call("send", np.zeros(7), ctypes.c_double(DT), ctypes.c_double(1.0)) == OK
+
+
+def test_tables_with_another_period_or_unknown_parts_do_not_fit(text: str, library: Any) -> None:
+    def loaded(change: Any) -> int:
+        arm = Arm(text, library)
+        change(arm)
+        arm.tables.digest = library.armstep_digest(ctypes.byref(arm.tables))
+        return int(library.armstep_load(arm._arm, ctypes.byref(arm.tables)))
+
+    library.armstep_digest.restype = ctypes.c_uint64
+    assert loaded(lambda arm: None) == OK
+    assert loaded(lambda arm: setattr(arm.tables, "dt", -3.0)) == UNFIT
+    for number in (-1, 0, 10_000):
+        for k in range(2):
+            change = partial(
+                lambda arm, k, n: arm.kept[1].__setitem__(arm.kept[2][k], n), k=k, n=number
+            )
+            assert loaded(change) == UNFIT, (k, number)
 
 
 def test_tables_that_were_changed_are_refused(text: str, library: Any) -> None:

@@ -23,6 +23,7 @@ enum {
     ARMSTEP_RELEASE = @release@, /* of the layout of tables */
     ARMSTEP_TARGET = 18, /* numbers of a target: position, rotation row by row, linear and angular velocity */
     ARMSTEP_FASTEST = @fastest@, /* largest velocity that counts as sent [rad/s] */
+    ARMSTEP_LONGEST = 1000, /* longest period that a step states, or a command is sent for [s] */
     ARMSTEP_SAVED = 2 /* doubles that a saved arm has beside its memory */
 };
 
@@ -48,8 +49,8 @@ enum armstep_request {
 @requests@
 };
 
-/* Reasons beside limits for another command than is asked: results of a shield's step, and codes of active limits.
- * Those to rest come first. */
+/* Reasons beside limits for another command than is asked: results of a shield's step, and codes of active limits,
+ * whose words armstep_limit_name has. */
 enum armstep_reason {
     ARMSTEP_INVALID = -1, /* the step is refused; of a controller too */
 @reasons@
@@ -156,7 +157,8 @@ ARMSTEP_API enum armstep_status armstep_people(
     const struct armstep *arm, double *memory, const double capsules[][7], ptrdiff_t count, double age
 );
 
-/* Say where one body with a speed is, by its number among these: half-extents, axes one a row, center (15). */
+/* Say where one body with a speed is, by its number among those with a name: half-extents, axes one a row, center
+ * (15). ARMSTEP_WRONG_KIND: there is none of this number. */
 ARMSTEP_API enum armstep_status armstep_body(
     const struct armstep *arm, double *memory, ptrdiff_t number, const double *box, double age
 );
@@ -175,7 +177,7 @@ ARMSTEP_API enum armstep_status armstep_follow(
 
 /* What a step is given. Fields that are left out are zero. */
 struct armstep_input {
-    const double *q; /* measured joint positions (joints) */
+    const double *q; /* measured joint positions (joints); NULL: they could not be read, and the arm brakes */
     int kind; /* of a shield's request, enum armstep_request */
     const double *request; /* joint velocities or positions (joints), a twist (6): linear, then angular velocity;
                             * or a controller's targets (frames, 18). NULL: no new one; those of the reference */
@@ -187,9 +189,9 @@ struct armstep_input {
 /* Compute the command dq (joints) [rad/s], and advance the arm by it.
  *
  * Returns the first reason of a shield, or the action of a controller. Without a new request a shield's last one
- * counts, until it is too old. An argument without a meaning is a shield's reason. ARMSTEP_INVALID: there is no
- * q, an argument of a controller has no meaning, or a user's own part takes more than the scratch; the command is then
- * the next one of the motion to rest, never a jump. For memory that was not begun, or is of other tables, dq is 0.
+ * counts, until it is too old. An argument without a meaning is a shield's reason. ARMSTEP_INVALID: an argument of a
+ * controller has no meaning, or a user's own part takes more than the scratch. The command is then the next one of the
+ * motion to rest, never a jump. For memory that was not begun, or is of other tables, dq is 0.
  */
 ARMSTEP_API int armstep_step(
     const struct armstep *arm, double *memory, double *scratch, const struct armstep_input *input, double *dq
@@ -218,7 +220,8 @@ ARMSTEP_API enum armstep_status armstep_targets(
 );
 
 /* Copy an arm, with digests, into `saved` (tables->memory + ARMSTEP_SAVED); take it back, if it is one of these
- * tables and undamaged. */
+ * tables and undamaged. It then goes on from the command after which it was saved: an arm that has moved or braked
+ * since then is to be begun anew. */
 ARMSTEP_API enum armstep_status armstep_save(const struct armstep *arm, const double *memory, double *saved);
 ARMSTEP_API enum armstep_status armstep_restore(const struct armstep *arm, double *memory, const double *saved);
 

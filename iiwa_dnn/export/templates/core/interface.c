@@ -152,6 +152,19 @@ static bool computes_as_ieee(void)
     return !(nothing == nothing) && 1.0 / zero > DBL_MAX && least / 2.0 > 0.0 && a * a - rounded == 0.0;
 }
 
+/* Test the numbers of parts, of which 0 is none. */
+static bool knows_parts(const struct armstep_tables *tables)
+{
+    for (ptrdiff_t k = 0; k < tables->part_count; k++) {
+        const ptrdiff_t place = tables->parts[k];
+        if (place < 0 || place >= tables->integer_count || tables->integers[place] < 0
+            || tables->integers[place] >= ARMSTEP_PARTS + tables->own_count) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool is_laid_out(const struct armstep *arm, struct reader *reader)
 {
     const struct armstep_tables *tables = arm->tables;
@@ -161,7 +174,9 @@ static bool is_laid_out(const struct armstep *arm, struct reader *reader)
     }
     if (!@arm_fits@plan, ARMSTEP_PART_schemes_collisions_collision_rows, ARMSTEP_PART_schemes_separation_separation_rows, ARMSTEP_PART_schemes_torque_torque_rows)
         || is_shield(arm) != (plan->request >= 0) || plan->sizes.obstacles != tables->obstacles
-        || plan->sizes.n != tables->joints || plan->step.arrays.sizes.frames != tables->frames) {
+        || plan->sizes.n != tables->joints || plan->step.arrays.sizes.frames != tables->frames
+        || plan->settings.at->dt != tables->dt || plan->settings.at->longest != tables->longest
+        || !knows_parts(tables)) {
         return false;
     }
     const int64_t memory = @width@;
@@ -245,7 +260,7 @@ enum armstep_status armstep_send(
             return ARMSTEP_NOT_FINITE;
         }
     }
-    if (!(period > 0.0 && period < INFINITY) || !(fabs(fraction) < INFINITY)) {
+    if (!(period > 0.0 && period <= ARMSTEP_LONGEST) || !(fraction >= 0.0 && fraction <= 1.0)) {
         return ARMSTEP_NOT_FINITE;
     }
     @send_arm@plan_of(arm), numbers_of(arm, memory), sent, period, fraction);
@@ -274,7 +289,7 @@ enum armstep_status armstep_follow(
     if (!has_begun(arm, memory)) {
         return ARMSTEP_OTHER_TABLES;
     }
-    if (count < 1) {
+    if (count < 1 || count > @largest@) {
         return ARMSTEP_NOT_FINITE;
     }
     const Matrix rows = {view(positions, count * joints).data, count, joints};
@@ -286,8 +301,10 @@ enum armstep_status armstep_people(
     const struct armstep *arm, double *memory, const double capsules[][7], ptrdiff_t count, double age
 )
 {
-    const Matrix own = {view_if_any(capsules != NULL ? capsules[0] : NULL, 0).data, count, 7};
-    if (!is_shield(arm)) {
+    /* Without capsules the frame of nobody has none; a count below 0 is above all that a frame may show. */
+    const bool is_frame = count == 0 || (count > 0 && capsules != NULL);
+    const Matrix own = {view_if_any(capsules != NULL ? capsules[0] : NULL, 0).data, is_frame ? count : PTRDIFF_MAX, 7};
+    if (!is_shield(arm) || plan_of(arm)->separation < 0) {
         return ARMSTEP_WRONG_KIND;
     }
     if (!has_begun(arm, memory)) {
@@ -331,8 +348,6 @@ int armstep_step(
     const size_t width = sizeof *dq * (size_t)arm->tables->joints;
     const bool may_fail = arm->tables->own_count > 0; /* where a user's own part takes too much */
     struct arena arena = arena_of(arm, scratch);
-    int64_t result = ARMSTEP_INVALID;
-    bool is_taken = false;
     if (!has_begun(arm, memory)) {
         memset(dq, 0, width);
         return ARMSTEP_INVALID;
@@ -342,17 +357,18 @@ int armstep_step(
         arena.start += bytes;
         arena.top = arena.start;
     }
-    if (input->q != NULL) {
-        result = step(arm, &arena, memory, input);
-        is_taken = true;
+    struct armstep_input own = *input;
+    if (own.q == NULL) { /* positions that could not be read are none */
+        for (ptrdiff_t i = 0; i < arm->tables->joints; i++) {
+            dq[i] = NAN;
+        }
+        own.q = dq;
     }
-    if (arena.full) {
+    int64_t result = step(arm, &arena, memory, &own);
+    if (arena.full) { /* the next command of the motion to rest */
         memcpy(memory, scratch, bytes);
         arena = arena_of(arm, scratch);
         result = ARMSTEP_INVALID;
-        is_taken = false;
-    }
-    if (!is_taken) { /* the next command of the motion to rest */
         @brake_arm@plan_of(arm), numbers_of(arm, memory));
     }
     memcpy(dq, motion_state_of(arm, memory).last.data, width);
@@ -369,7 +385,7 @@ ptrdiff_t armstep_steps(
     for (ptrdiff_t k = first; k < last; k++) {
         double *const memory = batch->memory + k * batch->stride;
         struct armstep_input own = batch->input;
-        own.q += k * n;
+        own.q = own.q != NULL ? own.q + k * n : NULL;
         own.request = own.request != NULL && (batch->given == NULL || batch->given[k]) ? own.request + k * width : NULL;
         batch->reasons[k] = armstep_step(arm, memory, scratch, &own, batch->dq + k * n);
         refused += batch->reasons[k] == ARMSTEP_INVALID;
@@ -557,12 +573,12 @@ double armstep_stopping_time(const struct armstep *arm, const double *memory, do
     struct arena own_arena = arena_of(arm, scratch);
     struct arena *const arena = &own_arena;
     (void)arena;
-    return is_shield(arm) ? @stopping_time_of@plan_of(arm), numbers_of(arm, memory)) : NAN;
+    return is_shield(arm) && has_begun(arm, memory) ? @stopping_time_of@plan_of(arm), numbers_of(arm, memory)) : NAN;
 }
 
 enum armstep_program armstep_program_of(const struct armstep *arm, const double *memory)
 {
-    return (enum armstep_program)state_of(arm, memory).at->program;
+    return (enum armstep_program)(has_begun(arm, memory) ? (int)state_of(arm, memory).at->program : 0);
 }
 
 double armstep_fraction(const struct armstep *arm, const double *memory)
