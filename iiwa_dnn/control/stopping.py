@@ -110,7 +110,7 @@ def brake_blindly(motion: MotionState, limits: MotionConstants, dt: float) -> No
     """Advance a motion by the next command of its motion to rest, where no program can be asked.
 
     That is the stored one; without one, that in which all joints come to rest together, within the
-    bounds of their own limits.
+    bounds of their own limits. A joint outside of its range stays there.
 
     Args:
         motion: State of the motion of n joints, overwritten.
@@ -130,9 +130,10 @@ def brake_blindly(motion: MotionState, limits: MotionConstants, dt: float) -> No
         first, end = joint_range(limits, i)
         dq = next_velocity(sent, motion.before[i], periods, limits.cubic)
         if not is_stored and min(rates.acceleration, rates.jerk) < np.inf:
-            at = motion.q[i]
+            above = end - motion.q[i] if motion.q[i] <= end else np.inf
+            below = motion.q[i] - first if motion.q[i] >= first else np.inf
             lower, upper, _, _ = joint_bounds(
-                sent, motion.before[i], end - at, at - first, rates, constant_periods(dt)
+                sent, motion.before[i], above, below, rates, constant_periods(dt)
             )
             dq = min(max(dq, lower), upper)
         motion.last[i] = dq

@@ -217,10 +217,9 @@ def collision_model(robot: Robot) -> CollisionModel:
 def link_model(robot: Robot) -> CollisionModel:
     """Read the collision geometry of a robot's links; if it has no file, make it from the URDF.
 
-    It is made in spite of a file, and a warning says so, if a position limit is beyond the URDF's,
-    within which pairs of the file never meet. No file is written. If making takes longer than
-    `LONG`, a warning says how to keep the result. It is made once for all robots that differ in
-    tools and rates alone.
+    It is made in spite of a file if a position limit is beyond the URDF's, within which pairs of
+    the file never meet. No file is written. If making takes longer than `LONG`, a warning says how
+    to keep the result. It is made once for all robots that differ in tools and rates alone.
 
     Raises:
         InvalidInputError: The robot does not come from a file.
@@ -237,16 +236,11 @@ def link_model(robot: Robot) -> CollisionModel:
     if arm not in _made:
         began = process_time()
         _made[arm] = make_collision_model(replace(robot, tip=flange, tools=()))
-        if file.exists():
-            warn_caller(
-                f"{robot.name} has position limits beyond those of its file: the pairs that may "
-                f"meet are searched for anew, {file} is not used"
-            )
-        elif (taken := process_time() - began) > LONG:
-            warn_caller(
-                f"capsules and pairs of {robot.name} took {taken:.1f} s; "
-                f"`iiwa-dnn collisions` keeps them beside {robot.path}"
-            )
+        if (taken := process_time() - began) > LONG:
+            remedy = f"`iiwa-dnn collisions` keeps them beside {robot.path}"
+            if file.exists():
+                remedy = f"position limits are beyond the URDF's, for which {file} is"
+            warn_caller(f"capsules and pairs of {robot.name} took {taken:.1f} s; {remedy}")
     return _made[arm]
 
 
