@@ -54,7 +54,7 @@ from iiwa_dnn.control.requests import (
 )
 from iiwa_dnn.control.state import MotionState, change_spacing, count_as_sent
 from iiwa_dnn.control.stopping import brake_blindly, least_periods
-from iiwa_dnn.control.yielding import NOMINAL, NONE
+from iiwa_dnn.control.yielding import NOMINAL, NONE, SLOW
 from iiwa_dnn.networks.integrators.base import AnswerSettings, CompiledAnswer
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
@@ -919,6 +919,8 @@ def _answer(
     timing = periods_of_inputs(arm, plan.settings, inputs)
     if plan.scene >= 0:
         _place_obstacles(plan, arm, arm.time, block_constants(arrays, plan.scene))
+    if plan.separation >= 0:
+        write_bodies(block_constants(arrays, plan.separation), arm.bodies, arm.seen.age)
     change_spacing(motion, timing.dt)
     log = log_of(data, arrays.sizes)
     is_twist = arm.answered == Request.TWIST
@@ -954,6 +956,8 @@ def _answer(
         _brake_blindly(plan, arm, motion)
         return action
     copied(arm.motion, next_motion_state)
+    if _tracks(plan) and plan.separation >= 0 and action != NONE:
+        _note_separation(plan, arm, motion, arrays, timing, log)
     arm.fraction = log.fraction
     arm.program = log.kind
     copied(arm.limiting, log.limiting)
@@ -996,7 +1000,7 @@ def _take_request(
     Args:
         plan: Layout of the step.
         arm: The arm.
-        arrays: Arrays of the step; request and bodies are written to the constants.
+        arrays: Arrays of the step; the request is written to the constants.
         timing: Periods of the step.
         state: State of the network, (size,); where it begins for a request of joints is written.
     """
@@ -1070,13 +1074,12 @@ def _slow_down(
     Args:
         plan: Layout of the step.
         arm: The arm; what is withheld of its request is noted.
-        arrays: Arrays of the step; the bodies are written to the constants.
+        arrays: Arrays of the step, with the bodies in the constants.
         timing: Periods of the step.
         request: The request; a twist is scaled.
         admitted: Largest speeds of the joints for another request [rad/s], (n,), overwritten.
     """
     constants = block_constants(arrays, plan.separation)
-    write_bodies(constants, arm.bodies, arm.seen.age)
     limits = motion_constants(arrays)
     n = arm.positions.size
     dq = np.zeros(n)
@@ -1227,6 +1230,30 @@ def _note_targets(arm: ArmState) -> None:
     arm.is_clipped = arm.program != NOMINAL
     if arm.program == ProgramKind.RELAXED and largest_entry(arm.limiting) == 0.0:
         arm.reasons[Reason.SINGULAR] = 1.0
+
+
+@compiled
+def _note_separation(
+    plan: ArmPlan,
+    arm: ArmState,
+    motion: MotionState,
+    arrays: ProgramArrays,
+    timing: Periods,
+    log: StepLog,
+) -> None:
+    """Note whether bodies are too near for the velocity that a controller's arm wants.
+
+    While it rests for them, the clock of its paths stands: a person may stay for long.
+    """
+    wanted = motion.wanted if log.kind == ProgramKind.STOPPED else log.point[: log.dq.size]
+    constants = block_constants(arrays, plan.separation)
+    limits = motion_constants(arrays)
+    if separation_factor(constants, arrays, limits, wanted, timing.longest) == 1.0:
+        return
+    arm.reasons[Reason.SEPARATION] = 1.0
+    if plan.step.policy == SLOW and largest_entry(log.dq) == 0.0:
+        motion.path_lag += timing.expected * log.fraction
+        log.fraction = 0.0
 
 
 @compiled

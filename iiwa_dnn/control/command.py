@@ -232,15 +232,23 @@ class Command:
         periods: Control periods for which the limits of the step were computed.
     """
 
-    __slots__ = ("_layout", "action", "data", "dq", "periods")
+    __slots__ = ("_layout", "_words", "action", "data", "dq", "periods")
 
-    def __init__(self, data: Vector, layout: LogLayout, action: Action, periods: Periods) -> None:
-        """Wrap the numbers of a log (width,), which are not copied, and their layout."""
+    def __init__(
+        self,
+        data: Vector,
+        layout: LogLayout,
+        action: Action,
+        periods: Periods,
+        words: tuple[str, ...] = (),
+    ) -> None:
+        """Wrap the numbers of a log (width,), which are not copied, their layout, and `reasons`."""
         self.data = data
         self.dq = data[layout.dq]
         self.action = action
         self.periods = periods
         self._layout = layout
+        self._words = words
 
     @property
     def log(self) -> StepLog:
@@ -249,8 +257,8 @@ class Command:
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Warnings of the step: ``("period exceeded",)`` if its period is too long, else ()."""
-        return (EXCEEDED,) if self.periods.exceeded else ()
+        """Warnings of the step: a period that is too long, and bodies of bounded speed."""
+        return (EXCEEDED,) * self.periods.exceeded + self._words
 
     @property
     def next_q(self) -> Vector:

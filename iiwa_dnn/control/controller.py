@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import math
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, NamedTuple
@@ -29,7 +29,7 @@ from iiwa_dnn.control.arms import (
 )
 from iiwa_dnn.control.command import EXCEEDED, Command
 from iiwa_dnn.control.cycle import INVALID, ControlLayout
-from iiwa_dnn.control.layout import ArmLayout, lay_out_arm
+from iiwa_dnn.control.layout import ArmLayout, lay_out_arm, see
 from iiwa_dnn.control.paths import (
     References,
     beyond_reach,
@@ -40,8 +40,10 @@ from iiwa_dnn.control.paths import (
     target_warnings,
     warn_of_bodies,
 )
+from iiwa_dnn.control.people import News, separation_in
 from iiwa_dnn.control.plan import Instant
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
+from iiwa_dnn.control.requests import Reason
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.stopping import periods_to_rest
 from iiwa_dnn.errors import InvalidInputError, warn_caller
@@ -62,6 +64,9 @@ _FLOAT = np.dtype(np.float64)
 
 NOTHING = np.zeros(0)
 """No targets, for those of the paths; no state, of a network in Python."""
+
+OF_BODIES = (Reason.FRAME_REFUSED, Reason.SEPARATION)
+"""Reasons that bodies of bounded speed give a controller's command."""
 
 ACTION_OF = {int(action): action for action in Action}
 """Actions by their codes: a table is quicker than `Action(code)`."""
@@ -248,6 +253,9 @@ class Controller:
         t: float,
         target: Target | Mapping[str, Target] | None = None,
         *,
+        people: ArrayLike | Sequence[Any] | None = None,
+        obstacles: Mapping[str, Any] | None = None,
+        age: float | None = None,
         dt: float | None = None,
         elapsed: float | None = None,
     ) -> Command:
@@ -262,6 +270,9 @@ class Controller:
             t: Time [s]; the reference is sampled at t - `path_lag`.
             target: Target in place of the reference's; with ``sample="end"`` as
                 `Reference.feed_forward` gives it.
+            people: A frame of people, as for `Shield.step`, where a limit is a `Separation`.
+            obstacles: Or the place of each body with a speed that was seen, by its name.
+            age: Time since they were seen [s]; None: the latency.
             dt: Period for which this command will be held [s]. If it varies without a
                 `longest_period`, velocity and acceleration limits hold, jerk and position limits
                 only where these allow (docs/limits.md).
@@ -273,7 +284,9 @@ class Controller:
         Raises:
             InvalidInputError: `q` has another size than the robot has joints, or is not finite; or
                 `t` is no number; or there is neither reference nor target; or a period is not above
-                0; or both are given, or `elapsed` without a `longest_period`.
+                0; or both are given, or `elapsed` without a `longest_period`; or people have a
+                wrong shape, or no limit keeps away from them.
+            NotFoundError: There is no body of a name.
         """
         arm = None
         before: Vector = NOTHING
@@ -282,6 +295,8 @@ class Controller:
             self._turn()
         try:
             with self._lock:
+                if people is not None or obstacles is not None:
+                    self._see(News(separation_in(self.scheme.limits), people, obstacles, age))
                 command = self._compute(q, t, target, dt, elapsed)
                 arm = self._arm
                 before = arm.last
@@ -297,6 +312,10 @@ class Controller:
             if isinstance(error, TypeError | InvalidInputError):
                 checks.finite("t", t)
             raise
+
+    def _see(self, news: News) -> None:
+        """Take what was seen of bodies of bounded speed."""
+        see(self.arm_layout.plan, self._arm.last, news)
 
     def compute(self, q: Vector, t: float, target: Mapping[str, Target] | None = None) -> Command:
         """Compute a command that does not count as sent, unless it is passed to `send`.
@@ -367,7 +386,8 @@ class Controller:
             problem = f"must be from {SHORTEST:g} to {LONGEST:g} s"
             raise InvalidInputError("dt or elapsed", problem, (dt, elapsed))
         arm.computed = arm.spare
-        return Command(data, step.log_layout, ACTION_OF[action], periods)
+        words = arm.layout.reasons(arm.spare, OF_BODIES) if arm.plan.separation >= 0 else ()
+        return Command(data, step.log_layout, ACTION_OF[action], periods, words)
 
     def _ask(
         self,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Container
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,13 +16,15 @@ from iiwa_dnn.control.arms import (
     margin_of,
     motion_of,
     rest_arm,
+    see_body,
+    see_people,
     separation_of,
     stopping_time_of,
     torque_of,
 )
 from iiwa_dnn.control.cycle import ControlLayout
 from iiwa_dnn.control.following import follow_width
-from iiwa_dnn.control.people import separation_in
+from iiwa_dnn.control.people import News, separation_in
 from iiwa_dnn.control.requests import CUT, FASTEST, REASONS, TWIST, Reason, RequestCost
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.naming import active_limits, describe
@@ -86,11 +89,15 @@ class ArmLayout(NamedTuple):
         codes, rows = np.split(arm.limiting.astype(int), [arm.positions.size])
         words = map(describe, active_limits(names.settings, codes, rows))
         motion = motion_of(self.plan, arm)
-        reasons = [
-            self.separation_words(memory) if reason == REASONS[Reason.SEPARATION] else reason
-            for reason in reasons_of(arm)
-        ]
-        return (*reasons, *words, *names.conditions(motion.q, motion.least))
+        return (*self.reasons(memory), *words, *names.conditions(motion.q, motion.least))
+
+    def reasons(self, memory: Vector, among: Container[int] = Reason) -> tuple[str, ...]:
+        """Name each `Reason` of an arm's last step among some; a separation by link and body."""
+        return tuple(
+            self.separation_words(memory) if code == Reason.SEPARATION else REASONS[code]
+            for code in np.flatnonzero(self.state(memory).reasons)
+            if code in among
+        )
 
     def separation_words(self, memory: Vector) -> str:
         """Name the link and the body that slow an arm's last command down, or the body's age."""
@@ -113,6 +120,14 @@ class ArmLayout(NamedTuple):
     def stopping_time(self, memory: Vector) -> float:
         """Compute the time of the stopping motion from an arm's last command [s]."""
         return float(stopping_time_of(self.plan, memory))
+
+
+def see(plan: ArmPlan, memory: Vector, news: News) -> None:
+    """Take what was seen of bodies of bounded speed into an arm's memory (k,), overwritten."""
+    if news.people is not None:
+        see_people(plan, memory, news.people, news.age)
+    for number, box in news.bodies.items():
+        see_body(plan, memory, number, box, news.age)
 
 
 def reasons_of(arm: ArmState) -> tuple[str, ...]:

@@ -219,7 +219,7 @@ class News:
         self.people: Matrix | None = None
         self.bodies: dict[int, Vector] = {}
         if rule is None:
-            raise InvalidInputError("people", "the shield was made without people", people)
+            raise InvalidInputError("people", "no Separation is among the limits", people)
         self.age = rule.latency if age is None else float(checks.array("age", age, ()))
         if people is not None:
             self.people = capsules_of(people)

@@ -45,8 +45,6 @@ from iiwa_dnn.control.arms import (
     place_arm,
     rest_arm,
     scale_speed,
-    see_body,
-    see_people,
     send_arm,
 )
 from iiwa_dnn.control.command import Command
@@ -61,7 +59,7 @@ from iiwa_dnn.control.following import (
     checked_times,
     stream_mode,
 )
-from iiwa_dnn.control.layout import ArmLayout, Margin, lay_out_arm, own_movers, reasons_of
+from iiwa_dnn.control.layout import ArmLayout, Margin, lay_out_arm, own_movers, reasons_of, see
 from iiwa_dnn.control.paths import long_times, setup_warnings, warn_of_bodies
 from iiwa_dnn.control.people import News, separation_in, split_bodies
 from iiwa_dnn.control.policies import Action
@@ -121,14 +119,6 @@ def lay_out_shield(shield: Shield, frame: str) -> ArmLayout:
     longest = shield.longest_period
     step = ControlLayout(program, {}, solver, shield.dt, Action.RELAX, longest)
     return lay_out_arm(step, solver, shield.settings, shield.samples)
-
-
-def see(plan: ArmPlan, memory: Vector, news: News) -> None:
-    """Take what was seen of bodies of bounded speed into an arm's memory (k,), overwritten."""
-    if news.people is not None:
-        see_people(plan, memory, news.people, news.age)
-    for number, box in news.bodies.items():
-        see_body(plan, memory, number, box, news.age)
 
 
 def place(layout: ArmLayout, memories: Matrix, obstacles: ArrayLike) -> None:

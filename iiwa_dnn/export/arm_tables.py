@@ -21,6 +21,7 @@ from iiwa_dnn.control.command import SINGULAR
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.fitting import arm_scratch
 from iiwa_dnn.control.paths import by_frame
+from iiwa_dnn.control.people import separation_in
 from iiwa_dnn.control.plan import Paths
 from iiwa_dnn.control.requests import REASONS, TWIST, Reason
 from iiwa_dnn.control.shield import Shield
@@ -45,6 +46,7 @@ from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
 from iiwa_dnn.schemes.program import ProgramArrays
+from iiwa_dnn.schemes.separation import Separation
 
 STEPS = 200
 """Recorded steps that tables in JSON hold."""
@@ -69,6 +71,8 @@ class Tables:
         kept: Names of the limits.
         frames: Frame of a shield's twists, or the tracked frames of a controller.
         obstacles: Names of the obstacles that can be placed.
+        bodies: Half-extents of the box of each body with a speed [m], by its name.
+        people: Largest number of bodies that a frame of people shows.
         limit_names: Names of reasons and limits by their codes.
         first_row: Code of the first row.
         memory: Numbers of an arm's memory.
@@ -93,6 +97,12 @@ class Tables:
         self._scene = avoidance and {
             "distance": avoidance.distance,
             "obstacles": avoidance.settings()["obstacles"],
+        }
+        rule = separation_in(source.limits) or Separation()
+        self.people = rule.people
+        self.bodies = {
+            name: body.box.half_extents.tolist()
+            for name, body in zip(rule.names, rule.bodies, strict=False)
         }
         reasons = [*REASONS]
         if isinstance(made, Shield):
@@ -190,6 +200,8 @@ class Tables:
             "joint_names": [*robot.joint_names],
             "frame_names": [*self.frames],
             "obstacle_names": self.obstacles,
+            "bodies": self.bodies,
+            "people": self.people,
             "limit_names": self.limit_names,
             "first_row": self.first_row,
             "has_reference": self.has_reference,

@@ -228,6 +228,9 @@ def _broken_limits(metrics: Mapping[str, Any]) -> Iterator[str]:
             f"{near['second']} and {near['first']} came as near as {near['least_distance_m']:.6g} "
             f"m at t = {near['time_s']:.6g} s, allowed {near['allowed_m']:.6g} m"
         )
+    most = metrics.get("demand")
+    if most is not None and most["max_fraction"] > 1.0 + LIMIT_SLACK:
+        yield f"{most['joint']} needs {most['max_fraction']:.6g} of its torque, at {_at(most)}"
     reached = metrics.get("physics", {}).get("torque_limit_reached")
     if reached is not None:
         yield (

@@ -176,9 +176,10 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     where its excess is largest, ``beyond_robot`` how far joints went that nothing kept within the
     robot's own limits, ``unsolved`` of the answers above the tolerance which is the first,
     ``incidents`` which bounds, inequality rows and policies acted, and for how many steps. A run in
-    physics also has ``physics`` (torques, settled error), one that tracks several frames ``frames``
-    (largest errors of those beside the first), one that avoids collisions ``collisions`` (the
-    nearest pair, and by how much it came nearer than it may).
+    physics also has ``physics`` (torques, settled error), one with `TorqueLimits` ``demand`` (what
+    the commands take of them), one that tracks several frames ``frames`` (largest errors of those
+    beside the first), one that avoids collisions ``collisions`` (the nearest pair, and by how much
+    it came nearer than it may).
 
     Args:
         record: The run.
@@ -354,6 +355,18 @@ def _physics(record: Record) -> dict[str, Any]:
     }
 
 
+def _demand(record: Record) -> dict[str, Any]:
+    """Tell how much of the limits of torques the commands take, and where most."""
+    part = record.demand / limits(record, "demand_max")
+    step, joint = np.unravel_index(part.argmax(), part.shape)
+    return {
+        "max_fraction": part[step, joint],
+        "joint": record.settings["joints"][joint],
+        "step": step,
+        "time_s": record.t[step],
+    }
+
+
 def _frames(record: Record) -> dict[str, Any]:
     """Return the largest errors of each tracked frame but the first, by its name."""
     largest = [errors.max(axis=0) for errors in frame_errors(record)]
@@ -434,6 +447,7 @@ def _limits(record: Record, codes: NDArray[Any]) -> list[Mapping[str, Any]]:
 
 FURTHER: dict[str, tuple[str, Callable[[Record], dict[str, Any]]]] = {
     "physics": ("torque", _physics),
+    "demand": ("demand", _demand),
     "frames": ("frame_position", _frames),
     "collisions": ("distance", _collisions),
 }

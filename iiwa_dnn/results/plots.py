@@ -50,6 +50,7 @@ _JOINTS = {
     "acceleration": (r"$\ddot{{q}}_{{{}}}$", "Joint acceleration [rad/s²]", "robot_ddq_max"),
     "jerk": (r"$\dddot{{q}}_{{{}}}$", "Joint jerk [rad/s³]", "robot_dddq_max"),
     "torque": (r"$\tau_{{{}}}$", "Joint torque [N m]", "torque_max"),
+    "demand": (r"$\tau_{{{}}}$", "Torque for the commands [N m]", "demand_max"),
 }
 _ERRORS = (
     ("$e_x$", "0.35", "--"),
@@ -118,11 +119,13 @@ def envelope(t: Array, curve: Array, buckets: int = BUCKETS) -> tuple[Array, Arr
 def overview_figure(record: Record) -> Figure:
     """Draw path, joints, errors and kinetic index; (a)-(d) are the panels of the paper's Fig. 1.
 
-    A run in physics, one that avoids collisions, one that tracks several frames and one that went
-    beyond the robot's own acceleration or jerk limits have further panels.
+    A run in physics, one with limits of torques, one that avoids collisions, one that tracks
+    several frames and one that went beyond the robot's own acceleration or jerk limits have further
+    panels.
     """
     further: dict[Panel, Array] = {
         partial(draw_joints, name="torque"): record.torque,
+        partial(draw_joints, name="demand"): record.demand,
         draw_frames: record.frame_position,
         draw_distance: record.distance,
     }
@@ -187,9 +190,9 @@ def draw_path(axes: Axes, record: Record) -> None:
 def draw_joints(axes: Axes, record: Record, name: str) -> None:
     """Draw one curve a joint over time, distinguished by luminance and dashes.
 
-    The name is ``"q"``, ``"dq"``, ``"acceleration"``, ``"jerk"`` or ``"torque"``. If the limits of
-    the joints differ, all but positions are drawn as fractions of them; a position limit near the
-    curves is a mark of its joint's color at the end of the time axis.
+    The name is ``"q"``, ``"dq"``, ``"acceleration"``, ``"jerk"``, ``"torque"`` or ``"demand"``. If
+    the limits of the joints differ, all but positions are drawn as fractions of them; a position
+    limit near the curves is a mark of its joint's color at the end of the time axis.
     """
     import matplotlib
 

@@ -261,6 +261,14 @@ class Record:
         IntArray,
         Column('Index of that pair in ``settings["collisions"]["pairs"]``', ("N+1",), np.int64),
     ] = ABSENT
+    demand: Annotated[
+        Array,
+        Column(
+            "Torques that the velocities take by `TorqueLimits` [N m], the larger ones of the "
+            "lightest and the heaviest payload",
+            ("N", "n"),
+        ),
+    ] = ABSENT
     wall_time_s: float | None = None
 
     def __post_init__(self) -> None:

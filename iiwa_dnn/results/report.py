@@ -45,6 +45,7 @@ _RESULTS = (
     ("largest position error, settled", "physics.max_position_error_settled_m", "m"),
     ("largest torque of each joint", "physics.max_torque_n_m", "N m"),
     ("largest torque, of its limit", "physics.max_torque_fraction", ""),
+    ("largest torque for a command, of its limit", "demand.max_fraction", ""),
     ("least distance", "collisions.least_distance_m", "m"),
     ("least distance allowed", "collisions.allowed_m", "m"),
     ("nearest pair, one body", "collisions.first", ""),

@@ -25,6 +25,7 @@ from iiwa_dnn.schemes.literature import (
 )
 from iiwa_dnn.schemes.parts import Cost as Cost, Limit as Limit, Part as Part, Task as Task
 from iiwa_dnn.schemes.scheme import Scheme as Scheme
+from iiwa_dnn.schemes.separation import Separation as Separation
 from iiwa_dnn.schemes.step import Step as Step
 from iiwa_dnn.schemes.tasks import (
     AxisTask as AxisTask,

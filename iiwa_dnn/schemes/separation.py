@@ -578,7 +578,8 @@ def free_bodies(argument: str, value: Any) -> tuple[Obstacle, ...]:
 class Separation(Limit):
     """Separation from bodies of bounded speed, kept until rest (see the module).
 
-    A `Shield` makes it, and states at each step where bodies were seen.
+    A `Shield` makes it; a `Controller` has it among its scheme's limits, and its path slows down
+    when the test fails. Each step states where bodies were seen.
 
     Attributes:
         bodies: Bodies with a speed, that are seen one by one.

@@ -407,6 +407,23 @@ class TorqueLimits(Limit):
             dynamics=dynamics.numbers,
         )
 
+    def demands(self, robot: Robot, q: Matrix, dq: Matrix, dt: float) -> Matrix:
+        """Return the larger size of each torque of a run with both ends of the payload [N m].
+
+        Args:
+            robot: The robot, n joints.
+            q: Joint positions at which each of N steps begins [rad], (N, n).
+            dq: Velocities of the steps [rad/s], (N, n); the first one begins at rest.
+            dt: Control period [s].
+        """
+        own = self.constants(robot)
+        load = np.empty_like(dq)
+        before = np.zeros(robot.dof)
+        for k, velocity in enumerate(dq):
+            write_loads(own, q[k], before, (velocity - before) / dt, load[k])
+            before = velocity
+        return load
+
     def check_start(self, robot: Robot, q: Vector) -> None:
         """Raise InvalidInputError if a posture q (n,) [rad] takes more torque to be held."""
         own = self.constants(robot)

@@ -13,6 +13,7 @@ from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.schemes import TorqueLimits
 from iiwa_dnn.simulation.loop import Outcome
 
 SEARCHED = 100
@@ -135,6 +136,10 @@ class Recorder:
         placement = controller.placement(self.arrays["q"][steps])
         targets = controller.targets(self.arrays["t"][steps] - controller.path_lag)
         self._add_samples(steps, placement[np.newaxis], targets.reshape(1, -1))
+        for k in controller.program.places_of(TorqueLimits):
+            limit: Any = controller.program.parts[k]
+            own = self.arrays["q"][:steps], self.arrays["dq"][:steps], controller.dt
+            self._array("demand")[:steps] = limit.demands(controller.robot, *own)
         return {
             name: array[: steps + (COLUMNS[name].shape[0] == "N+1")]
             for name, array in self.arrays.items()

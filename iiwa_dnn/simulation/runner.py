@@ -19,7 +19,7 @@ from iiwa_dnn.qp.check_pool import CheckPool
 from iiwa_dnn.results.record import OWN_LIMITS, RATES, Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.robot import model_limits
-from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.schemes import Scheme, TorqueLimits
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.joint_limits import RateLimits
 from iiwa_dnn.schemes.names import LimitNames
@@ -182,6 +182,9 @@ def _settings(controller: Controller, start: Configuration, duration: float) -> 
         for named in controller.scheme.limits
         if isinstance(named, RateLimits)
     }
+    for limit in controller.scheme.limits:
+        if isinstance(limit, TorqueLimits):
+            limits["demand_max"] = limit.largest(robot)
     if (avoidance := avoidance_of(controller.scheme)) is not None:
         limits["collisions"] = avoidance.overview(robot)
     return {

@@ -1,5 +1,6 @@
 """Bodies of bounded speed: at rest before contact, whatever the sensor says later."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from iiwa_dnn.schemes.rest import Motion, velocity_at
 from iiwa_dnn.schemes.scene import Pair
 from iiwa_dnn.schemes.separation import (
     FREE_BODY,
+    SHARE,
     FreeBody,
     Separation,
     WatchedLink,
@@ -146,6 +148,27 @@ def test_what_has_no_meaning_is_no_frame(frame: Any, age: float) -> None:
     assert later.margin.separation > before - 0.01
 
 
+@pytest.mark.parametrize("share", [SHARE, judge_people.NO_SHARE])
+def test_who_is_beyond_the_field_comes_nearer_while_there_is_no_news(share: float) -> None:
+    """Nobody was in the field; without a share the test of the motion to rest stands alone."""
+    shield = made(people=1)
+    shield.limits = (*shield.limits[:-1], replace(shield.limits[-1], share=share))
+    skeleton = judge_people.skeleton_of(ROBOT)
+    ends = np.empty(skeleton.ends.shape)
+    command = shield.step(ROBOT.start_posture(), REQUEST, people=[], age=0.05)
+    least, separations = np.inf, []
+    for k in range(2, 1000):
+        command = shield.step(command.next_q, REQUEST)
+        separations.append(command.margin.separation)
+        judge_people.place(skeleton, command.next_q, ends)
+        out = np.linalg.norm(ends, axis=2).max(axis=1) + skeleton.radii
+        if np.abs(command.dq).max() > 1e-12:
+            least = min(least, 2.5 - out.max() - 0.02 - 2.0 * (0.05 + k * shield.dt))
+    assert not command.dq.any()
+    assert -1e-9 <= least < (2e-3 if share > SHARE else 0.1)
+    assert np.diff(separations[-9:]) == pytest.approx(-2.0 * shield.dt)
+
+
 def test_without_news_the_arm_comes_to_rest_and_says_so() -> None:
     shield = made()
     assert not driven(shield, 1, people=None).dq.any()
@@ -238,3 +261,75 @@ def test_a_link_may_be_touched_at_the_contact_speed_and_no_quicker() -> None:
     found = judge_people.run(scene, 1500, 3, judge_people.told(scene))
     assert found.contacts == 0
     assert 0.0 < found.quickest <= 0.25
+
+
+RULE = Separation(people=2, people_speed=1.6, field=1e3, latency=0.14)
+
+
+def tracking(*limits: Any) -> iiwa_dnn.Controller:
+    start = iiwa_dnn.Configuration(ROBOT, ROBOT.start_posture())
+    heart = iiwa_dnn.Heart(scale=7e-3, period=4.0).anchored(start)
+    scheme = iiwa_dnn.DoubleIndicator(extra_limits=(iiwa_dnn.AccelerationLimits(), *limits))
+    return iiwa_dnn.Controller(ROBOT, scheme, heart)
+
+
+@pytest.mark.parametrize("is_told", [True, False])
+def test_a_controller_rests_before_it_is_touched_and_its_path_waits(is_told: bool) -> None:
+    scene = hostile(count=4, error=0.03, modes=(0, 3, 7, 8), lost=0.3, people=2)
+    arms = [tracking(*[RULE] * is_told) for _ in range(scene.count)]
+    words: set[str] = set()
+
+    def drive(k: int, q: Any, _: Any, frame: Any) -> tuple[Any, Any]:
+        commands = []
+        for i, arm in enumerate(arms):
+            own = {}
+            if is_told and frame is not None and frame[3][i]:
+                radius = np.full((2, 1), scene.radius + scene.error)
+                people = np.hstack([frame[1][i].reshape(-1, 6), radius])[frame[2][i]]
+                own = {"people": people, "age": (k - frame[0]) * scene.dt}
+            commands.append(arm.step(q[i], k * scene.dt, **own))
+            words.update(commands[-1].active_limits)
+        return np.array([each.dq for each in commands]), [not each.ok for each in commands]
+
+    found = judge_people.run(scene, 1500, 1, drive)
+    assert (found.contacts == 0) == is_told
+    if is_told:
+        assert found.moving > 0.5
+        assert max(found.rates) < 1.0 + 1e-9
+        assert any(each.startswith("separation of iiwa7_link_") for each in words)
+
+
+def test_a_path_waits_for_who_stays_and_the_core_answers_alike(tmp_path: Path) -> None:
+    hand = Sphere([1.5, 0.0, 0.5], 0.06, speed=1.6, name="hand")
+    controller = tracking(replace(RULE, bodies=(hand,)))
+    controller.warm_up(ROBOT.start_posture())
+    arm = in_armstep(controller, tmp_path)
+    with pytest.raises(ValueError, match="there is no 'foot', but hand"):
+        arm.see(bodies={"foot": (np.zeros(3), np.eye(3))})
+    q = ROBOT.start_posture()
+    tip = iiwa_dnn.Configuration(ROBOT, q).position
+    for k in range(900):
+        own: Any = {}
+        if k % 20 == 0:
+            center = tip + ([0.0, 0.0, 0.2] if 300 <= k < 700 else [0.0, 0.0, 1.5])
+            people = np.array([[*tip, *tip, 0.1]])[: int(500 <= k < 700)]
+            own = {"people": people, "obstacles": {"hand": center}, "age": 0.02}
+            arm.see(people, 0.02, {"hand": (center, np.eye(3))})
+        here = controller.step(q, 1e-3 * k, **own)
+        there = arm.step(q, 1e-3 * k)
+        np.testing.assert_allclose(there.dq, here.dq, atol=1e-8)
+        q = here.next_q
+        if k in (200, 899):
+            assert here.dq.any()
+        if k == 400:
+            assert here.active_limits[0].endswith("from hand")
+            lag = controller.path_lag
+        if k == 690:
+            assert not here.dq.any()
+            assert here.active_limits[0].startswith(("age of people", "separation"))
+            assert controller.path_lag - lag == pytest.approx(0.29, abs=1e-6)
+    controller.step(q, 1.0, people=[([0.0, 0.0, np.nan], [0.0, 0.0, 1.0], 0.1)], age=0.1)
+    command = controller.step(q, 1.0, people=[], age=0.5)  # older than the last
+    assert command.reasons[0] == "frame of bodies refused"
+    with pytest.raises(InvalidInputError, match="no Separation is among the limits"):
+        tracking().step(q, 0.0, people=[])

@@ -2,6 +2,7 @@
 
 import warnings
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from helpers_kinematics import Array
 from helpers_simulation import rows_of
 from iiwa_dnn.control.arms import motion_of
 from iiwa_dnn.control.stopping import least_periods, write_cubic_coefficients
+from iiwa_dnn.results.plots import overview_figure
 from iiwa_dnn.schemes import AccelerationLimits, JerkLimits
 from iiwa_dnn.schemes.joint_limits import MotionLimits
 from iiwa_dnn.schemes.rest import Motion, velocity_at
@@ -260,6 +262,30 @@ def test_friction_and_rotors_are_those_that_are_published() -> None:
         assert_allclose(armature[[0, 2, 6]], [0.605721456, 0.462474144, 0.205544064])
     with pytest.raises(d.InvalidInputError, match="armature: none is published of iiwa7"):
         d.load_robot("iiwa7").with_armature()
+
+
+def test_a_record_tells_what_its_velocities_take_of_the_torques() -> None:
+    start = d.Configuration(PANDA, PANDA.start_posture())
+    heart = d.Heart(scale=9e-3, period=1.5).anchored(start)
+    scheme = d.DoubleIndicator(extra_limits=(AccelerationLimits(), TorqueLimits(0.9, friction=0.0)))
+    record = d.simulate(PANDA, scheme, heart, start.q, dt=DT, duration=1.5)
+    before = np.vstack([np.zeros(7), record.dq[:-1]])
+    for k in range(0, record.steps, 50):
+        own = [
+            pin.rnea(*each, record.q[k], before[k], (record.dq[k] - before[k]) / DT)
+            for each in CARRYING[:2]
+        ]
+        assert_allclose(record.demand[k], np.abs(own).max(axis=0), atol=1e-9)
+    metrics = d.compute_metrics(record)
+    most = (record.demand / (0.9 * EFFORT)).max()
+    assert 0.9 < metrics["demand"]["max_fraction"] == most < 1.0
+    label = overview_figure(record).axes[-1].get_ylabel()
+    assert label == "Torque for the commands [% of limit]"
+    heavy = replace(record, demand=1.2 * record.demand)
+    joint = metrics["demand"]["joint"]
+    for own in (record, heavy):
+        said = [each for each in d.failures(own) if each.startswith(f"{joint} needs ")]
+        assert len(said) == (own is heavy)
 
 
 def test_a_payload_without_limits_of_torques_is_said_at_the_first_step() -> None:

@@ -96,6 +96,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "send": (INT, [*[POINTER] * 3, REAL, REAL]),
     "place": (INT, [POINTER] * 3),
     "people": (INT, [*[POINTER] * 3, SIZE, REAL]),
+    "body": (INT, [*[POINTER] * 2, SIZE, POINTER, REAL]),
     "follow": (INT, [*[POINTER] * 4, SIZE, INT]),
     "time": (REAL, [POINTER] * 2),
     "followed": (POINTER, [POINTER] * 3),

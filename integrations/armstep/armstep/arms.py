@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import Any, Generic, NamedTuple, TypeVar, cast
@@ -315,6 +315,46 @@ class Arms(Fixed, Generic[Answer]):
         many = self._many if found.ndim == len(self._many) + len(shape) else ()
         centers = pointed("obstacles", found, (*many, *shape), FINITE)
         return np.broadcast_to(centers, (self.count, *shape))
+
+    def see(
+        self,
+        people: ArrayLike | None = None,
+        age: float = 0.0,
+        bodies: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
+    ) -> None:
+        """Say where people or bodies are, as a sensor saw them `age` [s] before the step.
+
+        What has no meaning is no frame (`Reason.FRAME_REFUSED`): the arm comes to rest by itself.
+
+        Args:
+            people: All in the field: both ends and the radius, with the error of the place, of each
+                [m], (k, 7); [] is nobody; None: no news.
+            age: Time since they were seen [s].
+            bodies: Center [m], (3,), and rotation, (3, 3), of each body with a speed that was seen,
+                by its name. A capsule lies along its z axis. The others grow older.
+
+        Raises:
+            InputError: They have a wrong shape, or the arm knows of none; nothing is changed.
+        """
+        boxes = [self._placed(name, *place) for name, place in (bodies or {}).items()]
+        if people is not None and not self.tables.people:
+            raise InputError("people: the arm was made without")
+        seen = np.asarray([] if people is None else people, dtype=np.float64)
+        frame = pointed("people", seen.reshape(-1, 7) if seen.size == 0 else seen, (len(seen), 7))
+        for _, memory in self._each():
+            if people is not None:
+                ONE.armstep_people(self.tables.arm, memory, frame.ctypes, len(frame), age)
+            for number, box in boxes:
+                ONE.armstep_body(self.tables.arm, memory, number, box.ctypes, age)
+
+    def _placed(self, name: str, center: ArrayLike, rotation: ArrayLike) -> tuple[int, Array]:
+        """Return the number of a body, and its half-extents, axes and center, (15,)."""
+        names = [*self.tables.bodies]
+        if name not in names:
+            raise InputError(f"bodies: there is no {name!r}, but {', '.join(names) or 'none'}")
+        axes = numbers(name, rotation, (3, 3)).T.ravel()
+        box = [self.tables.bodies[name], axes, numbers(name, center, (3,))]
+        return names.index(name), np.concatenate(box, dtype=np.float64)
 
     def halt(self, mask: ArrayLike | None = None) -> None:
         """Brake from now on, whatever is asked, until `reset`; of many those of a mask (N,)."""

@@ -255,25 +255,6 @@ class _Shields(Arms[Answer]):
         if ONE.armstep_follow(self.tables.arm, memory, *given):
             raise InputError("times: must rise, and be no more than the shield has samples")
 
-    def see(self, people: ArrayLike, age: float) -> None:
-        """Say where all people in the field are, as a sensor saw them `age` [s] before the step.
-
-        What has no meaning is no frame (`Reason.FRAME_REFUSED`): the arm comes to rest by itself.
-
-        Args:
-            people: Both ends and the radius, with the error of the place, of each [m], (k, 7); []
-                is nobody.
-            age: Time since they were seen [s].
-
-        Raises:
-            InputError: They have a wrong shape.
-        """
-        seen = np.asarray(people, dtype=np.float64)
-        frame = pointed("people", seen.reshape(-1, 7) if seen.size == 0 else seen, (len(seen), 7))
-        with self._lock:
-            for _, memory in self._each():
-                ONE.armstep_people(self.tables.arm, memory, frame.ctypes, len(frame), age)
-
     def margin(self, i: int | None = None) -> Margin:
         """Return the distances of arm i at the positions that its last command starts from.
 

@@ -54,6 +54,8 @@ class Tables(Fixed):
         joint_names: Names of the joints, whose order is that of all arrays.
         frame_names: Frame of a shield's twists, or the tracked frames of a controller.
         obstacle_names: Names of the obstacles that can be placed.
+        bodies: Half-extents [m] of bodies with a speed, by their names.
+        people: Largest number of bodies that a frame of people shows.
         limit_names: Names of reasons and limits by their codes.
         limits: Limits of the joints, (n,) each: lower, upper [rad], velocity, acceleration,
             jerk [rad/s, ...].
@@ -72,6 +74,8 @@ class Tables(Fixed):
     joint_names: tuple[str, ...]
     frame_names: tuple[str, ...]
     obstacle_names: tuple[str, ...]
+    bodies: Mapping[str, list[float]]
+    people: int
     limit_names: tuple[str, ...]
     limits: Mapping[str, Array]
     dt: float
@@ -164,6 +168,7 @@ def _attributes(members: Mapping[str, Any]) -> dict[str, Any]:
         each.setflags(write=False)
     own["memory"] = -(-members["memory"] // LINE) * LINE
     own["longest_period"] = members["longest"] or None
+    own |= {"bodies": members.get("bodies", {}), "people": members.get("people", 0)}
     own["has_reference"] = bool(members["has_reference"])
     return own
 

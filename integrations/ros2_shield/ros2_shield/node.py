@@ -47,10 +47,15 @@ PARAMETERS = {
     "following_error": 0.1,  # [rad]
     "record": "",
     "people_radii": [0.0],  # [m]
+    "body_names": [""],
 }
 """Parameters and their defaults."""
 
 RANGE = FloatingPointRange(from_value=1e-3, to_value=10.0)
+
+
+UNIT = 1e-3
+"""Distance from 1 of the square of a quaternion's length up to which it counts as rounding."""
 
 
 class RefusedError(Exception):
@@ -76,6 +81,12 @@ class Newest:
         """Return why the message does not count at a time [s], or nothing."""
         counts = self.end > -np.inf or self.is_recent(now, timeout)
         return self.problem or ("" if counts else f"{self.kind} timed out")
+
+
+def _rotation(w: float, x: float, y: float, z: float) -> Any:
+    """Return the rotation (3, 3) of a quaternion."""
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + 2.0 / (w * w + x * x + y * y + z * z) * (w * K + K @ K)
 
 
 class ShieldNode(Node):
@@ -111,7 +122,12 @@ class ShieldNode(Node):
         self._radii = np.array(self._set["people_radii"], float)
         if self._radii.size == 0 or not (self._radii >= 0.0).all():
             raise RefusedError(f"parameter people_radii: {self._radii} are no radii")
-        if self._recorded and self._radii.any():
+        if self._radii.any() and not shield.tables.people:
+            raise RefusedError("parameter people_radii: the shield has no people")
+        self._bodies = [name for name in self._set["body_names"] if name]
+        if unknown := {*self._bodies} - {*shield.tables.bodies}:
+            raise RefusedError(f"parameter body_names: the shield has no body {sorted(unknown)}")
+        if self._recorded and (self._radii.any() or self._bodies):
             raise RefusedError("parameter record: a recording keeps no frames of people")
         about = (self._takes_velocity, self._set["timeout"], self._set["following_error"])
         try:
@@ -129,7 +145,8 @@ class ShieldNode(Node):
         self._pace = self.get_clock() if is_simulated else steady
         self._states = Newest("joint states", "no joint states")
         self._request = Newest("request", "no request")
-        self._people = Newest("people", "")  # its value is a frame until a period takes it
+        # Frames, until a period takes them: of all people, and of bodies that are named.
+        self._people, self._named = Newest("people", ""), Newest("bodies", "")
         self._began = (0.0, time.monotonic())  # the last period, by its clock and a steady one [s]
         self._is_stalled = False  # whether /clock stands still
         for topic, message, read in (
@@ -144,10 +161,13 @@ class ShieldNode(Node):
         # Best effort receives what is reliable, too; another's states do not displace the arm's.
         states = (JointState, "/joint_states", self._on_states, qos_profile_sensor_data)
         self.create_subscription(*states)
-        if self._radii.any():
-            self.create_subscription(
-                PoseArray, "~/people", self._on_people, qos_profile_sensor_data
-            )
+        for topic, seen, read, is_told in (
+            ("~/people", self._people, self._capsules, self._radii.any()),
+            ("~/bodies", self._named, self._places, self._bodies),
+        ):
+            if is_told:
+                take = partial(self._see, seen, read)
+                self.create_subscription(PoseArray, topic, take, qos_profile_sensor_data)
         is_trajectory = self._set["command"] == "trajectory"
         sent = JointTrajectory if is_trajectory else Float64MultiArray
         self._commands = self.create_publisher(sent, "~/commands", NEWEST)
@@ -282,31 +302,47 @@ class ShieldNode(Node):
             if self._recorded:
                 self._recorded.measured = self._states.value["q"]
 
-    def _on_people(self, message: PoseArray) -> None:
-        """Keep a frame of all people for the next period, unless a newer one came.
+    def _see(self, seen: Newest, read: Any, message: PoseArray) -> None:
+        """Keep a frame of people or bodies for the next period, unless a newer one came.
 
         What has no meaning is no frame: the last one grows older, and the arm rests in time.
         """
-        people = self._people
         stamp = Time.from_msg(message.header.stamp)
-        if 0 < stamp.nanoseconds <= people.stamp:
+        if 0 < stamp.nanoseconds <= seen.stamp:
             return
-        places = np.array([[p.x, p.y, p.z] for p in (each.position for each in message.poses)])
-        places = places.reshape(-1, 3)
-        if stamp.nanoseconds == 0:
-            people.problem = "frame of people without a stamp"
-        elif self._seconds_since(stamp) < -self._tables.dt:
-            people.problem = "frame of people stamped in the future"
-        elif message.header.frame_id not in ("", self._set["base_frame"]):
-            people.problem = f"frame of people in frame {message.header.frame_id!r}"
-        elif not np.isfinite(places).all():
-            people.problem = "frame of people not finite"
-        else:
-            last = len(self._radii) - 1
-            radii = [self._radii[min(k, last)] for k in range(len(places))]
-            people.problem = ""
-            people.stamp = stamp.nanoseconds
-            people.value = {"stamp": stamp, "capsules": np.column_stack([places, places, radii])}
+        try:
+            if stamp.nanoseconds == 0:
+                raise RefusedError("without a stamp")
+            if self._seconds_since(stamp) < -self._tables.dt:
+                raise RefusedError("stamped in the future")
+            if message.header.frame_id not in ("", self._set["base_frame"]):
+                raise RefusedError(f"in frame {message.header.frame_id!r}")
+            poses = [(each.position, each.orientation) for each in message.poses]
+            rows = [[p.x, p.y, p.z, o.w, o.x, o.y, o.z] for p, o in poses]
+            seen.value = {"stamp": stamp, **read(np.array(rows).reshape(-1, 7))}
+            seen.stamp, seen.problem = stamp.nanoseconds, ""
+        except RefusedError as error:
+            seen.problem = f"frame of {seen.kind} {error}"
+
+    def _capsules(self, poses: Any) -> dict[str, Any]:
+        """Return all people at poses (k, 7) as balls, of the radii of the parameter."""
+        places = poses[:, :3]
+        if not np.isfinite(places).all():
+            raise RefusedError("not finite")
+        radii = self._radii[np.minimum(np.arange(len(poses)), len(self._radii) - 1)]
+        return {"people": np.column_stack([places, places, radii])}
+
+    def _places(self, poses: Any) -> dict[str, Any]:
+        """Return center and rotation of each body that was seen; NaN is one that was not."""
+        if len(poses) != len(self._bodies):
+            raise RefusedError(f"of {len(poses)} poses, not {len(self._bodies)}")
+        found = {}
+        for name, (*center, w, x, y, z) in zip(self._bodies, poses, strict=True):
+            if np.isfinite(center).all():
+                if not abs(w * w + x * x + y * y + z * z - 1.0) < UNIT:
+                    raise RefusedError("whose orientation is none")
+                found[name] = (center, _rotation(w, x, y, z))
+        return {"bodies": found}
 
     # ---- Periods
 
@@ -336,11 +372,11 @@ class ShieldNode(Node):
         self._began = (now, time.monotonic())
         before = self._drive.fault
         reasons = (fault, *(each.fault(now, timeout) for each in (self._states, self._request)))
-        frame = self._people.value
-        if frame and self._drive.has_begun:
-            age = self._seconds_since(frame["stamp"])
-            self._drive.shield.see(frame["capsules"], max(age, 0.0))  # or it came before the tick
-            self._people.value = {}
+        for each in (self._people, self._named):
+            if each.value and self._drive.has_begun:
+                age = self._seconds_since(each.value.pop("stamp"))
+                self._drive.shield.see(age=max(age, 0.0), **each.value)  # or before the tick
+                each.value = {}
         command = self._drive.step(now, elapsed, self._request.value, *reasons)
         if command is not None:
             self._send(command)
@@ -374,7 +410,8 @@ class ShieldNode(Node):
         if response.success:
             self._drive.reset()
             self._request.problem = "no request"
-            self._people = Newest("people", "")
+            for each in (self._people, self._named):  # seen anew
+                each.value, each.stamp, each.problem = {}, 0, ""
         return response
 
     def come_to_rest(self, executor: Any) -> str:
@@ -407,7 +444,7 @@ class ShieldNode(Node):
                 "margin of distances [m]": f"{margin.distance:.6g}",
                 "margin of separation [m]": f"{margin.separation:.6g}",
                 "margin of torques": f"{margin.torque:.6g}",
-                "people": self._people.problem,
+                "people": "; ".join(filter(None, (self._people.problem, self._named.problem))),
                 "stopping time [s]": f"{command.stopping_time:.6g}",
                 "longest period [s]": f"{self._drive.worst:.6g}",
             }

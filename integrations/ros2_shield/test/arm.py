@@ -36,7 +36,6 @@ TOPICS = {
     TwistStamped: "/shield/delta_twist_cmds",
     Float64MultiArray: "/shield/velocity_cmds",
     JointTrajectory: "/shield/position_cmds",
-    PoseArray: "/shield/people",
 }
 FRAME = 8  # periods between two frames of people
 HOME = np.array([2.2, 0.3, 0.6])  # of a person [m]
@@ -54,7 +53,7 @@ class Arm(Node):
 
     def __init__(self, tables, mode):
         super().__init__("arm")
-        self.is_remote = mode in ("remote", "people")
+        self.is_remote = mode in ("remote", "people", "bodies")
         self.on_its_way = []  # messages and the times of their arrival
         self.random = np.random.default_rng(0)
         self.names = list(tables.joint_names)
@@ -68,7 +67,8 @@ class Arm(Node):
         self.log = []  # periods [s] and velocities [rad/s]
         self.times = []  # of the commands [s]
         self.said = [""]  # by the diagnostics
-        self.publishers_of = {kind: self.create_publisher(kind, TOPICS[kind], 1) for kind in TOPICS}
+        topics = TOPICS | {PoseArray: f"/shield/{'bodies' if mode == 'bodies' else 'people'}"}
+        self.publishers_of = {kind: self.create_publisher(kind, topics[kind], 1) for kind in topics}
         self.trajectories = self.create_publisher(JointTrajectory, TRAJECTORIES, 1)
         names = ("halt", "reset")  # found long before they are called: the arm would time out
         self.services_of = {each: self.create_client(Trigger, f"/shield/{each}") for each in names}
@@ -275,7 +275,7 @@ def nonsense(arm):
     now = arm.now()
     for frame, at in zip(frames, (0, now + 10**9, now, now), strict=True):
         frame.header.stamp = stamp(at)
-    frames[2].poses = [Pose(position=Point(x=np.nan))]
+    frames[2].poses = [Pose(position=Point(x=np.nan))]  # of a body that has a name: unseen
     frames[3].header.frame_id = "camera"
     return frames
 
@@ -430,7 +430,7 @@ if __name__ == "__main__":
         arm.log = arm.log[-1:]
     if mode in ("near", "remote"):
         rove(arm, float(seconds))
-    places = visit(arm, 4.0 * float(seconds)) if mode == "people" else []
+    places = visit(arm, 4.0 * float(seconds)) if mode in ("people", "bodies") else []
     if mode in ("simulated", "timed"):
         drive(arm, float(seconds))
         check_reasons(arm)

@@ -104,18 +104,24 @@ def test_a_bad_network_breaks_no_limit_and_slows_the_arm_little(
     assert ways[1] >= 0.9 * ways[0]
 
 
+@pytest.mark.parametrize("mode", ["people", "bodies"])
 def test_a_link_is_at_rest_before_a_person_is_there_whatever_the_network_does(
-    python: Path, tmp_path: Path
+    python: Path, mode: str, tmp_path: Path
 ) -> None:
     """The project's judge of people: distances every 0.1 ms, kinematics of its own."""
     judge_people = pytest.importorskip("judge_people", reason="numba compiles the judge")
-    about = {"people": 1, "people_speed": 1.6, "field": 2.5, "latency": 0.0}
-    shield = iiwa_dnn.Shield(
-        ROBOT, 4e-3, [], DISTANCE, tracking_error=0.05, longest_period=0.02, **about
-    )
-    iiwa_dnn.export.tables(shield, tmp_path / "people.json")
-    settings = (*SIMULATED, "people_radii:=[0.1]")
-    found = run(python, tmp_path, "people", *settings, tables=tmp_path / "people.json")
+    about: dict[str, Any] = {"people": 1, "people_speed": 1.6, "field": 2.5}
+    setting = "people_radii:=[0.1]"
+    obstacles = []
+    if mode == "bodies":
+        about = {}
+        setting = "body_names:=[hand]"
+        obstacles = [iiwa_dnn.Sphere([2.2, 0.3, 0.6], 0.1, speed=1.6, name="hand")]
+    about |= {"latency": 0.0, "tracking_error": 0.05, "longest_period": 0.02}
+    shield = iiwa_dnn.Shield(ROBOT, 4e-3, obstacles, DISTANCE, **about)
+    tables = tmp_path / "people.json"
+    iiwa_dnn.export.tables(shield, tables)
+    found = run(python, tmp_path, mode, *SIMULATED, setting, tables=tables)
     begun, ended, q, dq = np.split(found["places"], [3, 6, 13], axis=1)
     arm = judge_people.skeleton_of(ROBOT)
     least = np.inf
@@ -156,6 +162,8 @@ def test_parameters_are_refused_by_name(python: Path) -> None:
         "command:=torque",
         "timeout:=1",
         "people_radii:=[-0.1]",
+        "people_radii:=[0.1]",
+        "body_names:=[hand]",
     ):
         node = start_node(python, setting)
         said = node.communicate(timeout=60)[1]

@@ -149,7 +149,7 @@ ARMSTEP_API enum armstep_status armstep_send(
  * the arm brakes until they are placed again. */
 ARMSTEP_API enum armstep_status armstep_place(const struct armstep *arm, double *memory, const double *centers);
 
-/* Say where all people in a shield's field are, as a sensor saw them `age` ago: both ends and the radius, with the error
+/* Say where all people in an arm's field are, as a sensor saw them `age` ago: both ends and the radius, with the error
  * of the place, of `count` capsules. 0 of them is nobody in the field. What has no meaning (numbers that are not finite,
  * too many, older than the last frame) is ARMSTEP_NOT_FINITE and no frame: all bodies grow older, and the arm comes to
  * rest by itself. */
@@ -249,7 +249,7 @@ ARMSTEP_API double armstep_time(const struct armstep *arm, const double *memory)
  * period; NULL: nothing is followed; */
 ARMSTEP_API const double *armstep_followed(const struct armstep *arm, const double *memory, double *late);
 
-/* the least separation of a shield's links from people, less the one to keep, INFINITY without; */
+/* the least separation of an arm's links from people, less the one to keep, INFINITY without; */
 ARMSTEP_API double armstep_separation(const struct armstep *arm, const double *memory, double *scratch);
 
 /* the least part of a torque limit that a shield's command leaves, with either payload, INFINITY without; */

@@ -304,7 +304,7 @@ enum armstep_status armstep_people(
     /* Without capsules the frame of nobody has none; a count below 0 is above all that a frame may show. */
     const bool is_frame = count == 0 || (count > 0 && capsules != NULL);
     const Matrix own = {view_if_any(capsules != NULL ? capsules[0] : NULL, 0).data, is_frame ? count : PTRDIFF_MAX, 7};
-    if (!is_shield(arm) || plan_of(arm)->separation < 0) {
+    if (plan_of(arm)->sizes.bodies == 0) {
         return ARMSTEP_WRONG_KIND;
     }
     if (!has_begun(arm, memory)) {
@@ -317,7 +317,7 @@ enum armstep_status armstep_body(
     const struct armstep *arm, double *memory, ptrdiff_t number, const double *box, double age
 )
 {
-    if (!is_shield(arm) || number < 0 || number >= plan_of(arm)->sizes.bodies) {
+    if (number < 0 || number >= plan_of(arm)->sizes.bodies) {
         return ARMSTEP_WRONG_KIND;
     }
     if (!has_begun(arm, memory)) {
