@@ -80,25 +80,50 @@ def skeleton_of(robot: iiwa_dnn.Robot) -> Skeleton:
 @njit(cache=True)
 def place(arm: Skeleton, q: Any, out: Any) -> None:
     """Write the ends of all capsules, (L, 2, 3): turns by Rodrigues' formula, one by one."""
-    here = np.eye(4)
-    own = np.eye(4)
+    turn = np.eye(3)
+    origin = np.zeros(3)
+    last = np.empty((3, 3))
+    own = np.empty((3, 3))
     for j in range(q.size):
-        x, y, z = arm.axes[j]
-        own[:] = np.eye(4)
+        offset = arm.offsets[j]
+        axis = arm.axes[j]
+        for i in range(3):
+            origin[i] += _dot(turn[i], offset[:3, 3])
+        last[:] = turn
+        _multiply(last, offset[:3, :3], turn)
         if arm.slides[j]:
-            own[:3, 3] = q[j] * arm.axes[j]
+            for i in range(3):
+                origin[i] += q[j] * _dot(turn[i], axis)
         else:
-            K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-            own[:3, :3] += np.sin(q[j]) * K + (1.0 - np.cos(q[j])) * (K @ K)
-        here = here @ (arm.offsets[j] @ own)
+            sine, versine = np.sin(q[j]), 1.0 - np.cos(q[j])
+            for i in range(3):
+                for k in range(3):
+                    own[i, k] = versine * axis[i] * axis[k]
+                own[i, i] += 1.0 - versine
+                after, before = (i + 1) % 3, (i + 2) % 3
+                own[i, after] -= sine * axis[before]
+                own[i, before] += sine * axis[after]
+            last[:] = turn
+            _multiply(last, own, turn)
         for k in range(arm.parents.size):
             if arm.parents[k] == j:
                 for at in range(2):
                     for i in range(3):
-                        value = here[i, 3]
-                        for c in range(3):
-                            value += here[i, c] * arm.ends[k, at, c]
-                        out[k, at, i] = value
+                        out[k, at, i] = origin[i] + _dot(turn[i], arm.ends[k, at])
+
+
+@njit(cache=True)
+def _dot(a: Any, b: Any) -> float:
+    """Return the product of two vectors (3,)."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@njit(cache=True)
+def _multiply(A: Any, B: Any, out: Any) -> None:
+    """Write the product of two matrices (3, 3)."""
+    for i in range(3):
+        for k in range(3):
+            out[i, k] = A[i, 0] * B[0, k] + A[i, 1] * B[1, k] + A[i, 2] * B[2, k]
 
 
 @njit(cache=True)

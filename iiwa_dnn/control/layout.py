@@ -91,11 +91,13 @@ class ArmLayout(NamedTuple):
         motion = motion_of(self.plan, arm)
         return (*self.reasons(memory), *words, *names.conditions(motion.q, motion.least))
 
-    def reasons(self, memory: Vector, among: Container[int] = Reason) -> tuple[str, ...]:
+    def reasons(
+        self, memory: Vector, among: Container[int] = range(len(REASONS))
+    ) -> tuple[str, ...]:
         """Name each `Reason` of an arm's last step among some; a separation by link and body."""
         return tuple(
             self.separation_words(memory) if code == Reason.SEPARATION else REASONS[code]
-            for code in np.flatnonzero(self.state(memory).reasons)
+            for code in map(int, np.flatnonzero(self.state(memory).reasons))
             if code in among
         )
 
