@@ -48,6 +48,9 @@ ROUNDING = 1e-9
 RESERVE = 1e-6
 """Part of a torque limit that the rows of a step leave to the tolerance of their solution."""
 
+AT_REST = 0.01
+"""Part of a torque limit that a posture at rest leaves, so that an arm can begin to leave it."""
+
 DEPTH = 32
 """Largest number of nested halvings of an interval."""
 
@@ -212,10 +215,20 @@ def keeps_torque(step: StepViews, constants: Vector, motion: Motion) -> bool:
     if _load_in_period(step, own, motion, 0, load) > most:
         return False
     samples = motion.cubic or own.slides
-    for k in range(2 if samples else last, last + 2):  # the last one is rest
+    for k in range(2 if samples else last, last + 1):
         if _load_in_period(step, own, motion, max(k, 1), load) > most:
             return False
+    resting = _load_in_period(step, own, motion, last + 1, load)
+    if resting > most or (resting > 1.0 - AT_REST and resting > _load_here(step, own, load)):
+        return False
     return samples or _keeps_between(step, own, motion, last)
+
+
+@compiled
+def _load_here(step: StepViews, own: TorqueConstants, load: Vector) -> float:
+    """Write `write_loads` of an arm at rest where a step begins."""
+    rest = np.zeros(load.size)
+    return write_loads(own, step.q, rest, rest, load)
 
 
 @compiled
@@ -425,14 +438,15 @@ class TorqueLimits(Limit):
         return load
 
     def check_start(self, robot: Robot, q: Vector) -> None:
-        """Raise InvalidInputError if a posture q (n,) [rad] takes more torque to be held."""
+        """Raise InvalidInputError if the arm cannot leave a posture q (n,) [rad] or hold it."""
         own = self.constants(robot)
         load = np.empty(robot.dof)
         rest = np.zeros(robot.dof)
-        if write_loads(own, q, rest, rest, load) > 1.0:
+        if write_loads(own, q, rest, rest, load) > 1.0 - AT_REST:
             ratio = load / own.limit
             i = int(ratio.argmax())
             problem = f"takes {ratio[i]:.3g} of the torque limit of joint {i + 1} to be held"
+            problem += f", more than {1.0 - AT_REST:g}"
             raise InvalidInputError("q", problem, q)
 
 
