@@ -23,15 +23,7 @@ from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.command import StepLog, log_of
 from iiwa_dnn.control.cycle import INVALID, sample_targets, take_step
-from iiwa_dnn.control.following import (
-    FollowState,
-    asks,
-    follow_samples,
-    forget_samples,
-    have_meaning,
-    keep_samples,
-    samples_of,
-)
+from iiwa_dnn.control.following import follow_samples
 from iiwa_dnn.control.people import (
     grow_older,
     is_newer,
@@ -51,6 +43,15 @@ from iiwa_dnn.control.requests import (
     Request,
     RequestConstants,
     falls_short,
+    twist_rows,
+)
+from iiwa_dnn.control.samples import (
+    FollowState,
+    asks,
+    forget_samples,
+    have_meaning,
+    keep_samples,
+    samples_of,
 )
 from iiwa_dnn.control.state import MotionState, change_spacing, count_as_sent
 from iiwa_dnn.control.stopping import brake_blindly, least_periods
@@ -1317,6 +1318,25 @@ def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
         for k in range(distances.size):
             distance = min(distance, distances[k] - scene.head.least)
     return joint, distance
+
+
+@compiled
+def frame_at(plan: ArmPlan, q: Vector, placement: Vector, jacobian: Matrix) -> None:
+    """Write where the frame of a shield's twists is at joint positions, and its Jacobian.
+
+    Args:
+        plan: Layout of the step.
+        q: Joint positions, (n,).
+        placement: `Placement` of the frame, (12,), overwritten.
+        jacobian: Its linear over angular rows, (6, n), overwritten.
+    """
+    base = plan.step.arrays
+    twists = np.empty((q.size, TWIST))
+    placements = np.empty((base.placements.shape[0], placement.size))
+    write_kinematics(plan.robot, q, twists, placements, base.inertia)
+    frame = RequestConstants.of(block_constants(base, plan.request)).frame
+    copied(placement, placements[frame])
+    twist_rows(twists, placements, base.support, frame, jacobian)
 
 
 @compiled

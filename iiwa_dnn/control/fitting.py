@@ -11,9 +11,9 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.arms import ArmPlan
 from iiwa_dnn.control.command import log_sizes
 from iiwa_dnn.control.fallback import Yielding
-from iiwa_dnn.control.following import ALONE, OF_JOINT, samples_of
 from iiwa_dnn.control.plan import ControlPlan, PathColumn
 from iiwa_dnn.control.requests import RequestConstants
+from iiwa_dnn.control.samples import ALONE, OF_JOINT, samples_of
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot.kinematics_kernel import ModelTables

@@ -23,9 +23,9 @@ from iiwa_dnn.control.arms import (
     torque_of,
 )
 from iiwa_dnn.control.cycle import ControlLayout
-from iiwa_dnn.control.following import follow_width
 from iiwa_dnn.control.people import News, separation_in
 from iiwa_dnn.control.requests import CUT, FASTEST, REASONS, TWIST, Reason, RequestCost
+from iiwa_dnn.control.samples import follow_width
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.naming import active_limits, describe
 from iiwa_dnn.networks.solver import DNNSolver

@@ -24,7 +24,7 @@ least-squares estimation of nonlinear parameters", J. SIAM 11(2), 1963, for its 
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal, NamedTuple
@@ -34,6 +34,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
+from iiwa_dnn.control.requests import TWIST
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.naming import LimitKind, active_limits, describe
 from iiwa_dnn.networks.solver import DNNSolver
@@ -81,6 +82,9 @@ _UNIT_WITHIN = 0.01
 _SECOND = 1e-2
 """Weight of the orientation error if the pose is not reached [m/rad]."""
 
+Poses = ArrayLike | Mapping[str, ArrayLike]
+"""Poses of one frame, or those of several by their names."""
+
 
 @dataclass(frozen=True)
 class PoseSolution:
@@ -116,7 +120,8 @@ class _Point(NamedTuple):
         q: Joint positions [rad], (n,).
         qp: Program of a step at `q`. The first six equality rows are the tip's Jacobian, linear
             over angular, and the error from the tip to the goal, position [m] over rotation vector
-            [rad]; the angular rows are multiplied by the weight of the orientation.
+            [rad]; the angular rows are multiplied by the weight of the orientation. Of several
+            frames there are six rows each.
         missing: Merit of the iterate: squared norm of the pose error, plus the violations of
             distances [m] and of mimic couplings [rad].
         far: Largest of the position error [m], the weighted angle [rad], and these violations.
@@ -208,7 +213,7 @@ class PoseChunk(NamedTuple):
 
 
 def solve_poses(
-    robot: Robot, times: Vector, poses: ArrayLike, q0: Vector, frame: str | None
+    robot: Robot, times: Vector, poses: Poses, q0: Vector, frame: str | None
 ) -> PoseChunk:
     """Find joint positions for timed poses in turn, each from those of the one before.
 
@@ -220,28 +225,39 @@ def solve_poses(
         robot: The robot, n joints.
         times: Time of each pose [s], (m,), rising.
         poses: Position [m] of each, (m, 3), or also its quaternion w, x, y, z, (m, 7), or a
-            homogeneous matrix, (m, 4, 4). One that is not finite has NaN as joint positions.
+            homogeneous matrix, (m, 4, 4); or a mapping of the names of several frames to theirs.
+            One that is not finite has NaN as joint positions.
         q0: Joint positions before them [rad], (n,).
-        frame: Name of the frame; None stands for the tip.
+        frame: Name of the frame of one; None stands for the tip.
 
     Raises:
         InvalidInputError: The poses have another shape, or are no rotations.
         NotFoundError: The robot has no frame of that name.
     """
-    goals, weight = _goals(times.size, poses)
-    program = _program(robot, (), frame)
+    if isinstance(poses, Mapping):
+        if frame is not None or not poses:
+            raise InvalidInputError("frame", "is stated by poses of several frames", frame)
+        frames = sorted(poses, key=lambda name: name != robot.tip)  # the tip first, as of a program
+        found_goals = [_goals(times.size, poses[name]) for name in frames]
+    else:
+        frames = [frame or robot.tip]
+        found_goals = [_goals(times.size, poses)]
+    goals = np.stack([each for each, _ in found_goals], axis=1)
+    weight = np.array([own for _, own in found_goals])
+    program = _program(robot, (), frames)
     descend = partial(_descend, program, DNNSolver(tol=1e-12))
     q = np.clip(q0, robot.q_lower, robot.q_upper)
     last = -np.inf
     found: dict[int, Vector] = {}
     left_out: dict[int, str] = {}
-    for k, (t, goal) in enumerate(zip(times.tolist(), goals[:, np.newaxis], strict=True)):
+    for k, (t, goal) in enumerate(zip(times.tolist(), goals, strict=True)):
         if not np.isfinite(goal).all():
             found[k] = np.full(robot.dof, np.nan)
             continue
         end = descend(goal, _CLOSE, q, weight)
-        if robot.dof < goal.size // 3 and end.far > _CLOSE:
-            end = descend(goal, _CLOSE, descend(goal, _CLOSE, end.q, _SECOND).q, 0.0)
+        if robot.dof < TWIST * len(goal) and end.far > _CLOSE:
+            near = descend(goal, _CLOSE, end.q, _SECOND * weight)
+            end = descend(goal, _CLOSE, near.q, 0.0 * weight)
         ratio = np.abs(end.q - q) / ((t - last) * robot.dq_max)
         if end.far > REACHED:
             limits = _active_limits(program, DNNSolver(tol=1e-12), end, weight)
@@ -280,7 +296,9 @@ def _goal(pose: Vector | Matrix) -> Target:
 
 
 def _program(
-    robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance, frame: str | None = None
+    robot: Robot,
+    obstacles: Sequence[Obstacle] | CollisionAvoidance,
+    frames: Sequence[str | None] = (None,),
 ) -> ProgramLayout:
     """Lay out the program of an iteration, in which velocities are changes of the joints."""
     slowed = robot.with_limits(velocity=_STEP * _units(robot))
@@ -290,7 +308,8 @@ def _program(
     if isinstance(obstacles, CollisionAvoidance):
         rows = ENDS * len(obstacles.scene(slowed).pairs)
         limits.append(replace(obstacles, gain=1.0, nearest=rows))
-    return Scheme([], [PoseTask(gain=1.0, frame=frame)], limits).program(slowed)
+    tasks = [PoseTask(gain=1.0, frame=frame) for frame in frames]
+    return Scheme([], tasks, limits).program(slowed)
 
 
 def _units(robot: Robot) -> Vector:
@@ -328,32 +347,44 @@ def _descend(
     return point
 
 
-def _at(program: ProgramLayout, q: Vector, goal: Matrix, weight: float) -> _Point:
-    """Evaluate the iterate at q (n,) [rad] for a goal (1, 18), with a weight of its orientation."""
+def _at(program: ProgramLayout, q: Vector, goal: Matrix, weight: float | Vector) -> _Point:
+    """Evaluate the iterate at q (n,) [rad] for k goals (k, 18), with weights of orientations."""
     qp = program.qp_at(q, 0.0 * q, 0.0 * q, goal, np.inf)
-    qp.A[3:6] *= weight
-    qp.b[3:6] *= weight
-    error = qp.b[:6]
-    linkage = qp.b[6:]
+    rows = TWIST * len(goal)
+    scale = _scale(program, weight)
+    qp.A[:rows] *= scale[:, np.newaxis]
+    qp.b[:rows] *= scale
+    error = qp.b[:rows]
+    linkage = qp.b[rows:]
     linkage /= JointCouplingTask.gain  # of a step, as the pose
     violations = np.concatenate([np.abs(linkage), np.maximum(-qp.h, 0.0)])
     missing = float(error @ error + violations.sum())
-    far = max(math.hypot(*error[:3]), math.hypot(*error[3:]), violations.max(initial=0.0))
+    far = max(np.linalg.norm(error.reshape(-1, 3), axis=1).max(), violations.max(initial=0.0))
     return _Point(q, qp, missing, far)
 
 
 def _solve(program: ProgramLayout, solver: DNNSolver, point: _Point, damping: float) -> Solution:
     """Solve for the step of an iteration; `damping` is mu, the ratio to the squared pose error."""
     qp = point.qp
-    jacobian = qp.A[:6]
-    error = qp.b[:6]
+    rows = TWIST * len(program.target_frames)
+    jacobian = qp.A[:rows]
+    error = qp.b[:rows]
     weights = (_STEP / program.robot.dq_max) ** 2
     P = jacobian.T @ jacobian + damping * float(error @ error) * np.diag(weights)
-    return solver.solve(QP(P, -error @ jacobian, qp.G, qp.h, qp.A[6:], qp.b[6:], qp.lb, qp.ub))
+    return solver.solve(
+        QP(P, -error @ jacobian, qp.G, qp.h, qp.A[rows:], qp.b[rows:], qp.lb, qp.ub)
+    )
+
+
+def _scale(program: ProgramLayout, weight: float | Vector) -> Vector:
+    """Return a factor of each row of the frames' poses, from the weights of their orientations."""
+    scale = np.ones((len(program.target_frames), TWIST))
+    scale[:, 3:] = np.reshape(weight, (-1, 1))
+    return scale.reshape(-1)
 
 
 def _active_limits(
-    program: ProgramLayout, solver: DNNSolver, point: _Point, weight: float
+    program: ProgramLayout, solver: DNNSolver, point: _Point, weight: float | Vector
 ) -> tuple[str, ...]:
     """Name the limits whose multipliers are active at an iterate that misses the goal.
 
@@ -361,7 +392,8 @@ def _active_limits(
     posture.
     """
     step = _solve(program, solver, point, _DAMPING)
-    least = _ACTS * math.hypot(*point.qp.b[:3], *weight * point.qp.b[3:6])
+    scale = _scale(program, weight)
+    least = _ACTS * float(np.linalg.norm(scale * point.qp.b[: scale.size]))
     lower, upper, pairs = program.kinds
     codes = np.where(step.z_box > 0.0, upper, -lower) * (np.abs(step.z_box) > least)
     codes[np.abs(codes) == LimitKind.VELOCITY] = 0

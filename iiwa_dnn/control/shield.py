@@ -50,26 +50,19 @@ from iiwa_dnn.control.arms import (
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import ACTION_OF, periods_of_step
 from iiwa_dnn.control.cycle import INVALID, ControlLayout
-from iiwa_dnn.control.following import (
-    KEEPS,
-    SAMPLES,
-    FollowState,
-    Preview,
-    Rehearsal,
-    checked_times,
-    stream_mode,
-)
 from iiwa_dnn.control.layout import ArmLayout, Margin, lay_out_arm, own_movers, reasons_of, see
 from iiwa_dnn.control.paths import long_times, setup_warnings, warn_of_bodies
 from iiwa_dnn.control.people import News, separation_in, split_bodies
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.posing import PoseChunk, solve_poses
+from iiwa_dnn.control.posing import PoseChunk, Poses, solve_poses
+from iiwa_dnn.control.preview import Preview, Rehearsal
 from iiwa_dnn.control.requests import (
     TWIST,
     Request,
     RequestCost,
     one_request,
 )
+from iiwa_dnn.control.samples import KEEPS, SAMPLES, FollowState, checked_times, stream_mode
 from iiwa_dnn.errors import InvalidInputError, warn_caller
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Matrix, Vector
@@ -491,7 +484,7 @@ class Shield:
         positions: ArrayLike | None = None,
         keep: Literal["time", "path"] = "time",
         *,
-        poses: ArrayLike | None = None,
+        poses: Poses | None = None,
         frame: str | None = None,
         now: float | None = None,
     ) -> dict[int, str]:
@@ -508,8 +501,8 @@ class Shield:
             keep: What is kept where the samples are too quick for the joints: their ``"time"``, or
                 their ``"path"``, later.
             poses: Or a frame's positions [m], (m, 3), with quaternions w, x, y, z, (m, 7), or as
-                homogeneous matrices, (m, 4, 4). Joint positions are found from those of the pose
-                before, in about 1 ms each.
+                homogeneous matrices, (m, 4, 4); or a mapping of several frames' names to theirs.
+                Joint positions are found from those of the pose before, in about 1 ms each.
             frame: Name of the poses' frame; None stands for the tip.
             now: Present time on the clock of `times` [s]; None: they are on the clock `time`.
 
@@ -537,7 +530,7 @@ class Shield:
         self,
         times: ArrayLike,
         positions: ArrayLike | None,
-        poses: ArrayLike | None,
+        poses: Poses | None,
         frame: str | None,
     ) -> PoseChunk:
         """Return the samples of a chunk as joint positions; those of poses are solved for."""
@@ -569,10 +562,10 @@ class Shield:
         positions: ArrayLike | None = None,
         keep: Literal["time", "path"] = "time",
         *,
-        poses: ArrayLike | None = None,
+        poses: Poses | None = None,
         frame: str | None = None,
     ) -> Preview:
-        """Tell what would become of a chunk, by taking its steps without an arm.
+        """Forecast lag and errors of a chunk, by taking its steps without an arm.
 
         Nothing changes. It takes as long as that many steps (20 to 100 us each); other steps wait
         for it. Bodies of bounded speed grow older meanwhile, as without news of them.

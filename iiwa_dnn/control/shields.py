@@ -24,10 +24,10 @@ from iiwa_dnn.control.arms import (
     step_arms,
     write_margins,
 )
-from iiwa_dnn.control.following import KEEPS, checked_times, stream_mode
 from iiwa_dnn.control.layout import Margin, see
 from iiwa_dnn.control.people import News, is_of_each, separation_in
 from iiwa_dnn.control.requests import one_request
+from iiwa_dnn.control.samples import KEEPS, checked_times, stream_mode
 from iiwa_dnn.control.shield import Shield, check_held, place
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector

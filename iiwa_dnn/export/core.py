@@ -52,7 +52,7 @@ WRITTEN = ("jacobian", "placements", "inertia", "fallback")
 _KERNELS = (
     *(arms.arm_state, arms.rest_arm, arms.halt_arm, arms.send_arm, arms.step_arm, arms.place_arm),
     *(arms.brake_arm, arms.motion_of, arms.margin_of, arms.stopping_time_of, all_finite),
-    *(arms.see_people, arms.see_body, arms.separation_of, arms.torque_of),
+    *(arms.see_people, arms.see_body, arms.separation_of, arms.torque_of, arms.frame_at),
     *(arms.scale_speed, arms.follow_arm, arms.follow_of, cycle.sample_targets),
     *(fitting.arm_fits, fitting.arm_scratch),
 )

@@ -166,6 +166,43 @@ def test_deltas_of_a_hand_at_10_hz_are_followed_a_sample_late():
     assert np.median(off) < 1e-3
 
 
+def test_two_frames_are_followed_at_once():
+    """Both hands of two arms, and of one arm the tip's pose and where its elbow is."""
+    robot = iiwa_dnn.load_robot("iiwa7_dual").with_limits(acceleration=10.0, jerk=500.0)
+    shield = iiwa_dnn.Shield(robot, dt=5e-3)
+    q = robot.start_posture()
+    shield.reset(q)
+    frames = ("left_iiwa7_link_7", "right_iiwa7_link_7")
+    starts = {frame: tips(shield, [q], frame)[0] for frame in frames}
+    ways = {frames[0]: (0.02, 0.03, 0.0), frames[1]: (0.02, -0.03, 0.03)}
+    poses = {
+        frame: [motion(starts[frame], t, ways[frame], (0.1, 0.0, 0.0)).homogeneous for t in TIMES]
+        for frame in frames
+    }
+    assert shield.follow(TIMES, poses=poses) == {}
+    path = drive(shield, q, 2.0)
+    for frame in frames:
+        for k, pose in enumerate(tips(shield, path, frame)):
+            goal = motion(starts[frame], k * shield.dt, ways[frame], (0.1, 0.0, 0.0))
+            assert np.linalg.norm(pin.log6(goal.actInv(pose))) < 3e-3
+    shield, q = make()
+    start = tips(shield, [q])[0]
+    elbow = tips(shield, [q], "iiwa7_link_4")[0].translation
+    given = {
+        "iiwa7_link_4": [elbow + bow(t) * np.array([0.0, 0.01, 0.0]) for t in TIMES],
+        shield.robot.tip: [start.translation for t in TIMES],
+    }
+    assert shield.follow(TIMES, poses=given) == {}
+    path = drive(shield, q, 1.0)
+    moved = tips(shield, path[-1:], "iiwa7_link_4")[0].translation - elbow
+    np.testing.assert_allclose(moved, [0.0, 0.01 * bow(1.0), 0.0], atol=1e-3)
+    np.testing.assert_allclose(tips(shield, path[-1:])[0].translation, start.translation, atol=1e-3)
+    with pytest.raises(iiwa_dnn.InvalidInputError, match="frame: is stated by poses"):
+        shield.follow(TIMES, poses=given, frame="iiwa7_link_4")
+    with pytest.raises(iiwa_dnn.NotFoundError):
+        shield.follow(TIMES, poses={"nothing": given["iiwa7_link_4"]})
+
+
 def test_poses_that_are_none():
     shield, q = make()
     start = tips(shield, [q])[0]

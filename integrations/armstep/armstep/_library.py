@@ -100,6 +100,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "follow": (INT, [*[POINTER] * 4, SIZE, INT]),
     "time": (REAL, [POINTER] * 2),
     "followed": (POINTER, [POINTER] * 3),
+    "frame": (INT, [POINTER] * 5),
     "separation": (REAL, [POINTER] * 3),
     "torque": (REAL, [POINTER] * 3),
     "steps": (SIZE, [*[POINTER] * 3, SIZE, SIZE]),

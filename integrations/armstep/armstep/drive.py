@@ -333,7 +333,7 @@ class Drive:
             t: Present time [s].
             elapsed: Time since the last period began [s].
             request: Request as an argument of `Shield.step`; or of `Shield.follow`, `times` being
-                on this clock: an object that is the same again goes on.
+                on this clock. An object that is the same again goes on as a chunk or a stream.
             fault: Reason to brake.
             blind: Reason why joint states do not count.
             idle: Reason why the request does not count.
@@ -401,7 +401,7 @@ class Drive:
         Commanded positions never jump, so they are told as measured ones: the shield is then never
         resynchronised.
         """
-        if "times" in request and not self.fault:
+        if {"times", "time"} & {*request} and not self.fault:
             request = self._followed(request, t)
         asked = {"dq": np.zeros(len(self._following.error))} if self.fault else request
         if self._following.forgets:
@@ -413,13 +413,16 @@ class Drive:
         return self.shield.step(q, **asked, dt=self.shield.dt)
 
     def _followed(self, chunk: Mapping[str, Any], t: float) -> Mapping[str, Any]:
-        """Let the shield follow a chunk that is new, its times on the clock of the periods."""
+        """Let the shield follow a chunk, or return a sample of a stream, that is new."""
+        is_new = chunk is not self._chunk
+        self._chunk = chunk
+        if "time" in chunk:
+            return chunk if is_new else {}
         try:
-            if chunk is not self._chunk:
+            if is_new:
                 self.shield.follow(**chunk, now=t)
         except InputError as error:
             self.fault = f"{error}"
-        self._chunk = chunk
         return {}
 
     def _awaited(self, q: Array, goal: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import ctypes
 import os
 from enum import IntEnum
@@ -23,6 +24,30 @@ KEEPS = ("time", "path")
 
 STREAM = 2
 """Code of a stream with a lead of 0."""
+
+MISSED = 1e-3
+"""Distance from a sample up to which it counts as reached [rad]."""
+
+PATIENCE = 10.0
+"""Time after its last sample until which a preview waits for a chunk [s]."""
+
+NEAR = 1e-4
+"""Time before the last sample at which its clock, which comes to rest there, is there [s]."""
+
+REACHED = 1e-4
+"""Distance [m] and angle [rad] from a pose up to which it counts as reached."""
+
+SEARCH = 50
+"""Largest number of steps of a search for a posture."""
+
+TURN = 0.5
+"""Largest change of a joint in one of them [rad]."""
+
+DAMPING = 0.1
+"""Ratio of the damping of a step to the squared error."""
+
+TICK = 1e-9
+"""Time that counts as rounding [s]."""
 
 Reason = IntEnum(
     "Reason",
@@ -115,6 +140,35 @@ class ShieldCommand(Decision):
         """Time of the motion to rest from the command [s]."""
         scratch = np.empty(self.tables.scratch).ctypes
         return float(ONE.armstep_stopping_time(self.tables.arm, self.memory.ctypes, scratch))
+
+
+class Preview(NamedTuple):
+    """Forecast of a chunk before the arm moves.
+
+    Attributes:
+        sample: Number of the first sample that is missed by more than `MISSED`; None: none is.
+        active_limits: What kept the arm off until then; none: the samples are too quick.
+        late: Largest time by which a sample is reached after its own [s].
+        off: Largest distance of a joint from each sample when it is due by the clock, which may be
+            late [rad], (m,). It is NaN for samples in the past.
+    """
+
+    sample: int | None
+    active_limits: tuple[str, ...]
+    late: float
+    off: Array
+
+
+def rotation_vector(rotation: Array) -> Array:
+    """Return the rotation vector (3,) [rad] of a rotation (3, 3)."""
+    w = np.array([rotation[2, 1], rotation[0, 2], rotation[1, 0]])
+    w -= [rotation[1, 2], rotation[2, 0], rotation[0, 1]]
+    sine, cosine = float(np.linalg.norm(w)), float(np.trace(rotation)) - 1.0
+    angle = np.arctan2(sine, cosine)
+    if sine > 1e-9 or cosine > 0.0:
+        return w * (angle / sine if sine > 1e-12 else 0.5)
+    column = (rotation + np.eye(3))[:, int(np.diag(rotation).argmax())]  # half a turn
+    return column * (np.pi / np.linalg.norm(column))
 
 
 class _Shields(Arms[Answer]):
@@ -288,6 +342,91 @@ class Shield(_Shields[ShieldCommand]):
     def reset(self, q: ArrayLike | None = None) -> None:  # type: ignore[override]
         """Stand at joint positions q (n,) [rad]; None: where the arm is measured next."""
         super().reset(None, q)
+
+    def preview(
+        self, times: ArrayLike, positions: ArrayLike, keep: Literal["time", "path"] = "time"
+    ) -> Preview:
+        """Forecast lag and errors of a chunk, by taking its steps with a copy.
+
+        Raises:
+            InputError: As for `follow`; or no step has been taken, or the shield has a delay.
+        """
+        if self.tables.delay or self.time == 0.0:
+            raise InputError("preview: needs a step before, and a shield without a delay")
+        other = copy.copy(self)
+        other.follow(times, positions, keep)
+        t, goals = np.asarray(times, np.float64), np.asarray(positions, np.float64)
+        q = self._buffers.next_q[0].copy()
+        sample: int | None = None
+        words: dict[str, None] = {}
+        off = np.full(t.size, np.nan)
+        late, begin = 0.0, -np.inf
+        while begin < t[-1] and other.time <= t[-1] + PATIENCE:
+            now = other.time
+            command = other.step(q, dt=self.dt)
+            is_lost = command.followed is None or command.reason is Reason.STALE
+            if sample is None and (is_lost or command.off > MISSED):
+                words.update(dict.fromkeys(command.active_limits))
+            if is_lost:
+                break
+            if now >= t[0]:
+                begin = now if begin == -np.inf else begin
+                end = min(now + self.dt, t[-1]) - command.late
+                end = end if end <= t[-1] - NEAR else t[-1]
+                for k in np.flatnonzero((t >= begin - TICK) & (t <= end + TICK) & np.isnan(off)):
+                    part = min(max(t[k] - begin, 0.0) / max(end - begin, TICK), 1.0)
+                    off[k] = np.abs(q + part * (command.next_q - q) - goals[k]).max()
+                    late = max(late, float(now + part * self.dt - t[k]))
+                    if sample is None and off[k] > MISSED:
+                        sample = int(k)
+                begin = end
+            q = command.next_q
+        if sample is None and begin < t[-1]:
+            sample = int(np.argmax(np.isnan(off) & (t > begin)))
+        return Preview(sample, tuple(words), late, off)
+
+    def frame_at(self, q: ArrayLike) -> tuple[Array, Array, Array]:
+        """Return position (3,) [m], rotation (3, 3) and Jacobian (6, n) of the frame of twists.
+
+        Args:
+            q: Joint positions [rad], (n,).
+        """
+        joints = pointed("q", q, self._shape, FARTHEST)
+        placement = np.empty(12)
+        jacobian = np.empty((TWIST, joints.size))
+        given = (joints.ctypes, placement.ctypes, jacobian.ctypes)
+        with self._lock:
+            ONE.armstep_frame(self.tables.arm, self._call[2], *given)
+        return placement[9:], placement[:9].reshape(3, 3).T, jacobian
+
+    def solve_pose(self, position: ArrayLike, rotation: ArrayLike, q0: ArrayLike) -> Array | None:
+        """Find joint positions (n,) [rad] at which the frame of twists has a pose; None: none.
+
+        Levenberg and Marquardt's method, from q0 on, within the position limits; distances do not
+        count.
+
+        Args:
+            position: Position [m], (3,).
+            rotation: Orientation, (3, 3).
+            q0: Joint positions to begin from [rad], (n,).
+        """
+        goal = pointed("position", position, (3,), FARTHEST)
+        axes = pointed("rotation", rotation, (3, 3), FARTHEST)
+        lower, upper = self.tables.limits["lower"], self.tables.limits["upper"]
+        q = np.clip(pointed("q0", q0, self._shape, FARTHEST), lower, upper)
+        for _ in range(SEARCH):
+            place, turned, jacobian = self.frame_at(q)
+            error = np.concatenate([goal - place, rotation_vector(axes @ turned.T)])
+            size = float(error @ error)
+            if max(np.linalg.norm(error[:3]), np.linalg.norm(error[3:])) < REACHED:
+                return q
+            free = ((q > lower) | (jacobian.T @ error > 0.0)) & (
+                (q < upper) | (jacobian.T @ error < 0.0)
+            )
+            own = jacobian * free
+            step = own.T @ np.linalg.solve(own @ own.T + DAMPING * size * np.eye(TWIST), error)
+            q = np.clip(q + step * min(1.0, TURN / max(np.abs(step).max(), TURN)), lower, upper)
+        return None
 
     def send(self, dq: ArrayLike, dt: float | None = None) -> None:
         """Count a velocity dq (n,) [rad/s] as sent for a period [s], in place of a command."""

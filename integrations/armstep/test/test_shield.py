@@ -11,8 +11,9 @@ from typing import Any
 import armstep
 import numpy as np
 import pytest
+from armstep.shield import rotation_vector
 
-from iiwa_dnn import Shield, Shields, Sphere, export, load_robot
+from iiwa_dnn import Configuration, Shield, Shields, Sphere, export, load_robot
 
 DT = 1e-3
 LONGEST = 3e-3
@@ -81,6 +82,51 @@ def test_chunks_and_streams_have_the_bits_of_shields(package: Any) -> None:
         q = command.next_q
     assert {"NONE", "TIMED_OUT", "NOT_FINITE"} <= seen
     assert np.abs(q - START).max() > 0.05
+
+
+def test_a_preview_is_that_of_python_and_changes_nothing(tmp_path: Any) -> None:
+    about: dict[str, Any] = {"dt": 4e-3, "obstacles": [BALL]}
+    shield = Shield(SMOOTH, **about)
+    there = armstep.Shield(export.tables(shield, tmp_path / "arm.json", q0=START))
+    with pytest.raises(armstep.InputError, match="needs a step before"):
+        there.preview([0.1], [START])
+    for made in (shield, there):
+        made.step(START, np.zeros(7))
+    times = 0.01 + np.arange(20) / 30.0
+    way = (1.0 - np.cos(np.pi * np.arange(20) / 19.0))[:, np.newaxis]
+    beyond = np.where(np.arange(7) == 1, -1.0, 0.2)  # joint 2 beyond its range
+    for most, keep in ((0.02, "time"), (0.4, "time"), (0.4, "path"), (0.8 * beyond, "time")):
+        points = START + most * way
+        kept = there.save()
+        here = shield.preview(times, points, keep)
+        found = there.preview(times, points, keep)
+        np.testing.assert_array_equal(there.save(), kept)
+        np.testing.assert_allclose(found.off, here.off, atol=1e-9)
+        assert found.late == pytest.approx(here.late, abs=1e-9)
+        assert (found.sample, found.active_limits) == (here.sample, here.active_limits)
+    assert there.preview([-1.0], [START])[:2] == (0, ("samples stale",))
+
+
+def test_postures_of_poses(tmp_path: Any) -> None:
+    shield = Shield(SMOOTH, DT)
+    there = armstep.Shield(export.tables(shield, tmp_path / "arm.json", q0=START))
+    random = np.random.default_rng(0)
+    for _ in range(50):
+        q = random.uniform(0.8 * SMOOTH.q_lower, 0.8 * SMOOTH.q_upper)
+        own = Configuration(SMOOTH, q)
+        for found, expected in zip(
+            there.frame_at(q), (own.position, own.rotation, own.jacobian), strict=True
+        ):
+            np.testing.assert_allclose(found, expected, atol=1e-12)
+        begin = q + 0.1 * random.standard_normal(7)
+        posture = there.solve_pose(own.position, own.rotation, begin)
+        end = Configuration(SMOOTH, posture)
+        np.testing.assert_allclose(end.position, own.position, atol=1e-4)
+        np.testing.assert_allclose(end.rotation, own.rotation, atol=2e-4)
+        assert np.abs(posture - begin).max() < 1.0
+    assert there.solve_pose([2.0, 0.0, 0.0], np.eye(3), START) is None
+    turned = np.diag([1.0, -1.0, -1.0])  # half a turn
+    np.testing.assert_allclose(rotation_vector(turned), [np.pi, 0.0, 0.0])
 
 
 def test_samples_without_a_meaning_are_refused(package: Any) -> None:

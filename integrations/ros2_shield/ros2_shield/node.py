@@ -16,7 +16,7 @@ import armstep
 import numpy as np
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from geometry_msgs.msg import PoseArray, TwistStamped
+from geometry_msgs.msg import PoseArray, PoseStamped, TwistStamped
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
@@ -158,6 +158,7 @@ class ShieldNode(Node):
             self.create_subscription(message, topic, take, NEWEST)
         trajectories = (JointTrajectory, "~/joint_trajectory", self._on_trajectory, NEWEST)
         self.create_subscription(*trajectories)
+        self.create_subscription(PoseStamped, "~/pose_target_cmds", self._on_pose, NEWEST)
         # Best effort receives what is reliable, too; another's states do not displace the arm's.
         states = (JointState, "/joint_states", self._on_states, qos_profile_sensor_data)
         self.create_subscription(*states)
@@ -261,6 +262,33 @@ class ShieldNode(Node):
         own.problem = "" if rows else "no request"
         own.value = {"times": times, "positions": np.array(rows)}
         own.end = times[-1] if rows else -np.inf
+
+    def _on_pose(self, message: PoseStamped) -> None:
+        """Take a pose of the shield's frame as the next sample of a stream of joint positions."""
+        own = self._request
+        if self._take(own, self._pose, message):
+            own.value = {**own.value, "time": own.time, "lead": 1}
+
+    def _pose(self, message: PoseStamped) -> dict[str, Any]:
+        frame = message.header.frame_id
+        if frame not in ("", self._set["base_frame"]):
+            raise RefusedError(f"in frame {frame!r}, not {self._set['base_frame']!r}")
+        command = self._drive.command
+        if command is None or not self._drive.has_begun:
+            raise RefusedError("of a pose before the arm begins")
+        place, turn = message.pose.position, message.pose.orientation
+        x, y, z, w = quaternion = np.array([turn.x, turn.y, turn.z, turn.w])
+        if not abs(np.linalg.norm(quaternion) - 1.0) <= 0.01:
+            raise RefusedError("with an orientation whose norm is not 1")
+        s = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        rotation = np.eye(3) + 2.0 / (quaternion @ quaternion) * (w * s + s @ s)
+        # From the last sample on, as other postures have the pose, too.
+        goes_on = "time" in self._request.value and not self._request.problem
+        begin = self._request.value["position"] if goes_on else command.next_q
+        q = self._drive.shield.solve_pose([place.x, place.y, place.z], rotation, begin)
+        if q is None:
+            raise RefusedError("of a pose out of reach")
+        return {"position": q}
 
     def _tolerance(self, name: str) -> float:
         """Return a tolerance as of a JointTrajectoryController; 0: there is none.

@@ -17,7 +17,7 @@ import numpy as np
 import rclpy
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import Point, Pose, PoseArray, TwistStamped
+from geometry_msgs.msg import Point, Pose, PoseArray, PoseStamped, TwistStamped
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
@@ -42,6 +42,7 @@ HOME = np.array([2.2, 0.3, 0.6])  # of a person [m]
 NEAR = np.array([0.45, 0.15, 0.6])  # where the person goes [m]
 WALK = 1.6  # [m/s]
 TRAJECTORIES = "/shield/joint_trajectory"
+POSES = "/shield/pose_target_cmds"
 
 
 def stamp(ns):
@@ -70,6 +71,8 @@ class Arm(Node):
         topics = TOPICS | {PoseArray: f"/shield/{'bodies' if mode == 'bodies' else 'people'}"}
         self.publishers_of = {kind: self.create_publisher(kind, topics[kind], 1) for kind in topics}
         self.trajectories = self.create_publisher(JointTrajectory, TRAJECTORIES, 1)
+        self.poses = self.create_publisher(PoseStamped, POSES, 1)
+        self.shield = None  # of the same tables, for its kinematics
         names = ("halt", "reset")  # found long before they are called: the arm would time out
         self.services_of = {each: self.create_client(Trigger, f"/shield/{each}") for each in names}
         self.create_subscription(DiagnosticArray, "/diagnostics", self.on_state, 10)
@@ -368,6 +371,44 @@ def check_trajectory(arm):
     arm.start(arm.velocity(0.2))
 
 
+def check_poses(arm):
+    """Check that poses at 30 Hz are followed a sample late, and one out of reach is refused."""
+    arm.ask(arm.velocity(0.0), 200, arm.rests)
+    arm.ask(arm.velocity(0.0), 50)
+    place, rotation, _ = arm.shield.frame_at(arm.path[-1])
+    w = 0.5 * np.sqrt(max(1.0 + np.trace(rotation), 1e-9))
+    x, y, z = (rotation - rotation.T)[[2, 0, 1], [1, 2, 0]] / (4.0 * w)
+    begun = arm.t
+    sent = 0.0
+
+    def goal(t):
+        return place + np.array([0.0, 0.0, 0.03 * np.sin(2.0 * max(t, 0.0)) ** 2])
+
+    off = []
+    while arm.t < begun + 3.0:
+        if arm.t - begun >= sent:
+            message = PoseStamped()
+            message.header.stamp = stamp(arm.now())
+            here = message.pose.position
+            here.x, here.y, here.z = goal(arm.t - begun).tolist()
+            turn = message.pose.orientation
+            turn.x, turn.y, turn.z, turn.w = map(float, (x, y, z, w))
+            arm.poses.publish(message)
+            sent += 1.0 / 30.0
+        arm.turn()
+        tip = arm.shield.frame_at(arm.path[-1])[0]
+        off.append(np.linalg.norm(tip - goal(arm.t - begun - 1.0 / 30.0 - 2.0 * arm.dt)))
+    print(f"poses: {1e3 * np.median(off):.2f} mm off, at most {1e3 * max(off):.2f}", flush=True)
+    assert np.median(off) < 2e-3
+    assert max(off) < 6e-3
+    message.pose.position.x = 3.0
+    message.header.stamp = stamp(arm.now() + 1)
+    arm.poses.publish(message)
+    assert arm.wait(lambda: arm.said[-1] == "request of a pose out of reach")
+    arm.ask(None, 200, arm.rests)
+    arm.start(arm.velocity(0.2))
+
+
 def check_held(arm):
     """Check that a halted arm waits for a reset, and one that does not follow its commands.
 
@@ -422,6 +463,7 @@ if __name__ == "__main__":
     name, file, seconds, mode = sys.argv[1:]
     rclpy.init()
     arm = Arm(armstep.load_tables(name), mode)
+    arm.shield = armstep.Shield(name)
     if mode == "moving":
         begin_in_motion(arm)
     else:
@@ -436,6 +478,7 @@ if __name__ == "__main__":
         check_reasons(arm)
         if mode == "simulated":
             check_trajectory(arm)
+            check_poses(arm)
         check_held(arm)
     np.savez(file, start=arm.path[0], log=arm.log, places=places)
     if mode == "simulated":

@@ -249,6 +249,12 @@ ARMSTEP_API double armstep_time(const struct armstep *arm, const double *memory)
  * period; NULL: nothing is followed; */
 ARMSTEP_API const double *armstep_followed(const struct armstep *arm, const double *memory, double *late);
 
+/* the axes and the position (12) of the frame of a shield's twists at joint positions q (joints), and
+ * its Jacobian, linear over angular (6, joints); */
+ARMSTEP_API enum armstep_status armstep_frame(
+    const struct armstep *arm, double *scratch, const double *q, double *placement, double *jacobian
+);
+
 /* the least separation of an arm's links from people, less the one to keep, INFINITY without; */
 ARMSTEP_API double armstep_separation(const struct armstep *arm, const double *memory, double *scratch);
 

@@ -538,12 +538,31 @@ const double *armstep_followed(const struct armstep *arm, const double *memory, 
     if (state.following.size0 == 0) {
         return NULL;
     }
-    const control_following_FollowState own = @follow_of@plan_of(arm), &state);
+    const control_samples_FollowState own = @follow_of@plan_of(arm), &state);
     if (own.at->count == 0.0) {
         return NULL;
     }
     *late = own.at->late;
     return own.reference.data;
+}
+
+enum armstep_status armstep_frame(
+    const struct armstep *arm, double *scratch, const double *q, double *placement, double *jacobian
+)
+{
+    struct arena own_arena = arena_of(arm, scratch);
+    struct arena *const arena = &own_arena;
+    const Vector joints = view(q, arm->tables->joints);
+    (void)arena;
+    if (!is_shield(arm)) {
+        return ARMSTEP_WRONG_KIND;
+    }
+    if (!@all_finite@joints, 0, joints.size0)) {
+        return ARMSTEP_NOT_FINITE;
+    }
+    const Matrix rows = {jacobian, 6, joints.size0};
+    @frame_at@plan_of(arm), joints, view(placement, 12), rows);
+    return ARMSTEP_OK;
 }
 
 double armstep_separation(const struct armstep *arm, const double *memory, double *scratch)

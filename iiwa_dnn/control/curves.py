@@ -1,0 +1,182 @@
+"""Curves through samples, piecewise cubic: of a chunk a spline, of a stream where samples lead."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.control.samples import FollowState
+
+PIECES = 3
+"""Cubic pieces of the curve of a stream: as many as reach given positions, velocities and
+accelerations at both ends."""
+
+
+class Knot(IntEnum):
+    """Samples of a curve: the first one, and the inner and outer ends of that of a stream."""
+
+    FIRST = 0
+    SECOND = 1
+    THIRD = 2
+    LAST = 3
+
+
+class Curve(NamedTuple):
+    """Cubic piece of a joint's reference: p + u (v + u (c + u d)) at the time u from its begin.
+
+    Attributes:
+        p: Position at its begin [rad].
+        v: Velocity there [rad/s].
+        c: Half the acceleration there [rad/s^2].
+        d: A sixth of the jerk [rad/s^3].
+    """
+
+    p: float
+    v: float
+    c: float
+    d: float
+
+
+@compiled
+def piece_at(own: FollowState, t: float) -> int:
+    """Return the number of the piece at the time t [s] of a curve of two samples or more."""
+    k = 0
+    while k < own.count - 2 and own.times[k + 1] <= t:
+        k += 1
+    return k
+
+
+@compiled
+def curve_of(own: FollowState, i: int, k: int) -> Curve:
+    """Return piece k of the reference of joint i."""
+    n = own.goal.size
+    h = own.times[k + 1] - own.times[k]
+    at = k * n + i
+    v = own.slopes[at]
+    end = own.slopes[at + n]
+    mean = (own.positions[at + n] - own.positions[at]) / h
+    return Curve(
+        own.positions[at], v, (3.0 * mean - 2.0 * v - end) / h, (v + end - 2.0 * mean) / (h * h)
+    )
+
+
+@compiled
+def position_at(own: FollowState, i: int, t: float) -> float:
+    """Compute the position of joint i's reference at the time t [s].
+
+    Before the first sample it goes on with the velocity there, after the last one it rests.
+    """
+    last = own.count - 1
+    n = own.goal.size
+    if t >= own.times[last]:
+        resting: float = own.positions[last * n + i]
+        return resting
+    if t <= own.times[Knot.FIRST]:
+        first: float = own.positions[i] + (t - own.times[Knot.FIRST]) * own.slopes[i]
+        return first
+    k = piece_at(own, t)
+    u = t - own.times[k]
+    curve = curve_of(own, i, k)
+    between: float = curve.p + u * (curve.v + u * (curve.c + u * curve.d))
+    return between
+
+
+@compiled
+def solve_slopes(own: FollowState, i: int) -> None:
+    """Compute the velocities at joint i's samples with which the acceleration is continuous.
+
+    At both ends they are those of the polynomial through up to four samples.
+    """
+    n = own.goal.size
+    last = own.count - 1
+    own.slopes[i] = _end_slope(own, i, 0, 1)
+    own.slopes[last * n + i] = _end_slope(own, i, last, -1)
+    ratio = np.zeros(own.times.size)
+    for k in range(1, last):
+        h = own.times[k] - own.times[k - 1]
+        after = own.times[k + 1] - own.times[k]
+        at = k * n + i
+        known = 3.0 * (own.positions[at] - own.positions[at - n]) / (h * h)
+        known += 3.0 * (own.positions[at + n] - own.positions[at]) / (after * after)
+        pivot = 2.0 / h + 2.0 / after - ratio[k - 1] / h
+        ratio[k] = 1.0 / (after * pivot)
+        own.slopes[at] = (known - own.slopes[at - n] / h) / pivot
+    for back in range(1, last):
+        at = (last - back) * n + i
+        own.slopes[at] -= ratio[last - back] * own.slopes[at + n]
+
+
+@compiled
+def _end_slope(own: FollowState, i: int, first: int, step: int) -> float:
+    """Compute the velocity at an end of a chunk [rad/s] from up to four samples (Newton's form)."""
+    n = own.goal.size
+    count = min(own.count, 4)
+    table = np.empty(4)
+    for k in range(count):
+        table[k] = own.positions[(first + step * k) * n + i]
+    slope = 0.0
+    product = 1.0
+    for order in range(1, count):
+        for k in range(count - order):
+            h = own.times[first + step * (k + order)] - own.times[first + step * k]
+            table[k] = (table[k + 1] - table[k]) / h
+        slope += table[Knot.FIRST] * product
+        product *= own.times[first] - own.times[first + step * order]
+    return slope
+
+
+@compiled
+def move(own: FollowState, i: int, by: float) -> None:
+    """Move the reference of joint i by a displacement [rad]."""
+    for k in range(own.count):
+        own.positions[k * own.goal.size + i] += by
+
+
+@compiled
+def bend(own: FollowState, i: int, end: float, w: float, a: float, span: float) -> None:
+    """Bend the reference of joint i from where it is to an end, by three cubic pieces.
+
+    Position, velocity and acceleration are continuous.
+
+    Args:
+        own: The state; the samples of joint i are overwritten, their times are not.
+        i: Number of the joint.
+        end: Position at the end [rad].
+        w: Velocity there [rad/s].
+        a: Acceleration there [rad/s^2].
+        span: Time from now to the end [s].
+    """
+    n = own.goal.size
+    h = span / PIECES
+    u = 0.0
+    now = Curve(position_at(own, i, own.clock), 0.0, 0.0, 0.0)
+    if own.count > 1 and own.clock < own.times[own.count - 1]:
+        k = piece_at(own, own.clock)
+        u = own.clock - own.times[k]
+        now = curve_of(own, i, k)
+    p = now.p + u * (now.v + u * (now.c + u * now.d))
+    v = now.v + u * (2.0 * now.c + 3.0 * u * now.d)
+    first = 2.0 * now.c + 6.0 * u * now.d
+    # The accelerations at both inner ends of pieces, from velocity and position at the end.
+    both = (w - v) / h - 0.5 * (first + a)
+    second = (end - p - span * v) / (h * h) - (8.0 * first + a) / 6.0 - both
+    third = both - second
+    own.positions[i] = p
+    own.slopes[i] = v
+    own.positions[n + i] = p + h * (v + h * (2.0 * first + second) / 6.0)
+    own.slopes[n + i] = v + 0.5 * h * (first + second)
+    own.positions[Knot.THIRD * n + i] = end - h * (w - h * (2.0 * a + third) / 6.0)
+    own.slopes[Knot.THIRD * n + i] = w - 0.5 * h * (a + third)
+    own.positions[Knot.LAST * n + i] = end
+    own.slopes[Knot.LAST * n + i] = w
+
+
+@compiled
+def lay_out(own: FollowState, span: float) -> None:
+    """Lay the pieces of a stream out from now on, over a time [s]."""
+    own.count = PIECES + 1
+    for k in range(PIECES + 1):
+        own.times[k] = own.clock + k * span / PIECES
