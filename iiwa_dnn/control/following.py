@@ -6,7 +6,7 @@ lead. Between r and a command are a virtual joint and an offset from it; each ta
 a joint comes to rest at a position (`reaching`):
 
 - A *virtual joint* follows r within :math:`1 - \varphi` of the limits. Where it cannot, it aims at
-  the position at which r could come to rest, or catches up at `CATCH_UP`, whichever is quicker.
+  the position at which r could come to rest, and is no slower than r where it is late.
 - The *offset* of the arm from the virtual joint comes to rest at 0 within :math:`\varphi` of the
   limits, :math:`\varphi` being `SHARE`.
 
@@ -17,7 +17,6 @@ a position limit or a distance changes a command, the virtual joint begins anew 
 
 from __future__ import annotations
 
-import math
 from enum import IntEnum
 
 import numpy as np
@@ -30,7 +29,7 @@ from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import copied
 from iiwa_dnn.schemes.periods import Periods
-from iiwa_dnn.schemes.profiles import Rates
+from iiwa_dnn.schemes.profiles import Rates, usable_jerk
 from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.viability import reaching, rest_ahead
 
@@ -42,12 +41,6 @@ SILENCE = 1.5
 
 OTHER = 1e-9
 """Difference of a command from the request above which the virtual joint begins anew [rad/s]."""
-
-CATCH_UP = 0.15
-"""Rate at which a late joint catches up, times the time in which it changes its acceleration."""
-
-PULL = 0.6
-"""Twice the share of the acceleration limit with which it does."""
 
 ROUNDING = 1e-9
 """Relative excess over a limit that counts as rounding."""
@@ -180,16 +173,14 @@ def _virtual_velocity(
     v = min(max(w, -fastest), fastest)
     ahead = rest_ahead(v, v - min(max(v - before, -change), change), rates, periods)
     v = reaching(last, own.speed_before[i], left + ahead, fastest, rates, periods)
-    if not steady or rates.jerk == np.inf:
+    if not steady or rates.jerk == np.inf or rates.jerk <= usable_jerk(rates, periods.longest):
         return v
-    # That law counts on less jerk than there is; with it alone a late joint never catches up with a
-    # reference that is nearly as quick as the limits.
-    gain = CATCH_UP / (rates.acceleration / rates.jerk + dt)
-    most = math.sqrt(PULL * rates.acceleration * abs(left))
-    quicker = min(max(w + math.copysign(min(gain * abs(left), most), left), -fastest), fastest)
-    quicker = max(quicker, max(last - change, middle - bend))
+    # Where periods are long, that law counts on less jerk than there is: with it alone a late joint
+    # would be slower than a reference that is nearly as quick as the limits, and never catch up.
+    quicker = max(min(max(w, -fastest), fastest), max(last - change, middle - bend))
     quicker = min(quicker, min(last + change, middle + bend))
-    return max(v, quicker) if left > 0.0 else min(v, quicker)
+    found: float = max(v, quicker) if left > 0.0 else min(v, quicker)
+    return found
 
 
 @compiled

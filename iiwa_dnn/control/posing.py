@@ -324,7 +324,7 @@ def _descend(
     goal: Matrix,
     tol: float,
     start: Vector,
-    weight: float,
+    weight: float | Vector,
 ) -> _Point:
     """Iterate from a start (n,) [rad] until the goal (1, 18) is reached or the error stalls."""
     damping = _DAMPING

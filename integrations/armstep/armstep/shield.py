@@ -35,7 +35,7 @@ NEAR = 1e-4
 """Time before the last sample at which its clock, which comes to rest there, is there [s]."""
 
 REACHED = 1e-4
-"""Distance [m] and angle [rad] from a pose up to which it counts as reached."""
+"""Norm of the error of a pose [m], [rad] up to which it counts as reached."""
 
 SEARCH = 50
 """Largest number of steps of a search for a posture."""
@@ -149,8 +149,7 @@ class Preview(NamedTuple):
         sample: Number of the first sample that is missed by more than `MISSED`; None: none is.
         active_limits: What kept the arm off until then; none: the samples are too quick.
         late: Largest time by which a sample is reached after its own [s].
-        off: Largest distance of a joint from each sample when it is due by the clock, which may be
-            late [rad], (m,). It is NaN for samples in the past.
+        off: Largest distance of a joint from each sample when it is due by the clock [rad], (m,).
     """
 
     sample: int | None
@@ -161,12 +160,10 @@ class Preview(NamedTuple):
 
 def rotation_vector(rotation: Array) -> Array:
     """Return the rotation vector (3,) [rad] of a rotation (3, 3)."""
-    w = np.array([rotation[2, 1], rotation[0, 2], rotation[1, 0]])
-    w -= [rotation[1, 2], rotation[2, 0], rotation[0, 1]]
-    sine, cosine = float(np.linalg.norm(w)), float(np.trace(rotation)) - 1.0
-    angle = np.arctan2(sine, cosine)
+    twice = (rotation - rotation.T)[[2, 0, 1], [1, 2, 0]]
+    sine, cosine = float(np.linalg.norm(twice)), float(np.trace(rotation)) - 1.0
     if sine > 1e-9 or cosine > 0.0:
-        return w * (angle / sine if sine > 1e-12 else 0.5)
+        return twice * (np.arctan2(sine, cosine) / sine if sine > 0.0 else 0.5)
     column = (rotation + np.eye(3))[:, int(np.diag(rotation).argmax())]  # half a turn
     return column * (np.pi / np.linalg.norm(column))
 
@@ -353,6 +350,7 @@ class Shield(_Shields[ShieldCommand]):
         """
         if self.tables.delay or self.time == 0.0:
             raise InputError("preview: needs a step before, and a shield without a delay")
+        waits = self._last().followed is not None
         other = copy.copy(self)
         other.follow(times, positions, keep)
         t, goals = np.asarray(times, np.float64), np.asarray(positions, np.float64)
@@ -369,7 +367,7 @@ class Shield(_Shields[ShieldCommand]):
                 words.update(dict.fromkeys(command.active_limits))
             if is_lost:
                 break
-            if now >= t[0]:
+            if now >= t[0] or not waits:
                 begin = now if begin == -np.inf else begin
                 end = min(now + self.dt, t[-1]) - command.late
                 end = end if end <= t[-1] - NEAR else t[-1]
@@ -386,11 +384,7 @@ class Shield(_Shields[ShieldCommand]):
         return Preview(sample, tuple(words), late, off)
 
     def frame_at(self, q: ArrayLike) -> tuple[Array, Array, Array]:
-        """Return position (3,) [m], rotation (3, 3) and Jacobian (6, n) of the frame of twists.
-
-        Args:
-            q: Joint positions [rad], (n,).
-        """
+        """Return position (3,) [m], rotation and Jacobian (6, n) of the frame of twists at q."""
         joints = pointed("q", q, self._shape, FARTHEST)
         placement = np.empty(12)
         jacobian = np.empty((TWIST, joints.size))
@@ -402,8 +396,7 @@ class Shield(_Shields[ShieldCommand]):
     def solve_pose(self, position: ArrayLike, rotation: ArrayLike, q0: ArrayLike) -> Array | None:
         """Find joint positions (n,) [rad] at which the frame of twists has a pose; None: none.
 
-        Levenberg and Marquardt's method, from q0 on, within the position limits; distances do not
-        count.
+        Levenberg and Marquardt's method, within the position limits; distances do not count.
 
         Args:
             position: Position [m], (3,).
@@ -418,12 +411,10 @@ class Shield(_Shields[ShieldCommand]):
             place, turned, jacobian = self.frame_at(q)
             error = np.concatenate([goal - place, rotation_vector(axes @ turned.T)])
             size = float(error @ error)
-            if max(np.linalg.norm(error[:3]), np.linalg.norm(error[3:])) < REACHED:
+            if size < REACHED * REACHED:
                 return q
-            free = ((q > lower) | (jacobian.T @ error > 0.0)) & (
-                (q < upper) | (jacobian.T @ error < 0.0)
-            )
-            own = jacobian * free
+            pull = jacobian.T @ error
+            own = jacobian * (((q > lower) | (pull > 0.0)) & ((q < upper) | (pull < 0.0)))
             step = own.T @ np.linalg.solve(own @ own.T + DAMPING * size * np.eye(TWIST), error)
             q = np.clip(q + step * min(1.0, TURN / max(np.abs(step).max(), TURN)), lower, upper)
         return None

@@ -402,10 +402,12 @@ def check_poses(arm):
     assert np.median(off) < 2e-3
     assert max(off) < 6e-3
     message.pose.position.x = 3.0
-    message.header.stamp = stamp(arm.now() + 1)
+    message.header.stamp = stamp(arm.now())
     arm.poses.publish(message)
-    assert arm.wait(lambda: arm.said[-1] == "request of a pose out of reach")
+    arm.ask(None, 200, lambda: arm.said[-1] == "request of a pose out of reach")
+    assert arm.said[-1] == "request of a pose out of reach"
     arm.ask(None, 200, arm.rests)
+    assert arm.rests()
     arm.start(arm.velocity(0.2))
 
 
