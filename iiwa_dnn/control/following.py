@@ -28,9 +28,9 @@ from iiwa_dnn.control.samples import FollowState, Mode
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import copied
+from iiwa_dnn.schemes.joint_limits import MotionConstants
 from iiwa_dnn.schemes.periods import Periods
 from iiwa_dnn.schemes.profiles import Rates, usable_jerk
-from iiwa_dnn.schemes.rate_limits import MotionConstants
 from iiwa_dnn.schemes.viability import reaching, rest_ahead
 
 FADE = 1.0
