@@ -217,9 +217,9 @@ def collision_model(robot: Robot) -> CollisionModel:
 def link_model(robot: Robot) -> CollisionModel:
     """Read the collision geometry of a robot's links; if it has no file, make it from the URDF.
 
-    It is made in spite of a file if a position limit is beyond the URDF's, within which pairs of
-    the file never meet. No file is written. If making takes longer than `LONG`, a warning says how
-    to keep the result. It is made once for all robots that differ in tools and rates alone.
+    If a position limit is beyond the URDF's, within which pairs of a file never meet, the file has
+    the bodies alone. No file is written. If making takes longer than `LONG`, a warning says how to
+    keep the result. It is made once for all robots that differ in tools and rates alone.
 
     Raises:
         InvalidInputError: The robot does not come from a file.
@@ -228,17 +228,19 @@ def link_model(robot: Robot) -> CollisionModel:
     file = collision_file(robot)
     least, most = model_limits(robot.model)[:2]
     is_within = bool((robot.q_lower >= least).all() and (robot.q_upper <= most).all())
-    if file.exists() and is_within:
-        return CollisionModel.load(file)
+    kept = CollisionModel.load(file) if file.exists() else None
+    if kept and is_within:
+        return kept
     flange = robot.tools[0].flange if robot.tools else robot.tip
     ranges = robot.limits[:2].tobytes()
     arm = (robot.path, robot.urdf, robot.locked, robot.q_locked, ranges, flange)
     if arm not in _made:
         began = process_time()
-        _made[arm] = make_collision_model(replace(robot, tip=flange, tools=()))
+        bodies = kept.bodies if kept else ()
+        _made[arm] = make_collision_model(replace(robot, tip=flange, tools=()), bodies=bodies)
         if (taken := process_time() - began) > LONG:
             remedy = f"`iiwa-dnn collisions` keeps them beside {robot.path}"
-            if file.exists():
+            if kept:
                 remedy = f"position limits are beyond the URDF's, for which {file} is"
             warn_caller(f"capsules and pairs of {robot.name} took {taken:.1f} s; {remedy}")
     return _made[arm]
@@ -275,7 +277,10 @@ def read_srdf(path: str | os.PathLike[str]) -> dict[frozenset[str], str]:
 
 
 def make_collision_model(
-    robot: Robot, samples: int = SAMPLES, srdf: str | os.PathLike[str] | None = None
+    robot: Robot,
+    samples: int = SAMPLES,
+    srdf: str | os.PathLike[str] | None = None,
+    bodies: Sequence[LinkBody] = (),
 ) -> CollisionModel:
     """Fit bodies to the shapes of a robot's URDF, and search for the pairs that may meet.
 
@@ -285,6 +290,7 @@ def make_collision_model(
         robot: The robot.
         samples: Number of random postures.
         srdf: SRDF file whose disabled pairs are not watched; None: the one beside the URDF, if any.
+        bodies: Bodies in place of fitted ones.
 
     Raises:
         InvalidInputError: The robot does not come from a file.
@@ -292,7 +298,9 @@ def make_collision_model(
     """
     beside = source_of(robot)[0].with_suffix(".srdf")
     file = srdf or (beside if beside.exists() else None)
-    parts = _fitted(robot, read_shapes(robot, pin.GeometryType.COLLISION).geometryObjects)
+    parts = [*map(_part, bodies)]
+    if not parts:
+        parts = _fitted(robot, read_shapes(robot, pin.GeometryType.COLLISION).geometryObjects)
     left_out, pairs = _candidates(robot, parts)
     meetings = Meetings(robot, parts, pairs, samples)
     watched, other = meetings.sort(read_srdf(file) if file else {})
@@ -339,6 +347,12 @@ def _fitted(robot: Robot, shapes: Iterable[pin.GeometryObject]) -> list[Part]:
         of_links.setdefault(frame.name, []).append((shape.geometry, pose))
     parts = [(link, body) for link, own in of_links.items() for body in fit_bodies(own)]
     return sorted(parts, key=lambda part: not part[1].radius)
+
+
+def _part(own: LinkBody) -> Part:
+    """Return the part of a body, which itself stands for the hull of the shape."""
+    radius = own.shape.radius if isinstance(own.shape, Capsule) else 0.0
+    return own.link, Body(own.shape.box, radius, own.shape.box.center[np.newaxis])
 
 
 def _body(link: str, body: Body) -> LinkBody:

@@ -34,12 +34,12 @@ _P = numba.types.CPointer(_D)
 
 
 @numba.cfunc(
-    numba.void(_D, _D, *3 * (_P, _I), *5 * (_P, _I, _I), *5 * (_P, _I), _P, _I, _I, *3 * (_P, _I))
+    numba.void(_D, _D, *3 * (_P, _I), *5 * (_P, _I, _I), *7 * (_P, _I), _P, _I, _I, *3 * (_P, _I))
 )
 def _flat(
     t, rate, q, n, last, n1, before, n2, jacobian, n3, six, placements, frames, twelve,
     support, m1, m2, inertia, i1, i2, targets, k, eighteen, least, pairs,
-    lower_kind, n4, upper_kind, n5, row_pair, m3, constants, count,
+    lower_kind, n4, upper_kind, n5, row_pair, m3, velocity, n6, acceleration, n7, constants, count,
     G, rows, width, h, h1, lb, l1, ub, u1,
 ):  # fmt: skip
     G[0] = 1.0

@@ -48,7 +48,7 @@ STEPS = 2000
 """Steps until what a controller is there for has come and gone."""
 
 
-@pytest.mark.filterwarnings("ignore:Sphere 1 and .* apart at the start")
+@pytest.mark.filterwarnings("ignore:.* apart at the start")
 @pytest.mark.parametrize("name", SETTINGS)
 def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) -> None:
     """Pinocchio's own kinematics have other last digits: tests/robot/test_kinematics_kernel.py.
@@ -274,8 +274,8 @@ CORTEX = ("-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard", "-mthumb")
 @pytest.mark.parametrize(
     ("prefix", "flags", "most"),
     [
-        ("", ("-fno-pie",), 130_000),
-        pytest.param("arm-none-eabi-", CORTEX, 83_000, marks=needs("arm-none-eabi-gcc")),
+        ("", ("-fno-pie",), 133_000),
+        pytest.param("arm-none-eabi-", CORTEX, 86_000, marks=needs("arm-none-eabi-gcc")),
     ],
 )
 def test_size_without_global_state(
