@@ -263,9 +263,9 @@ def test_pairs_of_links_are_searched_once_for_all_tools(tmp_path: Path, monkeypa
     path.write_text(IIWA.urdf or "")
     made: list[d.Robot] = []
 
-    def search(robot: d.Robot) -> Any:
+    def search(robot: d.Robot, **options: Any) -> Any:
         made.append(robot)
-        return make_collision_model(robot, samples=9)
+        return make_collision_model(robot, samples=9, **options)
 
     monkeypatch.setattr(collision, "make_collision_model", search)
     robot = d.load_robot(path, tip="iiwa7_flange", tool=DOWN, tool_shapes=PEN)
