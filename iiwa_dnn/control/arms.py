@@ -928,12 +928,7 @@ def _answer(
     state = network if is_twist or _tracks(plan) else np.zeros(network.size)
     is_valid = True
     if _tracks(plan):
-        refused = arm.reasons[Reason.PERIOD_REFUSED] + arm.reasons[Reason.Q_NOT_FINITE]
-        lag = motion.path_lag
-        is_valid = refused == 0.0 and _take_targets(plan, inputs, lag, timing.expected, log.targets)
-        motion.halts = arm.reason == Reason.HALTED or arm.is_misplaced or not is_valid
-        if not is_valid:
-            log.targets.reshape(log.targets.size)[:] = 0.0
+        is_valid = _aim(plan, arm, motion, inputs, timing.expected, log.targets)
     else:
         log.targets.reshape(log.targets.size)[:] = 0.0
         _take_request(plan, arm, arrays, timing, state)
@@ -957,39 +952,53 @@ def _answer(
         _brake_blindly(plan, arm, motion)
         return action
     copied(arm.motion, next_motion_state)
-    if _tracks(plan) and plan.separation >= 0 and action != NONE:
-        _note_separation(plan, arm, motion, arrays, timing, log)
-    arm.fraction = log.fraction
-    arm.program = log.kind
-    copied(arm.limiting, log.limiting)
-    if not is_valid:
-        return INVALID
     if _tracks(plan):
-        _note_targets(arm)
+        _note_targets(plan, arm, motion, arrays, timing, log, action)
     else:
         motion.yields = False  # the next step tries the request again
+        _keep_answer(arm, log)
         _note_request(plan, arm, arrays, log)
-    return action
+    return action if is_valid else INVALID
 
 
 @compiled
-def _take_targets(plan: ArmPlan, inputs: ArmInput, lag: float, dt: float, targets: Matrix) -> bool:
-    """Write the targets of a controller's step, (frames, 18); return if there are any, all finite.
+def _keep_answer(arm: ArmState, log: StepLog) -> None:
+    """Keep what a step has answered."""
+    arm.fraction = log.fraction
+    arm.program = log.kind
+    copied(arm.limiting, log.limiting)
+
+
+@compiled
+def _aim(
+    plan: ArmPlan, arm: ArmState, motion: MotionState, inputs: ArmInput, dt: float, targets: Matrix
+) -> bool:
+    """Write the targets of a controller's step; without valid inputs the arm brakes.
 
     Args:
         plan: Layout of the step.
+        arm: The arm.
+        motion: State of its motion; whether it halts is written.
         inputs: Inputs of the step.
-        lag: Time by which the clock of the paths is behind [s].
         dt: Period over which a velocity is the mean one, with feed-forward [s].
-        targets: The targets, overwritten.
+        targets: The targets, (frames, 18), overwritten.
+
+    Returns:
+        Whether all inputs have a meaning, and there are targets.
     """
     paths = plan.step.paths
-    if inputs.request.size > 0:
-        copied(targets.reshape(targets.size), inputs.request)
-    else:
-        sample_targets(paths, inputs.t - lag, dt, targets)
     flat = targets.reshape(targets.size)
-    return inputs.request.size + len(paths.table) > 0 and all_finite(flat, 0, flat.size)
+    refused = arm.reasons[Reason.PERIOD_REFUSED] + arm.reasons[Reason.Q_NOT_FINITE]
+    is_valid = refused == 0.0 and inputs.request.size + len(paths.table) > 0
+    if is_valid and inputs.request.size > 0:
+        copied(flat, inputs.request)
+    elif is_valid:
+        sample_targets(paths, inputs.t - motion.path_lag, dt, targets)
+    if not is_valid or not all_finite(flat, 0, flat.size):
+        is_valid = False
+        flat[:] = 0.0
+    motion.halts = arm.reason == Reason.HALTED or arm.is_misplaced or not is_valid
+    return is_valid
 
 
 @compiled
@@ -1226,8 +1235,19 @@ def _left(arm: ArmState, i: int) -> float:
 
 
 @compiled
-def _note_targets(arm: ArmState) -> None:
+def _note_targets(
+    plan: ArmPlan,
+    arm: ArmState,
+    motion: MotionState,
+    arrays: ProgramArrays,
+    timing: Periods,
+    log: StepLog,
+    action: int,
+) -> None:
     """Note whether a controller's command does less than its tasks ask, and if no limit is why."""
+    if plan.separation >= 0 and action != NONE:
+        _note_separation(plan, arm, motion, arrays, timing, log)
+    _keep_answer(arm, log)
     arm.is_clipped = arm.program != NOMINAL
     if arm.program == ProgramKind.RELAXED and largest_entry(arm.limiting) == 0.0:
         arm.reasons[Reason.SINGULAR] = 1.0

@@ -43,7 +43,6 @@ from iiwa_dnn.control.paths import (
 from iiwa_dnn.control.people import News, separation_in
 from iiwa_dnn.control.plan import Instant
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
-from iiwa_dnn.control.requests import Reason
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.control.stopping import periods_to_rest
 from iiwa_dnn.errors import InvalidInputError, warn_caller
@@ -64,9 +63,6 @@ _FLOAT = np.dtype(np.float64)
 
 NOTHING = np.zeros(0)
 """No targets, for those of the paths; no state, of a network in Python."""
-
-OF_BODIES = (Reason.FRAME_REFUSED, Reason.SEPARATION)
-"""Reasons that bodies of bounded speed give a controller's command."""
 
 ACTION_OF = {int(action): action for action in Action}
 """Actions by their codes: a table is quicker than `Action(code)`."""
@@ -358,9 +354,7 @@ class Controller:
         elapsed: float | None,
     ) -> Command:
         """Compute a command, and the memory after it."""
-        step = self._ready
-        if step is None:
-            step = self._prepare(q, t, target is None)
+        step = self._ready or self._prepare(q, t, target is None)
         program = step.program
         periods = step.timing
         clock = (t, 0.0, 0.0)
@@ -380,14 +374,18 @@ class Controller:
         network = self.solver.state_for(program.sizes) if step.has_network else NOTHING
         action = step_measured(arm.plan, arm.last, arm.spare, q, targets, clock, data, network)
         if action == INVALID:
-            checks.finite("t", t)
-            checks.joint_positions("q", q, self.robot.dof)
-            checks.finite_array("target", step.log_layout.targets(data), (-1, TARGET_SIZE))
-            problem = f"must be from {SHORTEST:g} to {LONGEST:g} s"
-            raise InvalidInputError("dt or elapsed", problem, (dt, elapsed))
+            self._refuse(q, clock, targets)
         arm.computed = arm.spare
-        words = arm.layout.reasons(arm.spare, OF_BODIES) if arm.plan.separation >= 0 else ()
+        words = arm.layout.reasons_of_bodies(arm.spare)
         return Command(data, step.log_layout, ACTION_OF[action], periods, words)
+
+    def _refuse(self, q: Vector, clock: Vector3, targets: Vector) -> None:
+        """Raise the error of a step that is refused, whose arguments are those of `_compute`."""
+        checks.finite("t", clock[0])
+        checks.joint_positions("q", q, self.robot.dof)
+        checks.finite_array("target", targets, (-1,))
+        problem = f"must be from {SHORTEST:g} to {LONGEST:g} s"
+        raise InvalidInputError("dt or elapsed", problem, clock[1:])
 
     def _ask(
         self,

@@ -38,6 +38,11 @@ from iiwa_dnn.schemes.scene import Body, scene_views
 from iiwa_dnn.schemes.separation import FreeBody, Separation
 from iiwa_dnn.schemes.torque import TorqueLimits
 
+ALL_REASONS = range(len(REASONS))
+
+OF_BODIES = (Reason.FRAME_REFUSED, Reason.SEPARATION)
+"""Reasons that bodies of bounded speed are."""
+
 
 class Margin(NamedTuple):
     """Distances of an arm from its limits, or of N arms, (N,).
@@ -91,15 +96,17 @@ class ArmLayout(NamedTuple):
         motion = motion_of(self.plan, arm)
         return (*self.reasons(memory), *words, *names.conditions(motion.q, motion.least))
 
-    def reasons(
-        self, memory: Vector, among: Container[int] = range(len(REASONS))
-    ) -> tuple[str, ...]:
+    def reasons(self, memory: Vector, among: Container[int] = ALL_REASONS) -> tuple[str, ...]:
         """Name each `Reason` of an arm's last step among some; a separation by link and body."""
         return tuple(
             self.separation_words(memory) if code == Reason.SEPARATION else REASONS[code]
             for code in map(int, np.flatnonzero(self.state(memory).reasons))
             if code in among
         )
+
+    def reasons_of_bodies(self, memory: Vector) -> tuple[str, ...]:
+        """Name the reasons of an arm's last step that bodies of bounded speed are."""
+        return self.reasons(memory, OF_BODIES) if self.plan.separation >= 0 else ()
 
     def separation_words(self, memory: Vector) -> str:
         """Name the link and the body that slow an arm's last command down, or the body's age."""

@@ -234,14 +234,9 @@ def solve_poses(
         InvalidInputError: The poses have another shape, or are no rotations.
         NotFoundError: The robot has no frame of that name.
     """
-    if isinstance(poses, Mapping):
-        if frame is not None or not poses:
-            raise InvalidInputError("frame", "is stated by poses of several frames", frame)
-        frames = sorted(poses, key=lambda name: name != robot.tip)  # the tip first, as of a program
-        found_goals = [_goals(times.size, poses[name]) for name in frames]
-    else:
-        frames = [frame or robot.tip]
-        found_goals = [_goals(times.size, poses)]
+    named = _by_frame(robot, poses, frame)
+    frames = sorted(named, key=lambda name: name != robot.tip)  # the tip first, as of a program
+    found_goals = [_goals(times.size, named[name]) for name in frames]
     goals = np.stack([each for each, _ in found_goals], axis=1)
     weight = np.array([own for _, own in found_goals])
     program = _program(robot, (), frames)
@@ -270,6 +265,15 @@ def solve_poses(
     places = np.array([*found], dtype=np.int64)
     positions = np.array([*found.values()]).reshape(-1, robot.dof)
     return PoseChunk(times[places], positions, places, left_out)
+
+
+def _by_frame(robot: Robot, poses: Poses, frame: str | None) -> Mapping[str, ArrayLike]:
+    """Return the poses of each frame by its name."""
+    if not isinstance(poses, Mapping):
+        return {frame or robot.tip: poses}
+    if frame is not None or not poses:
+        raise InvalidInputError("frame", "is stated by poses of several frames", frame)
+    return poses
 
 
 def _goals(count: int, poses: ArrayLike) -> tuple[Matrix, float]:

@@ -62,6 +62,12 @@ _PRIME = 0x100000001B3
 _BITS = (1 << 64) - 1
 
 
+def _seen(rule: Separation) -> tuple[int, dict[str, list[float]]]:
+    """Return the number of people of a frame, and the half-extents [m] of each named body."""
+    named = zip(rule.names, rule.bodies, strict=False)
+    return rule.people, {name: body.box.half_extents.tolist() for name, body in named}
+
+
 class Tables:
     """Tables of one arm.
 
@@ -98,12 +104,7 @@ class Tables:
             "distance": avoidance.distance,
             "obstacles": avoidance.settings()["obstacles"],
         }
-        rule = separation_in(source.limits) or Separation()
-        self.people = rule.people
-        self.bodies = {
-            name: body.box.half_extents.tolist()
-            for name, body in zip(rule.names, rule.bodies, strict=False)
-        }
+        self.people, self.bodies = _seen(separation_in(source.limits) or Separation())
         reasons = [*REASONS]
         if isinstance(made, Shield):
             self.kind = "shield"
@@ -125,7 +126,8 @@ class Tables:
         plan = layout.plan
         settings = plan.settings
         self.program = layout.step.program
-        self.obstacles = names_of(avoidance.obstacles) if avoidance and plan.sizes.obstacles else []
+        moved = avoidance.obstacles if avoidance and plan.sizes.obstacles else ()
+        self.obstacles = names_of(moved)
         bounds, rows = limit_words(self.program)
         self.limit_names = [*reasons, *bounds, *rows]
         self.first_row = len(reasons) + len(bounds)
