@@ -5,7 +5,6 @@ The suite does not collect this file: the wheel has 142 MB.
 
 import ctypes
 import re
-import time
 from importlib.metadata import files
 from pathlib import Path
 from typing import Any
@@ -14,9 +13,6 @@ import pytest
 
 from helpers_export import use_armstep
 from iiwa_dnn.export.cuda import cuda_code
-
-SECONDS = 60.0
-"""Time of the processor for one architecture; on a quiet machine it takes 15 s."""
 
 
 @pytest.fixture(scope="module")
@@ -51,9 +47,7 @@ def compiled(nvrtc: Any, source: str, architecture: str) -> dict[str, bytes]:
 
 
 def test_ptx_and_cubin_round_every_sum_and_product(nvrtc: Any) -> None:
-    began = time.process_time()
     made = compiled(nvrtc, cuda_code(), "sm_90")
-    assert time.process_time() - began < SECONDS
     assert made["CUBIN"].startswith(b"\x7fELF")
     text = made["PTX"].decode()
     found = re.split(r"^\.(?:func|visible \.entry) ", text, flags=re.MULTILINE)[1:]
