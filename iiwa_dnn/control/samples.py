@@ -34,7 +34,7 @@ OF_JOINT = 8
 
 
 class Mode(IntEnum):
-    """How samples are followed: a chunk at their times, or along their path, later; or as a stream.
+    """Ways to follow samples: a chunk at their times, or along their path, later; or a stream.
 
     A stream has a lead of `mode` - `STREAM` samples.
     """
