@@ -4,8 +4,8 @@
 
 clang and wasm-ld (on Debian: ``apt-get install clang lld``) compile the C that `iiwa_dnn.export`
 writes, and `page.c` or `shield_page.c` beside this file, to WebAssembly. A page needs nothing else:
-it holds the code, and what is needed to draw the arm. Both are kept in the repository, and
-`make docs` copies them.
+it holds the code, the scripts beside this file, and what is needed to draw the arm. Both are kept
+in the repository, and `make docs` copies them.
 """
 
 import base64
@@ -13,7 +13,8 @@ import json
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+import zlib
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,17 +22,27 @@ import numpy as np
 import pinocchio as pin
 
 import iiwa_dnn
+from iiwa_dnn.control.requests import Request
 from iiwa_dnn.files import write_text
 from iiwa_dnn.robot.collision import collision_model
 from iiwa_dnn.robot.shapes import visual_shapes
 
 HERE = Path(__file__).parent
-TABLE = "arm_numbers"
-"""Numbers of the C among which the ball's center lies; the page writes there as a hand moves it."""
-
-HEART = ("q", "dq", "target", "begin", "step", TABLE)
-SHIELD = ("q", "dq", "target", "begin", "step", "twist", "ball")
-SHIELD += ("count_limits", "limit_name", "stopping_time")
+HEART = ("q", "dq", "target", "begin", "step", "ball")
+SHIELD = (
+    "q",
+    "dq",
+    "target",
+    "begin",
+    "step",
+    "request",
+    "ball",
+    "seen",
+    "see",
+    "sample",
+    "follow",
+)
+SHIELD += ("count_limits", "limit_name", "stopping_time", "separation", "torque")
 """What a page reaches by its name."""
 
 FLAGS = ("--target=wasm32", "-std=c99", "-Os", "-nostdlib", "-nostdlibinc", "-fno-math-errno")
@@ -40,22 +51,39 @@ RADIUS = 0.08
 DISTANCE = 0.02
 """Center, radius and least distance of the ball [m]."""
 
+HAND: dict[str, Any] = {
+    "name": "hand",
+    "center": (-0.7, 0.3, 0.95),
+    "near": (0.45, 0.2, 0.55),
+    "radius": 0.06,
+    "distance": DISTANCE,
+    "speed": 1.6,
+    "every": 33,
+    "late": 50,
+    "latency": 0.084,
+}
+"""A hand: where it waits and where it goes to, radius and least distance [m], largest speed [m/s];
+periods between two frames of a camera and until one arrives, largest age of a frame [s]."""
+
+WEIGHTS = (0.0, 7.0, 14.0)
+WEIGHT_CENTER = (0.0, 0.0, 0.07)
+"""Masses [kg] and their center in the frame of the flange [m]."""
+
+IRON = 7870.0  # [kg/m^3]
 JERK = 500.0  # [rad/s^3]
 
 WORDS = {
     "heart": {
         "TITLE": "An arm within its limits, computed in this browser",
-        "HANDS": "Drag the red target or the blue ball.",
         "OTHER": 'If something else drives your arm: <a href="shield-live.html">a shield.</a>',
         "BUTTON": "Draw the heart",
-        "NOTE": "Out of reach the arm comes as near as it can.",
+        "SCRIPT": "heart.js",
     },
     "shield-live": {
-        "TITLE": "A shield: whatever is requested, the arm keeps its limits",
-        "HANDS": "Drag the red handle, which pulls at the tip of the arm, or the blue ball.",
+        "TITLE": "A shield: the arm keeps its limits, whatever is asked",
         "OTHER": 'The same with a target to reach: <a href="heart.html">a controller.</a>',
-        "BUTTON": "Let the handle roam",
-        "NOTE": "The handle requests a velocity of the tip, 6/s times its distance.",
+        "BUTTON": "Begin again",
+        "SCRIPT": "shield.js",
     },
 }
 """The pages by their files, and what they say."""
@@ -76,35 +104,62 @@ def heart_controller() -> tuple[iiwa_dnn.Controller, np.ndarray]:
     return iiwa_dnn.Controller(robot, scheme, heart, dt=1e-3), q0
 
 
-def pulled_shield() -> tuple[iiwa_dnn.Shield, np.ndarray]:
-    """Return the shield of the same arm beside the same ball, and where it begins, (7,) [rad]."""
-    controller, q0 = heart_controller()
-    ball = iiwa_dnn.Sphere(BALL, RADIUS)
-    return iiwa_dnn.Shield(controller.robot, 1e-3, obstacles=[ball], distance=DISTANCE), q0
+def shields() -> tuple[dict[str, iiwa_dnn.Shield], np.ndarray]:
+    """Return shields of the same arm by the names of their tables, and where it begins, (7,) [rad].
 
-
-def opened(code: str) -> str:
-    """Let the page write into the table of constants of exported C.
-
-    Raises:
-        ValueError: The C has no such table.
+    One is beside the same ball, one beside a person, and each of the others carries a weight.
     """
-    end = code.index(f"}} {TABLE} = {{")
-    start = code.rindex("static const struct {", 0, end)
-    return code[:start] + code[start:].removeprefix("static const ")
+    controller, q0 = heart_controller()
+    robot, dt = controller.robot, controller.dt
+    ball = iiwa_dnn.Sphere(BALL, RADIUS)
+    made = {
+        "beside_ball": iiwa_dnn.Shield(robot, dt, [ball], distance=DISTANCE),
+        "beside_person": iiwa_dnn.Shield(
+            robot,
+            dt,
+            [],
+            distance=DISTANCE,
+            people=1,
+            field=3.0,
+            people_speed=HAND["speed"],
+            latency=HAND["latency"],
+        ),
+    }
+    for mass in WEIGHTS:
+        carrying = iiwa_dnn.Shield(robot.with_payload(mass, WEIGHT_CENTER), dt, [])
+        carrying.limits += (iiwa_dnn.TorqueLimits(),)
+        made[f"carrying_{mass:g}"] = carrying
+    return made, q0
+
+
+def scenes(names: Sequence[str]) -> str:
+    """Write the header of several tables, for memory that is large enough for each."""
+    lines = [f'#include "{name}.h"' for name in names]
+    listed = ", ".join(f"&{name}" for name in names)
+    lines.append(f"static const struct armstep_tables *const scenes[] = {{{listed}}};")
+    for size in ("JOINTS", "MEMORY", "SCRATCH", "LIMITS"):
+        largest = "0"
+        for name in names:
+            own = f"{name.upper()}_{size}"
+            largest = f"({own} > {largest} ? {own} : {largest})"
+        lines.append(f"enum {{ SCENES_{size} = {largest} }};")
+    return "\n".join(lines) + "\n"
 
 
 def compiled(
-    exported: iiwa_dnn.Controller | iiwa_dnn.Shield, q0: np.ndarray, page: str, names: Sequence[str]
+    exported: Mapping[str, iiwa_dnn.Controller | iiwa_dnn.Shield],
+    q0: np.ndarray,
+    page: str,
+    names: Sequence[str],
 ) -> bytes:
-    """Export a controller or a shield and compile it with its page for a browser."""
+    """Export controllers or shields by name and compile them with their page for a browser."""
     with tempfile.TemporaryDirectory() as place:
-        folder = iiwa_dnn.export.c99(exported, place, q0, name="arm")
+        for name, each in exported.items():
+            folder = iiwa_dnn.export.c99(each, place, q0, name=name)
+        tables = [folder / f"{name}.c" for name in exported]
+        (folder / "scenes.h").write_text(scenes(list(exported)))
         result = folder / "page.wasm"
-        source = folder / "arm.c"
-        if TABLE in names:
-            source.write_text(opened(source.read_text()))
-        sources = (folder / "armstep.c", source, HERE / page, HERE / "memory.c")
+        sources = (folder / "armstep.c", *tables, HERE / page, HERE / "memory.c")
         linked = (
             "no-entry",
             "strip-all",
@@ -146,7 +201,7 @@ def drawn(controller: iiwa_dnn.Controller, q0: np.ndarray) -> dict[str, Any]:
         "jerk": robot.dddq_max.tolist(),
         "dt": controller.dt,
         "path": [path.at(t).position.round(5).tolist() for t in times],
-        "ball": {"center": BALL, "radius": RADIUS, "distance": DISTANCE},
+        "ball": {"name": "ball", "center": BALL, "radius": RADIUS, "distance": DISTANCE},
         "shapes": shapes(robot),
         "capsules": capsules(robot),
     }
@@ -178,20 +233,22 @@ def capsules(robot: iiwa_dnn.Robot) -> list[dict[str, Any]]:
     for link, each in collision_model(robot).capsules:
         frame = robot.model.frames[robot.frame_id(link)]
         ends = [frame.placement.act(np.array(end)).round(6).tolist() for end in (each.a, each.b)]
-        listed.append({"joint": frame.parentJoint, "ends": ends, "radius": each.radius})
+        listed.append(
+            {"joint": frame.parentJoint, "link": link, "ends": ends, "radius": each.radius}
+        )
     return listed
 
 
 def write_page(name: str, code: bytes, model: dict[str, Any]) -> None:
     """Write a page by its name, with its code and what it draws."""
+    scripts = ("arm.js", WORDS[name]["SCRIPT"], "drawing.js", "page.js")
     words = {
+        "SCRIPTS": "\n".join((HERE / script).read_text() for script in scripts),
         **WORDS[name],
-        "TABLE": TABLE,
         "NEAR": f"{1e3 * DISTANCE:g}",
         "SIZE": f"{len(code) / 1e3:.0f}",
-        "SHIELD": "true" if name == "shield-live" else "false",
         "MODEL": json.dumps(model),
-        "WASM": base64.b64encode(code).decode(),
+        "DEFLATED": base64.b64encode(zlib.compress(code, 9)).decode(),
     }
     text = (HERE / "page.in.html").read_text()
     for word, value in words.items():
@@ -205,9 +262,16 @@ def main() -> int:
     """Write both pages."""
     controller, q0 = heart_controller()
     model = drawn(controller, q0)
-    write_page("heart", compiled(controller, q0, "page.c", HEART), model)
-    code = compiled(pulled_shield()[0], q0, "shield_page.c", SHIELD)
-    write_page("shield-live", code, {**model, "path": []})
+    write_page("heart", compiled({"arm": controller}, q0, "page.c", HEART), model)
+    told = {
+        "path": [],
+        "hand": HAND,
+        "kinds": {kind.name: kind.value for kind in Request},
+        "weights": WEIGHTS,
+        "weight_center": WEIGHT_CENTER,
+        "weight_radius": round((0.75 / np.pi / IRON) ** (1 / 3), 5),  # of 1 kg
+    }
+    write_page("shield-live", compiled(shields()[0], q0, "shield_page.c", SHIELD), model | told)
     return 0
 
 

@@ -1,6 +1,4 @@
 /* An exported controller and an arm that follows every command, for the page to call. */
-#include <stddef.h>
-
 #include "arm.h"
 
 static struct armstep own;
@@ -10,12 +8,12 @@ static double scratch[ARM_SCRATCH];
 double q[ARM_JOINTS];                       /* joint positions [rad] */
 double dq[ARM_JOINTS];                      /* last command [rad/s] */
 double target[ARMSTEP_TARGET * ARM_FRAMES]; /* last target */
+double ball[3];                             /* center of the ball [m] */
 
 /* Begin at rest, at the joint positions that are in q. */
 void begin(void)
 {
-    if (own.tables == NULL)
-        armstep_load(&own, &arm); /* once: then the page may move the ball */
+    armstep_load(&own, &arm);
     armstep_begin(&own, memory, scratch);
 }
 
@@ -25,6 +23,7 @@ int step(double t, int along)
     if (along)
         armstep_targets(&own, memory, scratch, t, target);
     const struct armstep_input input = {q, ARMSTEP_REQUEST_NONE, target, t, 0.0, 0.0};
+    armstep_place(&own, memory, ball);
     const int action = armstep_step(&own, memory, scratch, &input, dq);
     for (int i = 0; i < ARM_JOINTS; i++)
         q[i] += arm.dt * dq[i];
