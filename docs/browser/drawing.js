@@ -156,8 +156,10 @@ function circle(p, radius, color, dashes = []) {
   pen.setLineDash([]);
 }
 function note(p, words) {
-  const [x, y] = shown(p);
+  const [x, y] = shown(Array.from(p));
   pen.font = `${13 * devicePixelRatio}px system-ui, sans-serif`;
   pen.fillStyle = "#e5383b";
-  pen.fillText(words, x + 8 * devicePixelRatio, y);
+  const side = x > over.width / 2 ? -1 : 1;  // within the picture
+  pen.textAlign = side > 0 ? "left" : "right";
+  pen.fillText(words, x + side * 30 * devicePixelRatio, y);
 }

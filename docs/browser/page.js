@@ -73,12 +73,14 @@ function draw() {
     cells[i][m].querySelector("b").style.width = `${Math.min(100, 100 * x)}%`;
   }));
   const said = scene.say();
-  if (body) said.push(`${body.name} ${(1e3 * near).toFixed(0)} mm away`);
+  if (body) said.push(`${body.name} ${near > 0 ? (1e3 * near).toFixed(0) + " mm away" : "touches the arm"}`);
   el("state").innerHTML = [...said, `a step of 1 ms takes ${cost.toFixed(0)} µs`].join("<br>");
 }
 
 function frame(now) {
-  const steps = last === null ? 0 : Math.min(60, Math.round((now - last) / 1000 / MODEL.dt));
+  // Where steps are too slow for real time, the motion is slower, not the pictures.
+  const most = Math.max(1, Math.min(60, Math.floor(25e3 / cost)));
+  const steps = last === null ? 0 : Math.min(most, Math.round((now - last) / 1000 / MODEL.dt));
   last = now;
   const started = performance.now();
   if (steps) run(steps);

@@ -108,7 +108,7 @@ const SCENES = {
       circle(there, (HAND.radius + HAND.distance + HAND.speed * (t - taken + wasm.stopping_time())) * scale(there), "#e5383b99", [6, 6]);
       if (person.free || Math.hypot(...minus(person.goal, Array.from(hand))) < 0.01) return;
       line([Array.from(hand), person.goal], "#e5383b", 1.5);
-      note(person.goal, `${HAND.speed} m/s at most`);
+      note(hand, `${HAND.speed} m/s at most`);
     },
     say: () => [...answer(), `${(1e3 * wasm.separation()).toFixed(0)} mm of separation to spare`],
   },
