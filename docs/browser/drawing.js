@@ -159,7 +159,6 @@ function note(p, words) {
   const [x, y] = shown(Array.from(p));
   pen.font = `${13 * devicePixelRatio}px system-ui, sans-serif`;
   pen.fillStyle = "#e5383b";
-  const side = x > over.width / 2 ? -1 : 1;  // within the picture
-  pen.textAlign = side > 0 ? "left" : "right";
-  pen.fillText(words, x + side * 30 * devicePixelRatio, y);
+  pen.textAlign = "center";
+  pen.fillText(words, x, y + 40 * devicePixelRatio);
 }
