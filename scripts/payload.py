@@ -1,6 +1,6 @@
 """An FR3 that may hold 0 to 2 kg: torques within the motors' at every step and until it rests.
 
-Hostile requests, with and without `TorqueLimits`. The torques are Pinocchio's inverse dynamics with
+Hostile requests, with the payload stated and not. The torques are Pinocchio's inverse dynamics with
 the payload in the hand, as fractions of the limits in the URDF.
 """
 
@@ -17,10 +17,8 @@ CENTER = np.array([0.0, 0.0, 0.15])  # in the frame of the flange [m]
 def run(steps, is_limited):
     """Return the largest torque of a run as a fraction of its limit, and the path (N, n) [rad]."""
     robot = iiwa_dnn.load_robot("fr3")
-    shield = iiwa_dnn.Shield(robot, DT)
-    if is_limited:
-        shield = iiwa_dnn.Shield(robot.with_payload((0.0, MASS), CENTER), DT)
-        shield.limits += (iiwa_dnn.TorqueLimits(),)
+    held = robot.with_payload((0.0, MASS), CENTER) if is_limited else robot
+    shield = iiwa_dnn.Shield(held, DT)  # with the torque limits of an arm that has a payload
     model = robot.model.copy()
     flange = model.frames[robot.tip_id]
     point = pin.Inertia(MASS, flange.placement.act(CENTER), np.zeros((3, 3)))
@@ -43,4 +41,4 @@ def run(steps, is_limited):
 if __name__ == "__main__":
     for is_limited in (False, True):
         largest, _ = run(6000, is_limited)
-        print(f"TorqueLimits {is_limited}: at most {largest:.3f} of the torque limits")
+        print(f"payload stated {is_limited}: at most {largest:.3f} of the torque limits")

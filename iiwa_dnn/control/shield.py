@@ -80,6 +80,7 @@ from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.periods import SLACK, Periods, checked_longest
 from iiwa_dnn.schemes.separation import PEOPLE_SPEED, Separation
 from iiwa_dnn.schemes.step import TARGET_SIZE
+from iiwa_dnn.schemes.torque import own_torque_limits
 
 DISTANCE = 0.02
 """Least distance from obstacles where none is stated [m]."""
@@ -280,7 +281,8 @@ class Shield:
 
         Args:
             robot: The robot, with limits on position and velocity; those on acceleration and jerk
-                hold where it has them.
+                hold where it has them, and `TorqueLimits` if it has a payload and its torques are
+                its maker's.
             dt: Control period [s].
             obstacles: Obstacles that the links keep away from, as they do from each other; or a
                 `CollisionAvoidance`; None: no distance is watched.
@@ -342,6 +344,8 @@ class Shield:
             limits.append(CollisionAvoidance(others, distance=distance))
         told = (people, people_speed, field, latency, contact_speed)
         limits += _separation(tuple(free), told, distance, settings)
+        if longest_period is None:  # which torques need
+            limits += own_torque_limits(robot)
         self._limits = tuple(limits)
         self._begin()
         self.reset()

@@ -282,7 +282,7 @@ class Robot:
             InvalidInputError: It is negative, no number or of a wrong length, or none is known.
         """
         if armature is None:
-            armature = self._stated("armature")
+            armature = self.stated("armature")
             if len(armature) == 0:
                 raise InvalidInputError("armature", f"none is published of {self.name}")
         own = checks.finite_array("armature", armature, np.shape(armature) and (self.dof,))
@@ -292,15 +292,19 @@ class Robot:
         model.armature = np.full(self.dof, own)
         return replace(self, model=model)
 
-    def _stated(self, name: str) -> tuple[float, ...]:
-        """Return what `ARMS` has of the robot's motors, (n,); () without, or with locked joints."""
+    def stated(self, name: str) -> tuple[float, ...]:
+        """Return what its maker states of the robot's motors, (n,); () if nothing, or joints are held.
+
+        Args:
+            name: ``"effort"``, ``"armature"`` or ``"friction"`` of `iiwa_dnn.robot.arms.Arm`.
+        """
         stated: tuple[float, ...] = getattr(ARMS[self.name], name) if self.name in ARMS else ()
         return stated if len(stated) == self.dof else ()
 
     @property
     def friction(self) -> checks.Array:
         """Bounds on the torque that friction takes from each joint [N m], (n,); 0 if unknown."""
-        return np.array(self._stated("friction") or np.zeros(self.dof))
+        return np.array(self.stated("friction") or np.zeros(self.dof))
 
     def with_gravity(self, gravity: ArrayLike) -> Robot:
         """Return the same robot in other gravity, as on a wall, a ceiling or a tilted base.

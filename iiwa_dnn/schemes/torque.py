@@ -450,6 +450,18 @@ class TorqueLimits(Limit):
             raise InvalidInputError("q", problem, q)
 
 
+def own_torque_limits(robot: Robot) -> tuple[TorqueLimits, ...]:
+    """Return the `TorqueLimits` of an arm with a payload, an empty tuple if they are not vetted.
+
+    `Shield` keeps them by itself if the torque limits are its maker's (`iiwa_dnn.robot.arms`) and
+    all accelerations have limits.
+    """
+    vetted = np.array_equal(robot.stated("effort"), robot.model.effortLimit)
+    if robot.payload is None or not (vetted and np.isfinite(robot.ddq_max).all()):
+        return ()
+    return (TorqueLimits(),)
+
+
 def _of_joints(name: str, value: ArrayLike, robot: Robot) -> Vector:
     """Return a number for each joint, (n,), of one number or (n,)."""
     own: Vector = checks.array(name, value, np.shape(value) and (robot.dof,))

@@ -48,6 +48,13 @@ def load(q: Array, v: Array, x: Array, dt: float = DT, models: list = CARRYING) 
     return float((np.abs(torques) / models[0][0].effortLimit).max())
 
 
+def limited(shield: d.Shield, limit: TorqueLimits) -> d.Shield:
+    """The shield with a limit of torques in place of its own."""
+    others = [each for each in shield.limits if not isinstance(each, TorqueLimits)]
+    shield.limits = (*others, limit)
+    return shield
+
+
 def instant(robot: d.Robot, limit: TorqueLimits, q: Array, last: Array):
     program = d.Scheme(limits=[limit]).program(robot)
     return program.step_at(q, last, last, np.zeros((0, 18)), DT, 0.0, np.zeros(0))
@@ -137,8 +144,7 @@ def test_no_request_takes_a_command_or_a_motion_to_rest_beyond_the_torques(
     """Without the limit the commands take up to three times the torques."""
     random = np.random.default_rng(1)
     robot = PANDA.with_limits(jerk=jerk)
-    shield = d.Shield(robot, dt=dt)
-    shield.limits += (TorqueLimits(1.0, friction=0.0),)
+    shield = limited(d.Shield(robot, dt=dt), TorqueLimits(1.0, friction=0.0))
     q, v = robot.start_posture(), np.zeros(7)
     largest, resting, reasons = 0.0, 0.0, set()
     for k in range(1200):
@@ -174,8 +180,7 @@ def test_the_core_answers_to_the_bit_and_many_arms_as_one(tmp_path: Path) -> Non
     random = np.random.default_rng(5)
     iiwa7 = d.load_robot("iiwa7")
     assert d.Shield(iiwa7).step(iiwa7.start_posture(), np.zeros(7)).margin.torque == np.inf
-    shield = d.Shield(PANDA, dt=DT)
-    shield.limits += (TorqueLimits(),)
+    shield = limited(d.Shield(PANDA, dt=DT), TorqueLimits())
     arm = in_armstep(shield, tmp_path)
     many = d.Shields(shield, 2)
     q = np.tile(PANDA.start_posture(), (2, 1))
@@ -196,8 +201,7 @@ def test_a_posture_that_the_motors_cannot_hold_is_refused_and_never_entered() ->
     robot = PANDA.with_payload((0.0, 5.0), CENTER)
     models = [carrying(robot, 5.0)]
     far = np.array([0.0, 1.5, 0.0, -0.3, 0.0, 1.8, 0.0])
-    shield = d.Shield(robot, dt=DT)
-    shield.limits += (TorqueLimits(1.0, friction=0.0),)
+    shield = limited(d.Shield(robot, dt=DT), TorqueLimits(1.0, friction=0.0))
     heavy = load(far, np.zeros(7), np.zeros(7), models=models)
     problem = f"q: takes {heavy:.3g} of the torque limit of joint 2 to be held"
     for _ in range(2):
@@ -227,8 +231,7 @@ def test_an_arm_at_the_boundary_of_what_its_motors_hold_comes_back(seed: int) ->
         for q in robot.draw(np.random.default_rng(seed), 4000)
         if load(q, rest, rest, models=models) > 1.1
     )
-    shield = d.Shield(robot, dt=DT)
-    shield.limits += (TorqueLimits(1.0, friction=0.0),)
+    shield = limited(d.Shield(robot, dt=DT), TorqueLimits(1.0, friction=0.0))
     q = robot.start_posture()
     path = [q]
     for k in range(1500):
@@ -320,15 +323,22 @@ def test_a_record_tells_what_its_velocities_take_of_the_torques() -> None:
         assert len(said) == (own is heavy)
 
 
-def test_a_payload_without_limits_of_torques_is_said_at_the_first_step() -> None:
-    shield = d.Shield(PANDA)
-    with pytest.warns(UserWarning, match="carries 0 to 3 kg, and no TorqueLimits are among its li"):
-        shield.step(PANDA.start_posture(), np.zeros(7))
-    shield = d.Shield(PANDA)
-    shield.limits += (TorqueLimits(),)
+def test_an_arm_with_a_payload_keeps_its_makers_torques_and_others_say_that_they_do_not() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        shield.step(PANDA.start_posture(), np.zeros(7))
+        shield = d.Shield(PANDA, obstacles=[])
+        assert shield.limits[-1] == TorqueLimits()
+        assert shield.step(PANDA.start_posture(), np.zeros(7)).margin.torque < 0.95
+    file = d.load_robot(d.load_robot("ur3").path, tip="tool0").with_limits(acceleration=10.0)
+    for robot, own in (
+        (PANDA, {"longest_period": 2e-3}),
+        (d.load_robot("ur5").with_payload(RANGE), {}),  # of no accelerations
+        (d.load_robot("xarm7").with_limits(acceleration=10.0).with_payload(RANGE), {}),
+        (file.with_payload(RANGE), {}),
+    ):
+        shield = d.Shield(robot, **own)
+        with pytest.warns(UserWarning, match="carries 0 to 3 kg, and no TorqueLimits are among"):
+            shield.step(robot.start_posture(), np.zeros(robot.dof))
 
 
 def test_a_joint_without_a_torque_limit_is_refused_by_its_name() -> None:

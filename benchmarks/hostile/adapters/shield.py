@@ -29,7 +29,8 @@ def make(setup):
         **has_people if setup["person"] else {},
     )
     if setup["payload"]:
-        made.limits += (iiwa_dnn.TorqueLimits(1.0, friction=0.0),)
+        others = [limit for limit in made.limits if not isinstance(limit, iiwa_dnn.TorqueLimits)]
+        made.limits = (*others, iiwa_dnn.TorqueLimits(1.0, friction=0.0))
 
     followed = [-1.0]  # first time of the last chunk [s]
 
