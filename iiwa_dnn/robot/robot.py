@@ -293,7 +293,7 @@ class Robot:
         return replace(self, model=model)
 
     def stated(self, name: str) -> tuple[float, ...]:
-        """Return what its maker states of the robot's motors, (n,); () if nothing, or joints are held.
+        """Return what its maker states of the motors, (n,); () if nothing, or joints are held.
 
         Args:
             name: ``"effort"``, ``"armature"`` or ``"friction"`` of `iiwa_dnn.robot.arms.Arm`.
