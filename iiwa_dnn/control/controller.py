@@ -44,7 +44,7 @@ from iiwa_dnn.control.people import News, separation_in
 from iiwa_dnn.control.plan import Instant
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.state import MotionState
-from iiwa_dnn.control.stopping import periods_to_rest
+from iiwa_dnn.control.stopping import TRIES, periods_to_rest
 from iiwa_dnn.errors import InvalidInputError, warn_caller
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
@@ -438,7 +438,7 @@ class Controller:
             step = control_layout.program.step_at(
                 q, rest.last, rest.before, targets, self.dt, 0.0, least
             )
-            return bool(periods_to_rest(plan, Instant(step, rest, rest), dq) < np.inf)
+            return bool(periods_to_rest(plan, Instant(step, rest, rest), dq, TRIES) < np.inf)
 
     @property
     def _least(self) -> Vector:

@@ -26,7 +26,7 @@ from iiwa_dnn.control.command import (
 from iiwa_dnn.control.fallback import FALLBACK_BUDGET, fallback_size
 from iiwa_dnn.control.plan import ControlPlan, Instant, PathColumn, Paths
 from iiwa_dnn.control.state import MotionState, change_spacing
-from iiwa_dnn.control.stopping import periods_to_rest
+from iiwa_dnn.control.stopping import TRIES, periods_to_rest
 from iiwa_dnn.control.yielding import (
     BRAKE,
     NOMINAL,
@@ -313,7 +313,7 @@ def take_step(
     halted = motion_state.halts or largest_entry(log.least) == MEET
     if not motion_state.yields and not halted and _answer(log, arrays, plan.network, state):
         note_command(log, next_motion_state, log.point, timing.expected)
-        rest = periods_to_rest(plan, instant, next_motion_state.last)
+        rest = periods_to_rest(plan, instant, next_motion_state.last, TRIES)
         if rest < np.inf:
             next_motion_state.stopping_periods = rest
             note_active(log, program_views(log.program, sizes), plan.yielding.tolerance)

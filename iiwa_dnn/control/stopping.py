@@ -32,10 +32,10 @@ LONGEST = 1e6
 GROWTH = 1.1
 """Factor between successive numbers of periods that `least_periods` tries."""
 
-LONGER = 1.25
+LONGER = 1.6
 """Factor between successive numbers of periods that `periods_to_rest` tries."""
 
-TRIES = 12
+TRIES = 6
 """Largest number of motions to rest that are tried for a command."""
 
 STRETCH = 1.01
@@ -221,13 +221,15 @@ def write_cubic_coefficients(
 
 
 @compiled
-def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector) -> float:
+def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector, tries: int) -> float:
     """Compute the number of control periods of the motion to rest after a command.
 
     Args:
         plan: Layout of the step, whose limits are asked.
         instant: The instant of the step.
         dq: The command, held for one period before the joints stop [rad/s], (dof,).
+        tries: Largest number of motions that are tested; the second one takes what is left of the
+            stored one.
 
     Returns:
         Number of periods of `timing.dt` until rest; inf if a limit does not agree with the motion;
@@ -247,7 +249,7 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector) -> float:
     periods = least_periods(dq, before, limits, dt, vary) if limits.rated else 1.0
     stored = instant.motion.stopping_periods - 1.0
     grown = periods
-    for k in range(TRIES):
+    for k in range(tries):
         if periods == np.inf:
             return np.inf
         motion = _motion(plan, limits.cubic, dq, before, periods, coefficient)

@@ -33,6 +33,7 @@ from iiwa_dnn.control.fallback import (
 from iiwa_dnn.control.plan import ControlPlan, Instant
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.stopping import (
+    TRIES,
     least_periods,
     next_velocity,
     periods_to_rest,
@@ -456,7 +457,7 @@ def _make_stoppable(
         Periods until the arm rests after the command; 0 if no stopping motion has to be verified.
     """
     dof = instant.motion.q.size
-    rest = periods_to_rest(plan, instant, x[:dof])
+    rest = periods_to_rest(plan, instant, x[:dof], TRIES)
     if rest < np.inf:
         return rest
     wanted = log.point[: x.size].copy()
@@ -465,11 +466,13 @@ def _make_stoppable(
         nearest_within(limits, wanted, plan.yielding, log.stats)
     brake = np.zeros(x.size)
     left = _brake(limits, plan, instant, log, brake)
+    # Near the stored motion, what is left of it is enough.
+    tries = 2 if instant.motion.stopping_periods > 0.0 else TRIES
     fraction = 1.0
     for _ in range(HALVINGS):
         for i in range(dof):
             x[i] = brake[i] + fraction * (wanted[i] - brake[i])
-        rest = periods_to_rest(plan, instant, x[:dof])
+        rest = periods_to_rest(plan, instant, x[:dof], tries)
         if rest < np.inf:
             return rest
         fraction *= 0.5
@@ -544,5 +547,5 @@ def _brake(limits: QPViews, plan: ControlPlan, instant: Instant, log: StepLog, d
     times(limits.A, dq, coupled)
     braking = QPViews(limits.P, limits.q, limits.G, idle, limits.A, coupled, lb, ub)
     nearest_within(braking, dq, plan.yielding, log.stats)
-    rest = periods_to_rest(plan, instant, dq[:dof])
+    rest = periods_to_rest(plan, instant, dq[:dof], TRIES)
     return rest if rest < np.inf else 0.0

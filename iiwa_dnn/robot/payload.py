@@ -15,7 +15,7 @@ class Payload(NamedTuple):
     Attributes:
         frame: Name of the frame that carries it.
         mass: Smallest and largest mass [kg], (2,).
-        center: Centre of mass in the frame [m], (3,).
+        center: Ends of the box in the frame that its centre of mass is in [m], (2, 3).
         inertia: Inertia about the centre along the frame's axes for each kilogram [m^2], (3, 3).
     """
 
@@ -54,5 +54,9 @@ def make_payload(
     if np.abs(about - about.T).max() > forgiven or moments[2] > moments[0] + moments[1] + forgiven:
         raise InvalidInputError("inertia", "is none that a body can have", inertia)
     own = np.array([least, most])
-    where = checks.finite_array("center", center, (3,))
-    return Payload(frame, checks.read_only(own), where, checks.read_only(about / (most or 1.0)))
+    ends = checks.finite_array("center", center, (2, 3) if np.ndim(center) > 1 else (3,))
+    where = np.broadcast_to(ends, (2, 3))
+    if (where[0] > where[-1]).any():
+        raise InvalidInputError("center", "must be a point, or the ends of a box", center)
+    about = about / (most or 1.0)
+    return Payload(frame, *(checks.read_only(np.array(each)) for each in (own, where, about)))

@@ -262,7 +262,8 @@ class Robot:
 
         Args:
             mass: Its mass, or the smallest and the largest one [kg], (2,).
-            center: Its centre of mass in the frame of the tip [m], (3,).
+            center: Its centre of mass in the frame of the tip [m], (3,); or the ends of a box that
+                the centre, or without `inertia` all of the body, is in, (2, 3).
             inertia: Its inertia about the centre along the axes of that frame, at the largest mass
                 and in proportion to it at others [kg m^2], (3, 3); None: a point mass.
 

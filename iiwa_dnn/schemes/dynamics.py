@@ -20,6 +20,9 @@ from iiwa_dnn.robot.robot import Robot
 LINK = 28
 """Length of a `Link`."""
 
+SHIFTS = 9
+"""Wrenches of a payload's shifts in its box: 3 are linear in the shift, 6 in products of two."""
+
 
 class Mass(Record):
     """A rigid body: mass [kg], centre of mass [m] and inertia about it, by columns [kg m^2]."""
@@ -54,12 +57,14 @@ class Dynamics(Record):
         carrier: Number of the joint, from 1, that carries the payload.
         gravity: Acceleration of gravity [m/s^2], (3,).
         payload: The payload for each kilogram of it, in the frame of its joint.
+        spread: Half the edges of the box that its centre is in, by rows [m], (3, 3).
         links: `Link` of each joint, (n, 28).
     """
 
     carrier: int
     gravity: Array = part(3)
     payload: Mass = part(Mass)
+    spread: Matrix = part(3, 3)
     links: Matrix = part("n", LINK)
 
 
@@ -86,7 +91,7 @@ class Wrench(Record):
 
 def dynamics_of(robot: Robot) -> Dynamics:
     """Return the masses of a robot and its payload; without one, of a payload of no mass."""
-    held = robot.payload or Payload(robot.tip, np.zeros(2), np.zeros(3), np.zeros((3, 3)))
+    held = robot.payload or Payload(robot.tip, np.zeros(2), np.zeros((2, 3)), np.zeros((3, 3)))
     tables = model_tables(robot, [robot.frame_id(held.frame)], dynamics=True)
     links = []
     for j, numbers in enumerate(tables.bodies):
@@ -105,12 +110,15 @@ def dynamics_of(robot: Robot) -> Dynamics:
         links.append(link.numbers)
     turn, origin = _pose(Placement.of(tables.offsets[0]))
     payload = Mass.make(
-        mass=1.0, center=origin + turn @ held.center, inertia=turn @ held.inertia @ turn.T
+        mass=1.0,
+        center=origin + turn @ held.center.mean(axis=0),
+        inertia=turn @ held.inertia @ turn.T,
     )
     return Dynamics.make(
         carrier=tables.carriers[0],
         gravity=np.array(robot.model.gravity.linear),
         payload=payload,
+        spread=0.5 * np.diff(held.center, axis=0).T * turn.T,
         links=np.array(links),
     )
 
@@ -122,7 +130,14 @@ def _pose(placement: Placement) -> tuple[Array, Array]:
 
 @compiled
 def write_torques(
-    arm: Dynamics, gravity: float, q: Array, v: Array, a: Array, torque: Array, slope: Array
+    arm: Dynamics,
+    gravity: float,
+    q: Array,
+    v: Array,
+    a: Array,
+    torque: Array,
+    slope: Array,
+    doubt: Array,
 ) -> None:
     """Write the torques of the joints, or the forces of sliding ones: those of M(q) a + h(q, v).
 
@@ -134,11 +149,18 @@ def write_torques(
         a: Joint accelerations [rad/s^2], (n,).
         torque: Torques without the payload [N m], (n,), overwritten.
         slope: Torques for each kilogram of the payload [N m/kg], (n,), overwritten.
+        doubt: Bound on what each of these is more or less with the payload's centre, or its matter,
+            anywhere in its box [N m/kg], (n,), overwritten.
     """
     n = q.size
     motions = np.zeros((n + 1, LinkMotion.width()))
     own = np.zeros((n + 1, Wrench.width()))
     held = np.zeros((n + 1, Wrench.width()))
+    count = 0
+    for i in range(3):
+        if dot(triple(arm.spread[i]), triple(arm.spread[i])) > 0.0:
+            count = SHIFTS
+    shifts = np.zeros(((n + 1) * count, Wrench.width()))
     world = 0  # the place of the base
     base = LinkMotion.of(motions[world])
     for i in range(3):
@@ -148,7 +170,11 @@ def write_torques(
         here = LinkMotion.of(motions[j + 1])
         _move(link, LinkMotion.of(motions[link.parent]), (q[j], v[j], a[j]), here)
         _accelerate(link.body, here, Wrench.of(own[j + 1]))
-    _accelerate(arm.payload, LinkMotion.of(motions[arm.carrier]), Wrench.of(held[arm.carrier]))
+    carrier = LinkMotion.of(motions[arm.carrier])
+    _accelerate(arm.payload, carrier, Wrench.of(held[arm.carrier]))
+    if count > 0:
+        first = arm.carrier * count
+        _shift(arm, carrier, triple(Wrench.of(held[arm.carrier]).force), shifts[first:])
     for k in range(n):
         j = n - 1 - k
         link = Link.of(arm.links[j])
@@ -157,8 +183,13 @@ def write_torques(
         of_payload = Wrench.of(held[j + 1])
         torque[j] = link.armature * a[j] + _along(link, of_link)
         slope[j] = _along(link, of_payload)
+        doubt[j] = 0.0
         _pass_on(here, of_link, Wrench.of(own[link.parent]))
         _pass_on(here, of_payload, Wrench.of(held[link.parent]))
+        for i in range(count):
+            shift = Wrench.of(shifts[(j + 1) * count + i])
+            doubt[j] += abs(_along(link, shift))
+            _pass_on(here, shift, Wrench.of(shifts[link.parent * count + i]))
 
 
 @compiled
@@ -213,6 +244,41 @@ def _accelerate(body: Mass, motion: LinkMotion, wrench: Wrench) -> None:
     for i in range(3):
         wrench.force[i] = force[i]
         wrench.moment[i] = moment[i]
+
+
+@compiled
+def _shift(arm: Dynamics, motion: LinkMotion, force: Vector3, shifts: Matrix) -> None:
+    """Write the wrenches of a kilogram's shifts by half the edges of its box, and by two of them.
+
+    Shifted by s, the acceleration of a point changes by A s, so its force, and the moment of that
+    by c x A s + s x (f + A s); all matter in the box is a mean of such points.
+
+    Args:
+        arm: The masses.
+        motion: Motion of the link that carries the payload.
+        force: Force f on a kilogram at the centre c of the box [N/kg].
+        shifts: `Wrench` of each shift, (9 or more, 6), of which 9 are overwritten.
+    """
+    rate = triple(motion.rate)
+    change = triple(motion.change)
+    center = triple(arm.payload.center)
+    row = 3
+    for i in range(3):
+        edge = triple(arm.spread[i])
+        gain = combined(1.0, cross(change, edge), 1.0, cross(rate, cross(rate, edge)))
+        moment = combined(1.0, cross(center, gain), 1.0, cross(edge, force))
+        for k in range(3):
+            shifts[i, k] = gain[k]
+            shifts[i, 3 + k] = moment[k]
+        for j in range(i + 1):
+            other = triple(arm.spread[j])
+            moment = cross(other, gain)
+            if j < i:
+                moment = combined(1.0, moment, 1.0, cross(edge, triple(shifts[j])))
+            for k in range(3):
+                shifts[row, k] = 0.0
+                shifts[row, 3 + k] = moment[k]
+            row += 1
 
 
 @compiled

@@ -8,16 +8,15 @@ of a rigid arm that goes on by :math:`q + dt\,x_k`. They are affine in the mass 
 both ends of its range suffice, and linear in :math:`x_k`: a step has a row for each joint, sign and
 end. A row that no command within the acceleration limits reaches is idle.
 
-Along a motion to rest with velocities linear in time, the torques of the periods are samples of
+Along a motion to rest the torques of the periods are samples of a smooth function of time,
 
-.. math::  -A(q)/T + w^2 B(q) + g(q), \qquad A_i = \sum_j M_{ij} x_j, \quad
-    B_i = \sum_{jk} \Gamma_{ijk} x_j x_k
+.. math::  M(q)\,a + \sum_{jk} \Gamma_{jk}(q)\,v_j v_k + g(q).
 
-where w falls from 1 to 0 and q moves on a straight line. M is a trigonometric polynomial of degree
-2 in each angle after its joints, g one of degree 1, so Bernstein's inequality bounds the second
-derivatives by bounds on M and g, which follow from masses and lengths. Between two periods that are
-tested a torque exceeds the larger of both by no more than that; the interval is halved until the
-bound is enough. If velocities are cubic in time, or a joint slides, every period is tested.
+M is a trigonometric polynomial of degree 2 in each angle after its joints, g one of degree 1, so
+Bernstein's inequality bounds their derivatives by bounds on M and g, which follow from masses and
+lengths; velocities are polynomials of time. Between two periods that are tested a torque exceeds
+the larger of both by no more than an eighth of its second derivative times the squared time; the
+interval is halved until that is enough. If a joint slides, every period is tested.
 """
 
 import math
@@ -63,7 +62,8 @@ class TorqueConstants(Record):
         heaviest: Its largest mass [kg].
         slides: Whether a joint slides.
         limit: Largest torque of each joint [N m], (n,).
-        inertia: Square root of a bound on each diagonal entry of the inertia matrix, (n,).
+        inertia: Square root of a bound on each diagonal entry of the links' inertia matrix, (n,).
+        rotor: What the rotors add to them [kg m^2], (n,).
         weight: Bound on each torque of gravity [N m], (n,).
         dynamics: `Dynamics` of the robot.
     """
@@ -73,19 +73,18 @@ class TorqueConstants(Record):
     slides: bool
     limit: Vector = part()
     inertia: Vector = part()
+    rotor: Vector = part()
     weight: Vector = part()
     dynamics: Vector = part("dynamics")
 
 
-class Bend(Record):
-    """Bound on a torque's second derivative by the part u of a motion, 1 - u = w [N m].
+class Pace(Record):
+    """Bounds on a joint's velocity and its derivatives by time [rad/s, rad/s^2, ...]."""
 
-    It is always + square w^2 + fourth w^4.
-    """
-
-    always: float
-    square: float
-    fourth: float
+    speed: float
+    change: float
+    jerk: float
+    snap: float
 
 
 @compiled
@@ -106,18 +105,20 @@ def torque_rows(
     slopes = np.empty((n, n))
     bias = np.empty(n)
     slope = np.empty(n)
+    doubt = np.empty(n)
+    none = np.empty(n)  # of what a command changes: the test of its motion to rest has that
     rest = np.zeros(n)
     unit = np.zeros(n)
-    write_torques(arm, 1.0, step.q, step.last, rest, bias, slope)
+    write_torques(arm, 1.0, step.q, step.last, rest, bias, slope, doubt)
     for j in range(n):
         unit[j] = 1.0
-        write_torques(arm, 0.0, step.q, rest, unit, inertia[j], slopes[j])
+        write_torques(arm, 0.0, step.q, rest, unit, inertia[j], slopes[j], none)
         unit[j] = 0.0
     for row in range(h.size):
         i = row // 2 % n
         sign = 1.0 - 2.0 * (row % 2)
         mass = own.heaviest if row < 2 * n else own.lightest
-        torque = sign * (bias[i] + mass * slope[i])
+        torque = sign * (bias[i] + mass * slope[i]) + mass * doubt[i]
         most = torque
         length = 0.0
         for j in range(n):
@@ -150,11 +151,12 @@ def write_loads(own: TorqueConstants, q: Vector, v: Vector, a: Vector, load: Vec
         The largest ratio of a torque and its limit.
     """
     slope = np.empty(q.size)
-    write_torques(Dynamics.of(own.dynamics), 1.0, q, v, a, load, slope)
+    doubt = np.empty(q.size)
+    write_torques(Dynamics.of(own.dynamics), 1.0, q, v, a, load, slope, doubt)
     largest = 0.0
     for i in range(q.size):
-        lightest = abs(load[i] + own.lightest * slope[i])
-        load[i] = max(lightest, abs(load[i] + own.heaviest * slope[i]))
+        lightest = abs(load[i] + own.lightest * slope[i]) + own.lightest * doubt[i]
+        load[i] = max(lightest, abs(load[i] + own.heaviest * slope[i]) + own.heaviest * doubt[i])
         largest = max(largest, load[i] / own.limit[i])
     return largest
 
@@ -214,14 +216,14 @@ def keeps_torque(step: StepViews, constants: Vector, motion: Motion) -> bool:
         return False
     if _load_in_period(step, own, motion, 0, load) > most:
         return False
-    samples = motion.cubic or own.slides
-    for k in range(2 if samples else last, last + 1):
+    whole = int(max(motion.periods, 1.0))  # the period after them, if any, is cut short
+    for k in range(2 if own.slides else whole, last + 1):
         if _load_in_period(step, own, motion, max(k, 1), load) > most:
             return False
     resting = _load_in_period(step, own, motion, last + 1, load)
     if resting > most or (resting > 1.0 - AT_REST and resting > _load_here(step, own, load)):
         return False
-    return samples or _keeps_between(step, own, motion, last)
+    return own.slides or _keeps_between(step, own, motion, whole)
 
 
 @compiled
@@ -233,12 +235,11 @@ def _load_here(step: StepViews, own: TorqueConstants, load: Vector) -> float:
 
 @compiled
 def _keeps_between(step: StepViews, own: TorqueConstants, motion: Motion, last: int) -> bool:
-    """Test the torques of a motion linear in time, those in periods 1 and `last` excepted."""
+    """Test the torques of a motion of joints that turn, those in periods 1 and `last` excepted."""
     n = step.q.size
     if last <= 2:
         return True
-    bends = np.empty((n, Bend.width()))
-    _write_bends(own, motion, bends)
+    paces = np.empty((n, Pace.width()))
     left = 1
     load = np.empty(n)
     _load_in_period(step, own, motion, left, load)
@@ -250,7 +251,12 @@ def _keeps_between(step: StepViews, own: TorqueConstants, motion: Motion, last: 
     count += 1
     while count > 0:
         right = int(ends[count - 1])
-        if right - left <= 1 or _is_below(own, bends, load, loads[count - 1], left, right, last):
+        is_below = right - left <= 1
+        if not is_below:
+            _write_paces(motion, 1.0 - (left - 1.0) / motion.periods, paces)
+            width = (right - left) * motion.period
+            is_below = _is_below(own, paces, load, loads[count - 1], width)
+        if is_below:
             left = right
             copied(load, loads[count - 1])
             count -= 1
@@ -265,70 +271,95 @@ def _keeps_between(step: StepViews, own: TorqueConstants, motion: Motion, last: 
 
 @compiled
 def _is_below(
-    own: TorqueConstants,
-    bends: Matrix,
-    load: Vector,
-    other: Vector,
-    left: int,
-    right: int,
-    last: int,
+    own: TorqueConstants, paces: Matrix, load: Vector, other: Vector, width: float
 ) -> bool:
-    """Test whether all torques surely keep their limits between two periods.
+    r"""Test whether all torques surely keep their limits between two periods.
+
+    With :math:`\sigma` twice the sum of the speeds of the angles that M depends on, and
+    :math:`\dot\sigma` of their changes, the second derivative of M a is at most :math:`|M|
+    ((\sigma^2 + \dot\sigma) |a| + 2 \sigma |\dot a| + |\ddot a|)`, and so on for the velocities'
+    part.
 
     Args:
         own: The limit.
-        bends: `Bend` of each joint, (n, 3).
+        paces: `Pace` of each joint from the first of the periods until rest, (n, 4).
         load: Torques in the first of the periods [N m], (n,).
         other: Torques in the second one [N m], (n,).
-        left: The first period.
-        right: The second one.
-        last: Number of periods of the motion.
+        width: Time between them [s].
     """
-    slower = 1.0 - (left - 1.0) / last
-    square = slower * slower
-    width = (right - left) / last
-    for i in range(load.size):
-        bend = Bend.of(bends[i])
-        second = bend.always + square * (bend.square + square * bend.fourth)
-        if max(load[i], other[i]) + width * width / 8.0 * second > own.limit[i] * (1.0 + ROUNDING):
+    n = load.size
+    total = Pace.of(np.zeros(Pace.width()))
+    held = Pace.of(np.zeros(Pace.width()))  # each joint's, times the root of its inertia
+    turns = np.zeros(n + 1)  # of the angles from each joint on
+    changes = np.zeros(n + 1)
+    for k in range(n):
+        at = n - 1 - k
+        pace = Pace.of(paces[at])
+        turns[at] = turns[at + 1] + 2.0 * pace.speed
+        changes[at] = changes[at + 1] + 2.0 * pace.change
+        total.speed += pace.speed
+        total.change += pace.change
+        total.jerk += pace.jerk
+        held.speed += own.inertia[at] * pace.speed
+        held.change += own.inertia[at] * pace.change
+        held.jerk += own.inertia[at] * pace.jerk
+    turn = turns[1]  # no torque depends on the first angle but by gravity
+    for i in range(n):
+        inertia = own.inertia[i]
+        # |Gamma_ijk| <= M_ij + M_ik + M_jk, each at most the product of two roots.
+        squares = held.speed * (2.0 * inertia * total.speed + held.speed)
+        slopes = inertia * (held.speed * total.change + total.speed * held.change)
+        slopes += held.speed * held.change
+        bends = inertia * (held.speed * total.jerk + total.speed * held.jerk)
+        bends += held.speed * held.jerk
+        bends += held.change * (2.0 * inertia * total.change + held.change)
+        second = (turn * turn + changes[1]) * squares + 4.0 * turn * slopes + 2.0 * bends
+        second += own.weight[i] * 0.5 * (0.5 * turns[0] * turns[0] + changes[0])
+        second += own.rotor[i] * Pace.of(paces[i]).snap
+        for j in range(n):
+            after = min(i, j) + 1
+            other_pace = Pace.of(paces[j])
+            bend = (turns[after] * turns[after] + changes[after]) * other_pace.change
+            bend += 2.0 * turns[after] * other_pace.jerk + other_pace.snap
+            second += inertia * own.inertia[j] * bend
+        most = max(load[i], other[i]) + width * width / 8.0 * second
+        if most > own.limit[i] * (1.0 + ROUNDING):
             return False
     return True
 
 
 @compiled
-def _write_bends(own: TorqueConstants, motion: Motion, bends: Matrix) -> None:
-    r"""Write a bound on the second derivative of each torque by the fraction u of a motion.
+def _write_paces(motion: Motion, left: float, paces: Matrix) -> None:
+    """Write the `Pace` of each joint, (n, 4), while `left` or less of a motion's time is left.
 
-    With w = 1 - u, T the motion's time and :math:`\sigma` the sum of the angles that a polynomial
-    depends on, each times its degree, a polynomial P adds at most :math:`|P| (\sigma^2 w^2 +
-    \sigma)`, and w^2 P, for the velocities, :math:`|P| (2 + 5 \sigma w^2 + \sigma^2 w^4)`. `bends`
-    (n, 3) has the `Bend` of each joint.
+    With w = 1 - u the cubic is w^2 (c - e w). Positions are sums of the velocities: by the formula
+    of Euler and Maclaurin, exact for cubics, their derivative is v - dt a / 2 + dt^2 j / 12.
     """
-    n = motion.first.size
     T = motion.periods * motion.period
-    after = np.zeros(n + 1)
-    beyond = 0.0
-    whole = 0.0
-    speed = 0.0
-    for k in range(n):
-        j = n - 1 - k
-        beyond = after[j + 1]  # in the end, all angles but the first
-        whole = beyond + abs(motion.first[j]) * T
-        after[j] = whole
-        speed += own.inertia[j] * abs(motion.first[j])
-    turn = 2.0 * beyond
-    for i in range(n):
-        # |Gamma_ijk| <= M_ij + M_ik + M_jk, each at most the product of two roots.
-        quick = 2.0 * own.inertia[i] * speed * whole / T + speed * speed
-        bend = Bend.of(bends[i])
-        bend.always = own.weight[i] * whole + 2.0 * quick
-        bend.square = own.weight[i] * whole * whole + 5.0 * quick * turn
-        bend.fourth = quick * turn * turn
-        for k in range(n):
-            angle = 2.0 * after[min(i, k) + 1]
-            slow = own.inertia[i] * own.inertia[k] * abs(motion.first[k]) / T
-            bend.always += slow * angle
-            bend.square += slow * angle * angle
+    half = 0.5 * motion.period
+    for i in range(motion.first.size):
+        x = motion.first[i]
+        speed = abs(x) * left
+        change = abs(x)
+        jerk = 0.0
+        snap = 0.0
+        if motion.cubic:
+            e = 2.0 * x + motion.coefficient[i]
+            c = e + x
+            speed = abs(left * left * (c - e * left))
+            change = abs(left * (2.0 * c - 3.0 * e * left))
+            jerk = 2.0 * max(abs(c), abs(c - 3.0 * e * left))
+            snap = 6.0 * abs(e)
+            top = c / e if e != 0.0 else 0.0
+            if 0.0 < 2.0 * top < 3.0 * left:
+                speed = max(speed, 4.0 / 27.0 * top * top * abs(c))
+            if 0.0 < top < 3.0 * left:
+                change = max(change, abs(c) * top / 3.0)
+        pace = Pace.of(paces[i])
+        pace.snap = snap / (T * T * T)
+        pace.jerk = jerk / (T * T) + half * pace.snap
+        pace.change = change / T + half * (jerk / (T * T) + half / 3.0 * pace.snap)
+        pace.speed = speed + half * (change / T + half / 3.0 * (jerk / (T * T)))
 
 
 def not_negative_torques(argument: str, value: ArrayLike) -> float | tuple[float, ...]:
@@ -342,9 +373,9 @@ class TorqueLimits(Limit):
     """Limits of the joints' torques for every payload of the robot's range, until the arm rests.
 
     Without a payload (`Robot.with_payload`) it is the robot's own masses. The robot is rigid and
-    follows its commands, whose period is constant. With a jerk limit each period of a motion to
-    rest is tested. Torques alone would admit thousands of rad/s^2 at a wrist whose file has no
-    rotor inertia (`Robot.with_armature`), so the scheme needs acceleration limits of all joints.
+    follows its commands, whose period is constant. Torques alone would admit thousands of rad/s^2
+    at a wrist whose file has no rotor inertia (`Robot.with_armature`), so the scheme needs
+    acceleration limits of all joints.
 
     Attributes:
         fraction: Part of the torque limits that may be used, in (0, 1].
@@ -416,6 +447,7 @@ class TorqueLimits(Limit):
             slides=bool(robot.slides),
             limit=self.largest(robot),
             inertia=np.sqrt(inertia),
+            rotor=np.array([Link.of(numbers).armature for numbers in dynamics.links]),
             weight=weight,
             dynamics=dynamics.numbers,
         )
@@ -485,11 +517,14 @@ def _bounds(robot: Robot, dynamics: Dynamics, mass: float) -> tuple[Vector, Vect
     weight = np.zeros(n)
     pull = float(np.linalg.norm(dynamics.gravity))
     links = [Link.of(numbers) for numbers in dynamics.links]
-    bodies = [(j, 1.0, link.body) for j, link in enumerate(links)]
-    for carrier, amount, body in [*bodies, (dynamics.carrier - 1, mass, dynamics.payload)]:
+    bodies = [(j, 1.0, link.body, 0.0) for j, link in enumerate(links)]
+    away = float(np.linalg.norm(dynamics.spread, axis=1).sum())  # the payload from its box's centre
+    for carrier, amount, body, beyond in [
+        *bodies,
+        (dynamics.carrier - 1, mass, dynamics.payload, away),
+    ]:
         largest = amount * max(float(np.linalg.eigvalsh(body.inertia)[-1]), 0.0)
         at = body.center
-        beyond = 0.0
         joint = carrier
         while joint >= 0:
             distance = float(np.hypot(at[0], at[1])) + beyond
@@ -498,4 +533,4 @@ def _bounds(robot: Robot, dynamics: Dynamics, mass: float) -> tuple[Vector, Vect
             beyond += float(np.linalg.norm(at))
             at = Placement.of(links[joint].placement.numbers).position
             joint = int(links[joint].parent) - 1
-    return inertia + np.array([link.armature for link in links]), weight
+    return inertia, weight

@@ -19,8 +19,8 @@ from iiwa_dnn.control.stopping import least_periods, write_cubic_coefficients
 from iiwa_dnn.results.plots import overview_figure
 from iiwa_dnn.schemes import AccelerationLimits, JerkLimits
 from iiwa_dnn.schemes.joint_limits import MotionLimits
-from iiwa_dnn.schemes.rest import Motion, velocity_at
-from iiwa_dnn.schemes.torque import TorqueLimits, keeps_torque
+from iiwa_dnn.schemes.rest import Motion, displacement_after, velocity_at
+from iiwa_dnn.schemes.torque import TorqueLimits, _write_paces, keeps_torque
 
 DT = 2e-3
 CENTER = np.array([0.0, 0.0, 0.1])
@@ -30,11 +30,11 @@ EFFORT = np.array(PANDA.model.effortLimit)
 SO101 = d.load_robot("so101").with_limits(acceleration=10.0)
 
 
-def carrying(robot: d.Robot, mass: float) -> tuple[pin.Model, pin.Data]:
+def carrying(robot: d.Robot, mass: float, center: Array = CENTER) -> tuple[pin.Model, pin.Data]:
     """Pinocchio's model and data of a robot whose tip carries a point mass."""
     model = robot.model.copy()
     frame = model.frames[robot.tip_id]
-    body = pin.Inertia(mass, CENTER, np.zeros((3, 3)))
+    body = pin.Inertia(mass, center, np.zeros((3, 3)))
     model.appendBodyToJoint(frame.parentJoint, body, frame.placement)
     return model, model.createData()
 
@@ -137,6 +137,30 @@ def test_a_motion_to_rest_that_agrees_keeps_all_torques_and_one_that_is_far_belo
     assert np.max(needless) < 1.0 + 1e-6
 
 
+def test_the_pace_of_a_motion_to_rest_bounds_what_its_curves_do() -> None:
+    """Velocities, and sums of them as positions, by differences of dense samples."""
+    random = np.random.default_rng(0)
+    used = []
+    for k in range(200):
+        cubic = k % 2 == 1
+        periods, period = random.uniform(5.0, 60.0), 2e-3
+        x, b = random.standard_normal((2, 1)) * [[1.0], [3.0 * cubic]]
+        motion = Motion(x, b, periods, period, cubic, False, False)
+        left = random.uniform(0.1, 1.0)
+        pace = np.empty((1, 4))
+        _write_paces(motion, left, pace)
+        ahead = np.linspace((1.0 - left) * periods, periods, 2001)
+        v = np.array([velocity_at(x[0], b[0], t / periods, cubic) for t in ahead])
+        q = np.array([displacement_after(motion, x[0], b[0], t) for t in ahead])
+        gap = period * (ahead[1] - ahead[0])
+        of_v = [np.abs(np.diff(v, m)).max() / gap**m for m in range(3)]
+        of_q = [np.abs(np.diff(q, m)).max() / gap**m for m in (1, 2)]
+        bounds = pace[0, [0, 1, 2, 0, 1]] * (1.0 + 1e-6) + 1e-3
+        assert ([*of_v, *of_q] <= bounds).all()
+        used.append(of_q[0] / pace[0, 0])
+    assert np.median(used) > 0.8
+
+
 @pytest.mark.parametrize(("jerk", "dt"), [(np.inf, 2e-3), (2000.0, 2e-3), (np.inf, 1e-3)])
 def test_no_request_takes_a_command_or_a_motion_to_rest_beyond_the_torques(
     jerk: float, dt: float
@@ -174,6 +198,33 @@ def test_no_request_takes_a_command_or_a_motion_to_rest_beyond_the_torques(
     assert 0.99 < largest <= 1.0 + 1e-9
     assert resting <= 1.0 + 1e-9
     assert any("torque, with 3 kg" in reason for reason in reasons)
+
+
+@pytest.mark.parametrize("jerk", [np.inf, 2000.0])
+def test_torques_hold_for_a_payload_anywhere_in_a_box(jerk: float) -> None:
+    """Whose corners take more than its centre."""
+    random = np.random.default_rng(2)
+    box = CENTER + np.array([[-0.02, -0.02, -0.05], [0.02, 0.02, 0.05]])
+    robot = PANDA.with_limits(jerk=jerk).with_payload((0.0, 2.0), box)
+    corners = np.where(np.indices((2, 2, 2)).reshape(3, 8).T, box[1], box[0])
+    places = (*corners, *random.uniform(*box, (4, 3)))
+    anywhere = [carrying(robot, 2.0, place) for place in places]
+    middle = [carrying(robot, 2.0)]
+    shield = limited(d.Shield(robot, dt=DT), TorqueLimits(1.0, friction=0.0))
+    q, v = robot.start_posture(), np.zeros(7)
+    largest, central = 0.0, 0.0
+    for k in range(900):
+        if k % 75 == 0:
+            request = robot.dq_max * random.uniform(-1.2, 1.2, 7)
+        command = shield.step(q, request)
+        taken = load(q, v, command.dq, models=anywhere)
+        assert command.margin.torque <= 1.0 - taken + 1e-9
+        largest = max(largest, taken)
+        central = max(central, load(q, v, command.dq, models=middle))
+        q, v = command.next_q, command.dq
+    assert largest <= 1.0 + 1e-9
+    assert central < largest - 0.02
+    assert np.abs(q - robot.start_posture()).max() > 0.5
 
 
 def test_the_core_answers_to_the_bit_and_many_arms_as_one(tmp_path: Path) -> None:
