@@ -76,6 +76,7 @@ from iiwa_dnn.schemes import (
 
 if TYPE_CHECKING:
     from iiwa_dnn import export as export
+    from iiwa_dnn.control.controllers import Controllers, ControllersCommand
     from iiwa_dnn.control.posing import PoseSolution, solve_pose
     from iiwa_dnn.control.shields import Shields, ShieldsCommand
     from iiwa_dnn.networks.batch import BatchSolution, solve_batch
@@ -109,6 +110,7 @@ else:
 
 
 _LATER = {
+    "control.controllers": "Controllers ControllersCommand",
     "control.posing": "PoseSolution solve_pose",
     "control.shields": "Shields ShieldsCommand",
     "networks.batch": "BatchSolution solve_batch",
@@ -139,6 +141,8 @@ __all__ = [
     "Cone",
     "Configuration",
     "Controller",
+    "Controllers",
+    "ControllersCommand",
     "Cost",
     "CrossCheck",
     "CyclicMotion",

@@ -1408,7 +1408,7 @@ def step_arms(
         memories: Memories of all N arms, (N, k).
         inputs: Inputs of all arms: the positions (N n,) and requests (N n,) or (N 6,) of one arm
             after those of another; `kind` does not count.
-        kinds: `Request` of each arm's new request, (N,).
+        kinds: `Request` of each arm's new request, (N,); overwritten by what `step_arm` returns.
         first: Number of the first arm.
         last: Number after that of the last arm.
     """
@@ -1418,4 +1418,4 @@ def step_arms(
         q = inputs.q[k * n : (k + 1) * n]
         request = inputs.request[k * width : (k + 1) * width]
         own = ArmInput(q, kinds[k], request, inputs.dt, inputs.elapsed, inputs.t)
-        step_arm(plan, memories[k], own)
+        kinds[k] = step_arm(plan, memories[k], own)

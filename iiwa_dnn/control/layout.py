@@ -71,8 +71,8 @@ class ArmLayout(NamedTuple):
         step: Layout of the control step.
         memory: Memory of an arm that has not begun, (k,).
         positions: Place of the commanded joint positions in it.
-        called: Names of the parts and obstacles whose Python is called at each step: parts in
-            numpy, and obstacles that move in a way of their own (`Obstacle.shift`).
+        called: Names of what is called in Python at each step: parts in numpy, obstacles that move
+            in a way of their own (`Obstacle.shift`), and a controller's network.
     """
 
     plan: ArmPlan
@@ -88,7 +88,7 @@ class ArmLayout(NamedTuple):
     def active_limits(self, memory: Vector) -> tuple[str, ...]:
         """Name the reasons, bounds and rows that keep an arm's last command from its request."""
         arm = self.state(memory)
-        if not arm.is_clipped:
+        if self.plan.request >= 0 and not arm.is_clipped:
             return ()
         names = self.step.log_layout.names
         codes, rows = np.split(arm.limiting.astype(int), [arm.positions.size])
@@ -189,8 +189,10 @@ def lay_out_arm(
         memory.obstacles = np.array(centers)
     rest_arm(plan, memory.numbers, np.zeros(0))
     positions = ArmState.columns(*sizes)["positions"]
-    called = [program.parts[k] for k in program.refreshed if k != scene]
+    called: list[object] = [program.parts[k] for k in program.refreshed if k != scene]
     called += movers if scene >= 0 else []
+    if request < 0 and not step.has_network:
+        called.append(solver.network)
     names = tuple(type(part).__name__ for part in called)
     return ArmLayout(plan, step, memory.numbers, positions, names)
 

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import copy
 import inspect
-import os
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from functools import cache
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -17,32 +14,17 @@ from iiwa_dnn import checks
 from iiwa_dnn.control.arms import (
     ArmInput,
     follow_arm,
-    halt_arm,
     motion_of,
-    rest_arm,
     scale_speed,
-    step_arms,
-    write_margins,
 )
-from iiwa_dnn.control.layout import Margin, see
-from iiwa_dnn.control.people import News, is_of_each, separation_in
+from iiwa_dnn.control.layout import ArmLayout
+from iiwa_dnn.control.many import ManyArms
 from iiwa_dnn.control.requests import one_request
 from iiwa_dnn.control.samples import KEEPS, checked_times, stream_mode
 from iiwa_dnn.control.shield import Shield, check_held, place
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import IntVector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.periods import stated_periods
-
-BLOCK = 64
-"""Number of arms that a thread takes at a time."""
-
-
-@cache
-def _pool(process: int, threads: int) -> ThreadPoolExecutor:
-    """Return the threads of a process, which a fork has not."""
-    return ThreadPoolExecutor(threads)
 
 
 class ShieldsCommand(NamedTuple):
@@ -67,27 +49,17 @@ class ShieldsCommand(NamedTuple):
         return self.shields.active_limits(i)
 
 
-class Shields:
+class Shields(ManyArms):
     """Shields of N arms of one kind, whose steps are one call.
 
     Each arm is answered as by a `Shield` whose kinematics are those of the exported C
-    (`write_kinematics`), to the last bit. Threads may share the shields: calls wait for each other.
+    (`write_kinematics`), to the last bit.
 
     Attributes:
-        robot: The robot, n joints.
-        count: Number of arms, N.
-        dt: Control period [s].
-        longest_period: Longest control period where periods vary [s]; None: they are constant.
         frame: Frame of twists.
-        threads: Largest number of threads of a step. It alone may be set later.
     """
 
-    robot: Robot
-    count: int
-    dt: float
-    longest_period: float | None
     frame: str
-    threads: int
 
     def __init__(
         self,
@@ -117,34 +89,12 @@ class Shields:
             shield = copy.deepcopy(robot)
         else:
             shield = Shield(robot, **({"samples": 0} | settings))  # type: ignore[arg-type]
-        self._shield = shield
-        checks.fix(
-            self,
-            robot=shield.robot,
-            count=checks.integer("count", count, 1),
-            dt=shield.dt,
-            longest_period=shield.longest_period,
-            frame=frame or shield.robot.tip,
-        )
-        self.threads = threads or os.cpu_count() or 1
-        layout = shield.layout(self.frame)
-        if layout.called:
-            problem = f"are in Python: {', '.join(layout.called)}; take a Shield for each arm"
-            raise InvalidInputError("limits", problem, layout.called)
-        memory = layout.memory
-        self._memories: Matrix = np.tile(memory, (self.count, 1))
+        checks.fix(self, frame=frame or shield.robot.tip)
+        self._begin(shield, count, threads)
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        checks.settable("the shields", name, value, ("threads",))
-        own = checks.integer(name, value, 1) if name == "threads" else value
-        super().__setattr__(name, own)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-
-    def __getstate__(self) -> dict[str, Any]:
-        with self._shield._lock:
-            return {**vars(self), "_memories": self._memories.copy()}
+    @property
+    def _layout(self) -> ArmLayout:
+        return self._made.layout(self.frame)  # type: ignore[no-any-return]
 
     def step(
         self,
@@ -196,10 +146,10 @@ class Shields:
         measured = checks.array("q", q, shape)
         inputs = ArmInput(measured.ravel(), kind, request.ravel(), dt or 0.0, elapsed or 0.0, 0.0)
         kinds = self._flags("given", given) * kind
-        layout = self._shield.layout(self.frame)
-        with self._shield._lock:
-            if kind in self._shield._unseen:
-                self._shield._warn(measured[0], kind, request[0])
+        layout = self._layout
+        with self._made._lock:
+            if kind in self._made._unseen:
+                self._made._warn(measured[0], kind, request[0])
             if isinstance(obstacles, Mapping):
                 self._see(people, obstacles, age)
             elif people is not None:
@@ -207,7 +157,7 @@ class Shields:
             if obstacles is not None and not isinstance(obstacles, Mapping):
                 place(layout, self._memories, obstacles)
             if not time is lead is None:
-                mode = stream_mode(kind, lead, self._shield.samples)
+                mode = stream_mode(kind, lead, self._made.samples)
                 stamp = None if time is None else np.full(1, checks.finite("time", time))
                 self._keep(stamp, request, mode, kinds > 0)
                 kinds = 0 * kinds
@@ -243,75 +193,23 @@ class Shields:
             InvalidInputError: A shape is wrong, times do not rise, or samples are too many. Nothing
                 is then changed.
         """
-        t = checked_times(times, self._shield.samples)
+        t = checked_times(times, self._made.samples)
         mode = KEEPS[checks.one_of("keep", keep, tuple(KEEPS))]
         points = checks.array("positions", positions, (self.count, t.size, self.robot.dof))
-        with self._shield._lock:
+        with self._made._lock:
             self._keep(t, points, mode, self._flags("given", given) > 0, now)
 
     def _keep(
         self, times: Vector | None, points: Any, mode: int, given: Any, now: float | None = None
     ) -> None:
         """Let arms follow samples; without times that of the present."""
-        layout = self._shield.layout(self.frame)
+        layout = self._layout
         for i in np.flatnonzero(given):
             memory = self._memories[i]
             clock = float(layout.state(memory).time)
             own = np.full(1, clock) if times is None else times
             own = own + (0.0 if now is None else clock - now)
             follow_arm(layout.plan, memory, own, points[i].reshape(own.size, -1), mode)
-
-    def _see(self, people: Any, bodies: Mapping[str, Any] | None, age: float | None) -> None:
-        """Take what was seen of people, by all arms or by each one, and of bodies by all arms."""
-        rule = separation_in(self._shield.limits)
-        frames = people if is_of_each(people, self.count) else [people] * self.count
-        all_news = [News(rule, frame, bodies, age) for frame in frames]
-        for memory, news in zip(self._memories, all_news, strict=True):
-            see(self._shield.layout(self.frame).plan, memory, news)
-
-    def _take_steps(self, inputs: ArmInput, kinds: IntVector) -> None:
-        """Take a step of all arms (`step_arms`), shared by threads."""
-        plan = self._shield.layout(self.frame).plan
-        if self.threads == 1 or self.count <= BLOCK:
-            step_arms(plan, self._memories, inputs, kinds, 0, self.count)
-            return
-
-        def work(first: int) -> None:
-            last = min(first + BLOCK, self.count)
-            step_arms(plan, self._memories, inputs, kinds, first, last)
-
-        list(_pool(os.getpid(), self.threads).map(work, range(0, self.count, BLOCK)))
-
-    def _flags(self, name: str, value: ArrayLike | None) -> IntVector:
-        """Return booleans (N,), by default all true, as 1 and 0."""
-        flags = np.ones(self.count, dtype=bool) if value is None else np.asarray(value)
-        if flags.shape != (self.count,) or flags.dtype.kind != "b":
-            raise InvalidInputError(name, f"must be booleans of shape ({self.count},)", value)
-        return flags.astype(np.int64)
-
-    def reset(self, mask: ArrayLike | None = None, q: ArrayLike | None = None) -> None:
-        """Reset arms to rest: requests, halts and the last commands no longer count.
-
-        Args:
-            mask: Whether each arm is reset, (N,); None: all are.
-            q: Joint positions of the arms [rad], (N, n); None: those that the next step measures.
-        """
-        positions: Matrix = np.zeros((self.count, 0))
-        if q is not None:
-            positions = checks.array("q", q, (self.count, self.robot.dof))
-        with self._shield._lock:
-            for i in np.flatnonzero(self._flags("mask", mask)):
-                rest_arm(self._shield.layout(self.frame).plan, self._memories[i], positions[i])
-
-    def halt(self, mask: ArrayLike | None = None) -> None:
-        """Brake arms at every step from now on, whatever is requested, until `reset`.
-
-        Args:
-            mask: Whether each arm is halted, (N,); None: all are.
-        """
-        with self._shield._lock:
-            for i in np.flatnonzero(self._flags("mask", mask)):
-                halt_arm(self._shield.layout(self.frame).plan, self._memories[i])
 
     def scale_speed(self, scale: float, mask: ArrayLike | None = None) -> None:
         """Let requests use a part of the joints' velocity limits, as `Shield.scale_speed`.
@@ -321,32 +219,6 @@ class Shields:
             mask: Whether each arm is meant, (N,); None: all are.
         """
         part = checks.fraction("scale", scale)
-        with self._shield._lock:
+        with self._made._lock:
             for i in np.flatnonzero(self._flags("mask", mask)):
-                scale_speed(self._shield.layout(self.frame).plan, self._memories[i], part)
-
-    def active_limits(self, i: int) -> tuple[str, ...]:
-        """Name the active limits of arm i's last command, as `ShieldCommand.active_limits`."""
-        with self._shield._lock:
-            return self._shield.layout(self.frame).active_limits(self._memories[i])
-
-    def margin(self, i: int | None = None) -> Margin:
-        """Return the distances of arm i at the positions that its last command starts from.
-
-        If i is None, those of all arms, as arrays (N,).
-        """
-        layout = self._shield.layout(self.frame)
-        with self._shield._lock:
-            if i is not None:
-                return layout.margin(self._memories[i])
-            joint = np.empty(self.count)
-            distance = np.empty(self.count)
-            separation = np.empty(self.count)
-            torque = np.empty(self.count)
-            write_margins(layout.plan, self._memories, joint, distance, separation, torque)
-            return Margin(joint, distance, separation, torque)
-
-    def stopping_time(self, i: int) -> float:
-        """Return the time of arm i's stopping motion from its last command [s]."""
-        with self._shield._lock:
-            return self._shield.layout(self.frame).stopping_time(self._memories[i])
+                scale_speed(self._layout.plan, self._memories[i], part)

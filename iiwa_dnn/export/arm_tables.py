@@ -111,18 +111,15 @@ class Tables:
             self.frames: Sequence[str] = [frame or made.robot.tip]
             layout = made.layout(self.frames[0])
             paths: list[Reference] = []
-            called = layout.called
         else:
             self.kind = "controller"
             layout = made.arm_layout
             self.frames = layout.step.program.target_frames
             paths = [*by_frame(made.reference, made.robot.tip).values()]
-            network = type(made.solver.network).__name__
-            called = (*layout.called, *[network] * (not layout.step.has_network))
             reasons[Reason.SINGULAR] = SINGULAR
-        if called:
-            problem = f"are in Python, which C cannot call: {', '.join(called)}"
-            raise InvalidInputError("parts", problem, called)
+        if layout.called:
+            problem = f"are in Python, which C cannot call: {', '.join(layout.called)}"
+            raise InvalidInputError("parts", problem, layout.called)
         plan = layout.plan
         settings = plan.settings
         self.program = layout.step.program

@@ -298,9 +298,9 @@ def with_limits(*limits: Any) -> d.Shield:
 
 
 REFUSED: dict[str, Any] = {
-    "limits: are in Python: Slow": lambda: d.Shields(with_limits(d.JointLimits(), Slow()), 2),
+    "parts: are in Python: Slow": lambda: d.Shields(with_limits(d.JointLimits(), Slow()), 2),
     "parts: are in Python, which C": lambda: export.c99(with_limits(d.JointLimits(), Slow()), "x"),
-    "limits: are in Python: Sphere": lambda: d.Shields(
+    "parts: are in Python: Sphere": lambda: d.Shields(
         ROBOT, 2, dt=DT, obstacles=[swinging(d.Sphere)([2.0, 0.0, 0.0], 0.1, velocity=[0.1, 0, 0])]
     ),
     "limits: need a JointLimits": lambda: with_limits(),

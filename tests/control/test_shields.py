@@ -11,26 +11,12 @@ import pytest
 
 import iiwa_dnn as d
 from iiwa_dnn.control.requests import REASONS, Reason
-from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 
 DT = 1e-3
 START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
 PLAIN = d.load_robot("iiwa7")
 SMOOTH = PLAIN.with_limits(acceleration=10.0, jerk=500.0)
 BALL = d.Sphere([0.36, 0.16, 0.64], 0.05)
-
-
-@pytest.fixture
-def kernels_kinematics(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the kernel compute the kinematics of shields at the desk too, not Pinocchio."""
-
-    def update(self: Any, q: np.ndarray) -> None:
-        tables = vars(self).setdefault("tables", model_tables(self.robot, self.frame_ids))
-        joints = np.ascontiguousarray(q)
-        write_kinematics(tables, joints, self.jacobian, self.placements, self.inertia)
-
-    monkeypatch.setattr(Kinematics, "update", update)
 
 
 def requests(kind: str, steps: int) -> Iterator[dict[str, np.ndarray]]:
