@@ -7,7 +7,7 @@ which is the name of the caller's own argument.
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from numbers import Integral, Real
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, TypeGuard, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -187,6 +187,14 @@ def joint_positions(argument: str, value: ArrayLike, dof: int) -> Array:
         if np.abs(q).max() > LARGEST:
             raise InvalidInputError(argument, f"must be within ±{LARGEST:.0f} rad", value)
     return q
+
+
+def is_plain(value: object, shape: tuple[int, ...]) -> TypeGuard[Array]:
+    """Test whether a value is an array of float64 of this shape, without gaps."""
+    # Of bytes in another order Pinocchio makes other numbers, without a word.
+    if type(value) is not np.ndarray or value.dtype is not _FLOAT or value.shape != shape:
+        return False
+    return value.base is None or value.flags.c_contiguous  # own data have no gaps
 
 
 def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:

@@ -59,8 +59,6 @@ from iiwa_dnn.schemes.step import TARGET_SIZE
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
 
-_FLOAT = np.dtype(np.float64)
-
 NOTHING = np.zeros(0)
 """No targets, for those of the paths; no state, of a network in Python."""
 
@@ -361,7 +359,7 @@ class Controller:
         if step.varies or not dt is elapsed is None:
             periods = periods_of_step(self, self._warned, dt, elapsed)
             clock = (t, dt or 0.0, elapsed or 0.0)
-        if not _is_plain(q, step.shape):
+        if not checks.is_plain(q, step.shape):
             q = checks.joint_positions("q", q, self.robot.dof)
         program.kinematics.update(q)
         arm = self._arm
@@ -376,7 +374,7 @@ class Controller:
         if action == INVALID:
             self._refuse(q, clock, targets)
         arm.computed = arm.spare
-        words = arm.layout.reasons_of_bodies(arm.spare)
+        words = arm.layout.reasons_of_bodies(arm.spare) if arm.plan.separation >= 0 else ()
         return Command(data, step.log_layout, ACTION_OF[action], periods, words)
 
     def _refuse(self, q: Vector, clock: Vector3, targets: Vector) -> None:
@@ -638,13 +636,6 @@ def periods_of_step(
         problem = f"a period of {periods.dt:g} s is above the longest, {longest:g} s"
         warn_caller(f"{problem}: limits may be passed")
     return periods
-
-
-def _is_plain(q: Any, shape: tuple[int, ...]) -> bool:
-    """Test whether joint positions are an array of float64 of this shape, without gaps."""
-    # Of bytes in another order Pinocchio makes other numbers, without a word.
-    plain: bool = type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == shape
-    return plain and (q.base is None or q.flags.c_contiguous)  # own data have no gaps
 
 
 # Checks of the attributes that may be set.

@@ -106,7 +106,7 @@ class ArmLayout(NamedTuple):
 
     def reasons_of_bodies(self, memory: Vector) -> tuple[str, ...]:
         """Name the reasons of an arm's last step that bodies of bounded speed are."""
-        return self.reasons(memory, OF_BODIES) if self.plan.separation >= 0 else ()
+        return self.reasons(memory, OF_BODIES)
 
     def separation_words(self, memory: Vector) -> str:
         """Name the link and the body that slow an arm's last command down, or the body's age."""

@@ -127,7 +127,8 @@ def one_request(
     if (dq is not None) + (twist is not None) + (position is not None) > 1:
         raise InvalidInputError("dq, twist, position", "pass exactly one of them")
     if dq is not None:
-        return Request.VELOCITY, checks.array("dq", dq, shape)
+        own = dq if checks.is_plain(dq, shape) else checks.array("dq", dq, shape)
+        return Request.VELOCITY, own  # read before anybody can change it
     if twist is not None:
         return Request.TWIST, checks.array("twist", twist, (*shape[:-1], TWIST))
     if position is not None:

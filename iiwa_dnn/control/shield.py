@@ -30,6 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
+from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.arms import (
     ArmInput,
     ArmPlan,
@@ -88,6 +89,9 @@ DISTANCE = 0.02
 
 LATENCY = 0.15
 """Age of people that a camera of 30 Hz and a tracker of 0.1 s exceed by lost frames alone [s]."""
+
+FARTHEST = LARGEST * LARGEST
+"""Squared length of joint positions above which they may have no meaning [rad^2]."""
 
 NO_TARGETS = np.zeros((0, TARGET_SIZE))
 """Targets of a shield, which tracks no frame, (0, 18)."""
@@ -325,6 +329,7 @@ class Shield:
             settings=settings,
             samples=samples and checks.integer("samples", samples, 4),
         )
+        self._shape = (robot.dof,)
         self._warned: set[str] = set()
         self._unseen = tuple(Request)  # kinds whose first request has warnings
         self._speed_scale = 1.0
@@ -671,14 +676,13 @@ class Shield:
                 changed.
             NotFoundError: The robot has no frame of that name.
         """
-        robot = self.robot
-        kind, request = one_request((robot.dof,), dq, twist, position)
+        kind, request = one_request(self._shape, dq, twist, position)
         measured = self._measured(q)
         with self._lock:
             kept = self._kept
             memory = kept.memory.copy()
             last = kept.frame
-            seen = (frame or robot.tip) if kind is Request.TWIST else last
+            seen = (frame or self.robot.tip) if kind is Request.TWIST else last
             layout = self._layouts.get(seen) or self.layout(seen)
             plan = layout.plan
             step = layout.step
@@ -766,6 +770,8 @@ class Shield:
 
     def _measured(self, q: ArrayLike | None) -> Vector:
         """Return measured joint positions (n,); NaN for None, which the first step refuses."""
+        if checks.is_plain(q, self._shape) and q.dot(q) <= FARTHEST:
+            return q
         if q is not None:
             return checks.joint_positions("q", q, self.robot.dof)
         if not self._state().has_begun:
