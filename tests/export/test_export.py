@@ -274,8 +274,8 @@ CORTEX = ("-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard", "-mthumb")
 @pytest.mark.parametrize(
     ("prefix", "flags", "most"),
     [
-        ("", ("-fno-pie",), 133_000),
-        pytest.param("arm-none-eabi-", CORTEX, 86_000, marks=needs("arm-none-eabi-gcc")),
+        ("", ("-fno-pie",), 138_000),
+        pytest.param("arm-none-eabi-", CORTEX, 89_000, marks=needs("arm-none-eabi-gcc")),
     ],
 )
 def test_size_without_global_state(
