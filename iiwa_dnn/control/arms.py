@@ -56,6 +56,7 @@ from iiwa_dnn.control.samples import (
 from iiwa_dnn.control.state import MotionState, change_spacing, count_as_sent
 from iiwa_dnn.control.stopping import brake_blindly, least_periods
 from iiwa_dnn.control.yielding import NOMINAL, NONE, SLOW
+from iiwa_dnn.naming import LimitKind
 from iiwa_dnn.networks.integrators.base import AnswerSettings, CompiledAnswer
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
@@ -91,6 +92,9 @@ LONGEST = 1e3
 
 RISE = 4.0
 """Largest rate at which the part of a request that a separation admits grows again [1/s]."""
+
+BEHIND = 1.5
+"""Way from one requested position to the next, times this, above which a joint is behind them."""
 
 FOLLOWING = 1e-12
 """Difference of measured and commanded positions that counts as rounding [rad]."""
@@ -179,6 +183,7 @@ class ArmState(Record):
         measured: Measured ones [rad], (n,), with the displacement that the delay hides, and with
             the turns of `positions`.
         wraps: 1 for each joint whose readings have skipped whole turns, (n,).
+        behind: 1 for each joint that a stream of requested positions has left behind, (n,).
         request: The request that counts, (max(n, 6),), zero without one; (0,) of a controller.
         reasons: 1 for each `Reason` of the last step, else 0.
         motion: `MotionState`.
@@ -211,6 +216,7 @@ class ArmState(Record):
     positions: Vector = part("n")
     measured: Vector = part("n")
     wraps: Vector = part("n")
+    behind: Vector = part("n")
     request: Vector = part("request")
     reasons: Vector = part(len(Reason))
     motion: Vector = part("motion")
@@ -790,6 +796,7 @@ def _note_sent(arm: ArmState, period: float, dq: Vector) -> None:
 def _update_request(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> None:
     """Set the request that counts: the new one, else the last one, or zero for a `Reason`."""
     kind = inputs.kind
+    streams = kind == Request.POSITION and arm.kind == Request.POSITION
     count = 0
     if kind != Request.NONE:
         count = TWIST if kind == Request.TWIST else arm.positions.size
@@ -809,6 +816,9 @@ def _update_request(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> N
     refused = is_refused(arm)
     changes = differing(arm.request, before)
     arm.is_repeated = not refused and changes == 0
+    for i in range(arm.behind.size if changes > 0 else 0):
+        way = abs(arm.request[i] - before[i])
+        arm.behind[i] = 1.0 if streams and 0.0 < BEHIND * way < abs(_left(arm, i)) else 0.0
 
 
 @compiled
@@ -956,6 +966,7 @@ def _answer(
         _note_targets(plan, arm, motion, arrays, timing, log, action)
     else:
         motion.yields = False  # the next step tries the request again
+        _note_lag(arm, motion_constants(arrays), log)
         _keep_answer(arm, log)
         _note_request(plan, arm, arrays, log)
     return action if is_valid else INVALID
@@ -1275,6 +1286,19 @@ def _note_separation(
     if plan.step.policy == SLOW and largest_entry(log.dq) == 0.0:
         motion.path_lag += timing.expected * log.fraction
         log.fraction = 0.0
+
+
+@compiled
+def _note_lag(arm: ArmState, limits: MotionConstants, log: StepLog) -> None:
+    """Note by which limits joints stay behind a stream of positions, each of which is a rest."""
+    for i in range(arm.behind.size if arm.answered == Request.POSITION else 0):
+        left = _left(arm, i) - arm.period * log.dq[i]
+        if arm.behind[i] == 0.0 or log.limiting[i] != 0.0 or abs(left) <= FOLLOWING:
+            continue
+        kind = float(LimitKind.ACCELERATION if limits.acceleration[i] < np.inf else LimitKind.JERK)
+        if abs(log.dq[i]) >= limits.velocity[i] * (1.0 - FOLLOWING):
+            kind = float(LimitKind.VELOCITY)
+        log.limiting[i] = math.copysign(kind, left)
 
 
 @compiled

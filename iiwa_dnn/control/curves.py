@@ -64,24 +64,24 @@ def curve_of(own: FollowState, i: int, k: int) -> Curve:
 
 
 @compiled
-def position_at(own: FollowState, i: int, t: float) -> float:
-    """Compute the position of joint i's reference at the time t [s].
+def state_at(own: FollowState, i: int, t: float) -> Curve:
+    """Compute the reference of joint i from the time t [s] on, up to its next sample.
 
     Before the first sample it goes on with the velocity there, after the last one it rests.
     """
     last = own.count - 1
     n = own.goal.size
     if t >= own.times[last]:
-        resting: float = own.positions[last * n + i]
-        return resting
-    if t <= own.times[Knot.FIRST]:
-        first: float = own.positions[i] + (t - own.times[Knot.FIRST]) * own.slopes[i]
-        return first
+        return Curve(own.positions[last * n + i], 0.0, 0.0, 0.0)
+    if t < own.times[Knot.FIRST]:
+        v = own.slopes[i]
+        return Curve(own.positions[i] + (t - own.times[Knot.FIRST]) * v, v, 0.0, 0.0)
     k = piece_at(own, t)
     u = t - own.times[k]
     curve = curve_of(own, i, k)
-    between: float = curve.p + u * (curve.v + u * (curve.c + u * curve.d))
-    return between
+    bent = curve.c + 3.0 * u * curve.d
+    p = curve.p + u * (curve.v + u * (curve.c + u * curve.d))
+    return Curve(p, curve.v + u * (curve.c + bent), bent, curve.d)
 
 
 @compiled
@@ -136,42 +136,41 @@ def move(own: FollowState, i: int, by: float) -> None:
 
 
 @compiled
-def bend(own: FollowState, i: int, end: float, w: float, a: float, span: float) -> None:
-    """Bend the reference of joint i from where it is to an end, by three cubic pieces.
+def inner_accelerations(begin: Curve, end: Curve, span: float) -> tuple[float, float]:
+    """Compute the accelerations where three cubic pieces meet that lead from one state to another.
 
     Position, velocity and acceleration are continuous.
 
     Args:
-        own: The state; the samples of joint i are overwritten, their times are not.
-        i: Number of the joint.
-        end: Position at the end [rad].
-        w: Velocity there [rad/s].
-        a: Acceleration there [rad/s^2].
-        span: Time from now to the end [s].
+        begin: State at the begin.
+        end: State at the end.
+        span: Time between them [s].
+    """
+    h = span / PIECES
+    a = 2.0 * end.c
+    first = 2.0 * begin.c
+    both = (end.v - begin.v) / h - 0.5 * (first + a)
+    second = (end.p - begin.p - span * begin.v) / (h * h) - (8.0 * first + a) / 6.0 - both
+    return second, both - second
+
+
+@compiled
+def bend(own: FollowState, i: int, begin: Curve, end: Curve, span: float) -> None:
+    """Let the reference of joint i lead from one state to another (`inner_accelerations`).
+
+    The samples of joint i are overwritten, their times are not.
     """
     n = own.goal.size
     h = span / PIECES
-    u = 0.0
-    now = Curve(position_at(own, i, own.clock), 0.0, 0.0, 0.0)
-    if own.count > 1 and own.clock < own.times[own.count - 1]:
-        k = piece_at(own, own.clock)
-        u = own.clock - own.times[k]
-        now = curve_of(own, i, k)
-    p = now.p + u * (now.v + u * (now.c + u * now.d))
-    v = now.v + u * (2.0 * now.c + 3.0 * u * now.d)
-    first = 2.0 * now.c + 6.0 * u * now.d
-    # The accelerations at both inner ends of pieces, from velocity and position at the end.
-    both = (w - v) / h - 0.5 * (first + a)
-    second = (end - p - span * v) / (h * h) - (8.0 * first + a) / 6.0 - both
-    third = both - second
-    own.positions[i] = p
-    own.slopes[i] = v
-    own.positions[n + i] = p + h * (v + h * (2.0 * first + second) / 6.0)
-    own.slopes[n + i] = v + 0.5 * h * (first + second)
-    own.positions[Knot.THIRD * n + i] = end - h * (w - h * (2.0 * a + third) / 6.0)
-    own.slopes[Knot.THIRD * n + i] = w - 0.5 * h * (a + third)
-    own.positions[Knot.LAST * n + i] = end
-    own.slopes[Knot.LAST * n + i] = w
+    second, third = inner_accelerations(begin, end, span)
+    own.positions[i] = begin.p
+    own.slopes[i] = begin.v
+    own.positions[n + i] = begin.p + h * (begin.v + h * (4.0 * begin.c + second) / 6.0)
+    own.slopes[n + i] = begin.v + 0.5 * h * (2.0 * begin.c + second)
+    own.positions[Knot.THIRD * n + i] = end.p - h * (end.v - h * (4.0 * end.c + third) / 6.0)
+    own.slopes[Knot.THIRD * n + i] = end.v - 0.5 * h * (2.0 * end.c + third)
+    own.positions[Knot.LAST * n + i] = end.p
+    own.slopes[Knot.LAST * n + i] = end.v
 
 
 @compiled

@@ -10,9 +10,11 @@ a joint comes to rest at a position (`reaching`):
 - The *offset* of the arm from the virtual joint comes to rest at 0 within :math:`\varphi` of the
   limits, :math:`\varphi` being `SHARE`.
 
-The command is the sum of both velocities, so it is within all limits. Where a new chunk begins
-beside the old one, the virtual joint is moved by the difference, which fades as an offset; where
-a position limit or a distance changes a command, the virtual joint begins anew at the arm.
+The command is the sum of both velocities, so it is within all limits. A new chunk begins in the
+state in which the old one is left, where that takes no more than :math:`\varphi` of the limits: it
+differs by the rounding of a spline. Where it begins elsewhere, the virtual joint is moved by the
+difference, which fades as an offset; where a position limit or a distance changes a command, the
+virtual joint begins anew at the arm.
 """
 
 from __future__ import annotations
@@ -23,8 +25,19 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.clocks import SHARE, limit_clock, own_rates
-from iiwa_dnn.control.curves import Knot, bend, lay_out, move, position_at, solve_slopes
-from iiwa_dnn.control.samples import FollowState, Mode
+from iiwa_dnn.control.curves import (
+    PIECES,
+    Curve,
+    Knot,
+    bend,
+    inner_accelerations,
+    lay_out,
+    move,
+    piece_at,
+    solve_slopes,
+    state_at,
+)
+from iiwa_dnn.control.samples import SHORTEST, FollowState, Mode
 from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import copied
@@ -39,6 +52,10 @@ FADE = 1.0
 SILENCE = 1.5
 """Sampling periods after which a stream without a new sample comes to rest at the last one."""
 
+GENTLE = 0.02
+"""Time in which an offset's acceleration builds up, at least [s]: jerk is felt, and saves little.
+"""
+
 OTHER = 1e-9
 """Difference of a command from the request above which the virtual joint begins anew [rad/s]."""
 
@@ -50,11 +67,11 @@ SLOWEST = 0.5
 
 
 class Past(IntEnum):
-    """Steps at which the reference is compared where a new chunk begins."""
+    """Derivatives of the reference that are compared where a new chunk begins."""
 
-    PRESENT = 0
-    LAST = 1
-    BEFORE = 2
+    POSITION = 0
+    VELOCITY = 1
+    BEND = 2
 
 
 @compiled
@@ -88,7 +105,7 @@ def follow_samples(
         own.pace[:] = 0.0
         span = 2.0 * own.sampling
         for i in range(q.size):
-            bend(own, i, own.goal[i], 0.0, 0.0, span)
+            bend(own, i, state_at(own, i, own.clock), Curve(own.goal[i], 0.0, 0.0, 0.0), span)
         lay_out(own, span)
     clock = own.clock
     rate_before = own.rate_before
@@ -104,13 +121,13 @@ def follow_samples(
     first = own.times[Knot.FIRST]
     was = clock - periods.dt * own.rate_before if clock >= first else first
     for i in range(q.size):
-        own.reference[i] = position_at(own, i, max(then, first))
-        present = position_at(own, i, max(clock, first))
+        own.reference[i] = state_at(own, i, max(then, first)).p
+        present = state_at(own, i, max(clock, first)).p
         w = (own.reference[i] - present) / periods.expected
-        before = (present - position_at(own, i, was)) / periods.dt
+        before = (present - state_at(own, i, was).p) / periods.dt
         rates = own_rates(limits, i, 1.0 - SHARE)
         v = _virtual_velocity(own, i, present - own.virtual[i], w, before, rates, periods)
-        fading = own_rates(limits, i, SHARE)
+        fading = _fading_rates(limits, i)
         last = motion.last[i] - own.speed[i]
         last_but_one = motion.before[i] - own.speed_before[i]
         offset = own.virtual[i] - q[i]
@@ -119,6 +136,14 @@ def follow_samples(
         own.speed[i] = v
         own.asked[i] = v + u
         dq[i] = v + u
+
+
+@compiled
+def _fading_rates(limits: MotionConstants, i: int) -> Rates:
+    """Return the limits within which the offset of joint i fades: jerk builds up over `GENTLE`."""
+    own = own_rates(limits, i, SHARE)
+    accel = own.acceleration
+    return Rates(own.velocity, accel, min(own.jerk, accel / GENTLE), accel, np.inf, 0.0)
 
 
 @compiled
@@ -195,20 +220,17 @@ def _take_chunk(
     """Take the waiting samples as the chunk that is followed; what differs becomes an offset."""
     n = q.size
     dt = periods.dt
-    begins = own.count == 0
-    if begins:
+    old = np.empty((3, n))
+    if own.count == 0:
         own.clock = now
         own.rate = 1.0
         own.rate_before = 1.0
-    old = np.empty((3, n))
-    new = np.empty((3, n))
-    if begins:
         for i in range(n):
-            old[Past.PRESENT, i] = q[i]
-            old[Past.LAST, i] = q[i] - dt * motion.last[i]
-            old[Past.BEFORE, i] = old[Past.LAST, i] - dt * motion.before[i]
+            accel = (motion.last[i] - motion.before[i]) / dt
+            _keep(old, i, Curve(q[i], motion.last[i] + 0.5 * dt * accel, 0.5 * accel, 0.0))
     else:
-        _last_positions(own, dt, old)
+        for i in range(n):
+            _keep(old, i, state_at(own, i, own.clock))
     own.count = own.waiting
     own.waiting = 0
     own.mode = own.next_mode
@@ -216,16 +238,18 @@ def _take_chunk(
     copied(own.positions[: own.count * n], own.next_positions)
     for i in range(n):
         solve_slopes(own, i)
-    _last_positions(own, dt, new)
-    for i in range(n if own.times[Knot.FIRST] <= now else 0):
-        speed = (
-            new[Past.PRESENT, i] - new[Past.LAST, i] - old[Past.PRESENT, i] + old[Past.LAST, i]
-        ) / dt
-        before = (
-            new[Past.LAST, i] - new[Past.BEFORE, i] - old[Past.LAST, i] + old[Past.BEFORE, i]
-        ) / dt
-        _shift(own, q, limits, i, new[Past.PRESENT, i] - old[Past.PRESENT, i])
-        _shift_speed(own, limits, i, speed, before, dt)
+    on_time = abs(own.clock - now) < SHORTEST and min(own.rate, own.rate_before) == 1.0
+    if not (on_time and _join(own, limits, old)):
+        back = dt * own.rate
+        further = dt * own.rate_before
+        for i in range(n if own.times[Knot.FIRST] <= now else 0):
+            new = state_at(own, i, own.clock)
+            v = new.v - old[Past.VELOCITY, i]
+            c = new.c - old[Past.BEND, i]
+            _shift(own, q, limits, i, new.p - old[Past.POSITION, i])
+            speed = own.rate * (v - back * c)
+            before = own.rate_before * (v - (2.0 * back + further) * c)
+            _shift_speed(own, limits, i, speed, before, dt)
     own.clock = now
     limit_clock(own, limits)
     own.rate = own.fastest
@@ -233,13 +257,57 @@ def _take_chunk(
 
 
 @compiled
-def _last_positions(own: FollowState, dt: float, found: Matrix) -> None:
-    """Write the reference's positions at this step and the two before, (3, n) [rad]."""
-    t = own.clock
-    for k in range(len(found)):
-        for i in range(found.shape[1]):
-            found[k, i] = position_at(own, i, t)
-        t -= dt * (own.rate if k == 0 else own.rate_before)
+def _keep(old: Matrix, i: int, state: Curve) -> None:
+    """Write the state of joint i's reference into `old` (3, n)."""
+    old[Past.POSITION, i] = state.p
+    old[Past.VELOCITY, i] = state.v
+    old[Past.BEND, i] = state.c
+
+
+@compiled
+def _join(own: FollowState, limits: MotionConstants, old: Matrix) -> bool:
+    """Let a chunk begin at the old state (3, n), if that takes at most `SHARE` of the limits.
+
+    The pieces up to the third sample from now on lead there. Where it takes more, or too few
+    samples are left, the chunk stays as it is.
+
+    Returns:
+        Whether it begins there.
+    """
+    n = own.goal.size
+    k = piece_at(own, own.clock) + PIECES
+    if k > own.count - 2 or own.times[Knot.FIRST] > own.clock:
+        return False
+    end = own.times[k]
+    span = end - own.clock
+    for i in range(n):
+        new = state_at(own, i, own.clock)
+        gap = Curve(
+            old[Past.POSITION, i] - new.p,
+            old[Past.VELOCITY, i] - new.v,
+            old[Past.BEND, i] - new.c,
+            0.0,
+        )
+        first = 2.0 * gap.c
+        second, third = inner_accelerations(gap, Curve(0.0, 0.0, 0.0, 0.0), span)
+        most = max(max(abs(first), abs(second)), abs(third))
+        jump = max(max(abs(second - first), abs(third - second)), abs(third))
+        rates = own_rates(limits, i, SHARE)
+        if most > rates.acceleration or jump * PIECES > rates.jerk * span:
+            return False
+    for i in range(n):
+        begin = Curve(old[Past.POSITION, i], old[Past.VELOCITY, i], old[Past.BEND, i], 0.0)
+        there = state_at(own, i, end)
+        for j in range(k, own.count):
+            own.positions[(j - k + PIECES) * n + i] = own.positions[j * n + i]
+            own.slopes[(j - k + PIECES) * n + i] = own.slopes[j * n + i]
+        bend(own, i, begin, there, span)
+    count = own.count - k + PIECES
+    for j in range(k, own.count):
+        own.times[j - k + PIECES] = own.times[j]
+    lay_out(own, span)
+    own.count = count
+    return True
 
 
 @compiled
@@ -259,8 +327,10 @@ def _shift_speed(
     fastest = (1.0 - SHARE) * limits.velocity[i]
     change = (1.0 - SHARE) * limits.acceleration[i] * dt
     by = min(max(by, -most), most)
+    share = SHARE * limits.acceleration[i] * dt
+    before = min(max(before, by - share), by + share)
     speed = min(max(own.speed[i] + by, -fastest), fastest)
-    before = own.speed_before[i] + min(max(before, -most), most)
+    before += own.speed_before[i]
     own.speed_before[i] = min(max(before, speed - change), speed + change)
     own.speed[i] = speed
 
@@ -331,5 +401,6 @@ def _take_sample(
         own.goal[i] = p
         own.pace[i] = w
         end = p + ahead * (w + 0.5 * a * (ahead + sampling))
-        bend(own, i, end, w + a * (ahead + 0.5 * sampling), a, span)
+        w += a * (ahead + 0.5 * sampling)
+        bend(own, i, state_at(own, i, now), Curve(end, w, 0.5 * a, 0.0), span)
     lay_out(own, span)

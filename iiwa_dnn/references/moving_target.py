@@ -41,6 +41,13 @@ LINEAR = 2.0
 ANGULAR = 8.0
 """Largest angular acceleration of a target [rad/s^2]."""
 
+DENSE = 0.05
+"""Longest time between two poses of a stream that is shown on time, where it leads [s].
+
+Its error is that time squared times an acceleration; from twice that time on the stream is shown
+one pose late, without that error.
+"""
+
 SLOWEST = 0.5
 """Longest time between two poses of a stream [s]; after a longer one it begins anew."""
 
@@ -88,10 +95,11 @@ class MovingTarget(Reference):
 
     A pose that is set alone is approached from the one that was sampled last along a straight line
     and about a fixed axis, and the target rests there. Poses that are set one soon after another,
-    each within the speed from the last, are a stream: the target passes each of them one sampling
-    period later. It is a function of the time in `at`: a policy that slows the path's clock slows
-    the target. If that time goes back to before the motion began, the motion begins anew at that
-    time, from the same pose. `set` may be called in another thread than `at`.
+    each within the speed from the last, are a stream: at 20 Hz or more the target is where they
+    lead, at 10 Hz or less it passes each of them one sampling period later. It is a function of the
+    time in `at`: a policy that slows the path's clock slows the target. If that time goes back to
+    before the motion began, the motion begins anew at that time, from the same pose. `set` may be
+    called in another thread than `at`.
 
     Attributes:
         speed: Largest linear speed of the target [m/s].
@@ -211,8 +219,8 @@ def _set_rates(own: MovingPath, speed: float, rate: float) -> None:
     way = TargetData.of(own.last.copy())
     set_mean_twist(way, TargetData.of(own.goal), 1.0)
     flows = own.age <= SILENCE * own.sampling
-    # The stream is a sampling period late; the control point that moves on is one spacing ahead.
-    ahead = own.age + SPACING - own.sampling
+    late = min(max(2.0 * (own.sampling - DENSE), 0.0), own.sampling)
+    ahead = own.age + SPACING - late  # the control point that moves on is one spacing ahead
     share = 1.0 if flows else 0.0
     pace = scaled(share, triple(own.pace.linear))
     turn = scaled(share, triple(own.pace.angular))

@@ -80,6 +80,55 @@ def test_receding_chunks_are_followed_without_lag(name, latency, seam, most):
     assert off < 1.5e-3 + 1.5 * seam
 
 
+@pytest.mark.parametrize(("name", "dt"), [("so101", 1.0 / RATE), ("so101", 0.01), ("iiwa7", 1e-3)])
+def test_chunks_of_one_motion_have_no_seam(name, dt):
+    """Their splines differ: the arm was up to 5 mrad off, at 7 times the motion's jerk."""
+    shield = iiwa_dnn.Shield(make(name)[0].robot, dt=dt)
+    start = shield.robot.start_posture()
+    shield.reset(start)
+    path = [start]
+    off = []
+    for k in range(int(2.0 / dt)):
+        if k * dt >= len(off) * 8 / RATE - 1e-9:
+            times = (len(off) * 8 + np.arange(16)) / RATE
+            shield.follow(times, moves(start, times, 0.3, 0.8))
+            off.append(0.0)
+        command = shield.step(path[-1])
+        path.append(path[-1] + dt * command.dq)
+        off[-1] = max(off[-1], command.off)
+    assert broken(shield, path) == []
+    assert max(off) < 1e-12
+    motion = moves(start, np.arange(len(path)) * dt, 0.3, 0.8)
+    jerk, own = (np.diff(each, 3, axis=0).std() for each in (np.array(path), motion))
+    assert jerk < 1.3 * own
+    assert np.abs(path - motion).max() < 1e-3
+
+
+def test_joints_that_positions_leave_behind_name_the_limit():
+    """A position is a rest, and nothing said why a stream of them was followed 0.2 s late."""
+    robot = make()[0].robot
+    shield = iiwa_dnn.Shield(robot, dt=1.0 / RATE)
+    q = start = robot.start_posture()
+    shield.reset(q)
+    found = []
+    for k in range(60):
+        goal = start + 0.6 * np.sin(3.8 * k / RATE) * np.eye(start.size)[0]
+        command = shield.step(q, position=goal)
+        q = q + shield.dt * command.dq
+        behind = abs(goal - q)[0] > 0.5 * abs(command.dq[0]) * shield.dt
+        found.append((behind, command.active_limits))
+    names = {words for behind, words in found[5:] if behind}
+    ends = ("upper acceleration limit", "lower acceleration limit")
+    assert {words[0].partition(" ")[2] for words in names if words} == set(ends)
+    assert sum(behind and not words for behind, words in found) <= 6  # where it turns round
+    shield.reset(start)
+    q = start
+    for _ in range(20):  # a position alone is no stream
+        command = shield.step(q, position=start + 0.6)
+        q = q + shield.dt * command.dq
+        assert command.active_limits == ()
+
+
 def test_chunk_ends_at_its_last_sample_without_passing_it():
     shield, start = make()
     times = np.arange(0.0, 0.8, 1.0 / RATE)
