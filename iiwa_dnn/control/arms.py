@@ -1293,12 +1293,11 @@ def _note_lag(arm: ArmState, limits: MotionConstants, log: StepLog) -> None:
     """Note by which limits joints stay behind a stream of positions, each of which is a rest."""
     for i in range(arm.behind.size if arm.answered == Request.POSITION else 0):
         left = _left(arm, i) - arm.period * log.dq[i]
-        if arm.behind[i] == 0.0 or log.limiting[i] != 0.0 or abs(left) <= FOLLOWING:
-            continue
         kind = float(LimitKind.ACCELERATION if limits.acceleration[i] < np.inf else LimitKind.JERK)
         if abs(log.dq[i]) >= limits.velocity[i] * (1.0 - FOLLOWING):
             kind = float(LimitKind.VELOCITY)
-        log.limiting[i] = math.copysign(kind, left)
+        if arm.behind[i] > 0.0 and log.limiting[i] == 0.0 and abs(left) > FOLLOWING:
+            log.limiting[i] = math.copysign(kind, left)
 
 
 @compiled

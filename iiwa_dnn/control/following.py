@@ -19,8 +19,6 @@ virtual joint begins anew at the arm.
 
 from __future__ import annotations
 
-from enum import IntEnum
-
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
@@ -39,7 +37,7 @@ from iiwa_dnn.control.curves import (
 )
 from iiwa_dnn.control.samples import SHORTEST, FollowState, Mode
 from iiwa_dnn.control.state import MotionState
-from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp import Vector
 from iiwa_dnn.qp.layout import copied
 from iiwa_dnn.schemes.joint_limits import MotionConstants
 from iiwa_dnn.schemes.periods import Periods
@@ -64,14 +62,6 @@ ROUNDING = 1e-9
 
 SLOWEST = 0.5
 """Longest sampling period of a stream [s]; after a longer pause it goes on with the one before."""
-
-
-class Past(IntEnum):
-    """Derivatives of the reference that are compared where a new chunk begins."""
-
-    POSITION = 0
-    VELOCITY = 1
-    BEND = 2
 
 
 @compiled
@@ -220,17 +210,21 @@ def _take_chunk(
     """Take the waiting samples as the chunk that is followed; what differs becomes an offset."""
     n = q.size
     dt = periods.dt
-    old = np.empty((3, n))
+    p = q.copy()
+    v = np.empty(n)
+    c = np.empty(n)
     if own.count == 0:
         own.clock = now
         own.rate = 1.0
-        own.rate_before = 1.0
         for i in range(n):
-            accel = (motion.last[i] - motion.before[i]) / dt
-            _keep(old, i, Curve(q[i], motion.last[i] + 0.5 * dt * accel, 0.5 * accel, 0.0))
-    else:
-        for i in range(n):
-            _keep(old, i, state_at(own, i, own.clock))
+            change = 0.5 * (motion.last[i] - motion.before[i])
+            v[i] = motion.last[i] + change
+            c[i] = change / dt
+    for i in range(n if own.count > 0 else 0):
+        old = state_at(own, i, own.clock)
+        p[i] = old.p
+        v[i] = old.v
+        c[i] = old.c
     own.count = own.waiting
     own.waiting = 0
     own.mode = own.next_mode
@@ -238,18 +232,12 @@ def _take_chunk(
     copied(own.positions[: own.count * n], own.next_positions)
     for i in range(n):
         solve_slopes(own, i)
-    on_time = abs(own.clock - now) < SHORTEST and min(own.rate, own.rate_before) == 1.0
-    if not (on_time and _join(own, limits, old)):
-        back = dt * own.rate
-        further = dt * own.rate_before
-        for i in range(n if own.times[Knot.FIRST] <= now else 0):
+    on_time = own.rate == 1.0 and abs(own.clock - now) < SHORTEST
+    if own.times[Knot.FIRST] <= now and not (on_time and _joins(own, limits, p, v, c, dt)):
+        for i in range(n):
             new = state_at(own, i, own.clock)
-            v = new.v - old[Past.VELOCITY, i]
-            c = new.c - old[Past.BEND, i]
-            _shift(own, q, limits, i, new.p - old[Past.POSITION, i])
-            speed = own.rate * (v - back * c)
-            before = own.rate_before * (v - (2.0 * back + further) * c)
-            _shift_speed(own, limits, i, speed, before, dt)
+            _shift(own, q, limits, i, new.p - p[i])
+            _shift_speed(own, limits, i, own.rate * (new.v - v[i]), dt)
     own.clock = now
     limit_clock(own, limits)
     own.rate = own.fastest
@@ -257,54 +245,51 @@ def _take_chunk(
 
 
 @compiled
-def _keep(old: Matrix, i: int, state: Curve) -> None:
-    """Write the state of joint i's reference into `old` (3, n)."""
-    old[Past.POSITION, i] = state.p
-    old[Past.VELOCITY, i] = state.v
-    old[Past.BEND, i] = state.c
-
-
-@compiled
-def _join(own: FollowState, limits: MotionConstants, old: Matrix) -> bool:
-    """Let a chunk begin at the old state (3, n), if that takes at most `SHARE` of the limits.
+def _joins(
+    own: FollowState, limits: MotionConstants, p: Vector, v: Vector, c: Vector, dt: float
+) -> bool:
+    """Let a chunk begin in the old state, if that takes at most `SHARE` of the limits.
 
     The pieces up to the third sample from now on lead there. Where it takes more, or too few
     samples are left, the chunk stays as it is.
 
+    Args:
+        own: The state, with the chunk.
+        limits: Limits of the joints.
+        p: Positions of the old reference now [rad], (n,).
+        v: Its velocities [rad/s], (n,).
+        c: Half its accelerations [rad/s^2], (n,).
+        dt: Control period [s].
+
     Returns:
         Whether it begins there.
     """
-    n = own.goal.size
+    n = p.size
     k = piece_at(own, own.clock) + PIECES
-    if k > own.count - 2 or own.times[Knot.FIRST] > own.clock:
-        return False
-    end = own.times[k]
+    end = own.times[min(k, own.count - 1)]
     span = end - own.clock
+    if k > own.count - 2 or span < dt:
+        return False
     for i in range(n):
         new = state_at(own, i, own.clock)
-        gap = Curve(
-            old[Past.POSITION, i] - new.p,
-            old[Past.VELOCITY, i] - new.v,
-            old[Past.BEND, i] - new.c,
-            0.0,
-        )
+        gap = Curve(p[i] - new.p, v[i] - new.v, c[i] - new.c, 0.0)
+        rest = Curve(0.0, 0.0, 0.0, 0.0)
         first = 2.0 * gap.c
-        second, third = inner_accelerations(gap, Curve(0.0, 0.0, 0.0, 0.0), span)
+        second, third = inner_accelerations(gap, rest, span)
+        rates = own_rates(limits, i, SHARE)
         most = max(max(abs(first), abs(second)), abs(third))
         jump = max(max(abs(second - first), abs(third - second)), abs(third))
-        rates = own_rates(limits, i, SHARE)
         if most > rates.acceleration or jump * PIECES > rates.jerk * span:
             return False
     for i in range(n):
-        begin = Curve(old[Past.POSITION, i], old[Past.VELOCITY, i], old[Past.BEND, i], 0.0)
         there = state_at(own, i, end)
-        for j in range(k, own.count):
-            own.positions[(j - k + PIECES) * n + i] = own.positions[j * n + i]
-            own.slopes[(j - k + PIECES) * n + i] = own.slopes[j * n + i]
-        bend(own, i, begin, there, span)
+        for j in range(PIECES, own.count - k + PIECES):
+            own.positions[j * n + i] = own.positions[(j + k - PIECES) * n + i]
+            own.slopes[j * n + i] = own.slopes[(j + k - PIECES) * n + i]
+        bend(own, i, Curve(p[i], v[i], c[i], 0.0), there, span)
     count = own.count - k + PIECES
-    for j in range(k, own.count):
-        own.times[j - k + PIECES] = own.times[j]
+    for j in range(PIECES, count):
+        own.times[j] = own.times[j + k - PIECES]
     lay_out(own, span)
     own.count = count
     return True
@@ -319,18 +304,14 @@ def _shift(own: FollowState, q: Vector, limits: MotionConstants, i: int, by: flo
 
 
 @compiled
-def _shift_speed(
-    own: FollowState, limits: MotionConstants, i: int, by: float, before: float, dt: float
-) -> None:
-    """Change the last two velocities of virtual joint i [rad/s], within its limits."""
+def _shift_speed(own: FollowState, limits: MotionConstants, i: int, by: float, dt: float) -> None:
+    """Change the velocity of virtual joint i [rad/s], within its limits."""
     most = 0.25 * SHARE * limits.acceleration[i] * FADE
-    fastest = (1.0 - SHARE) * limits.velocity[i]
-    change = (1.0 - SHARE) * limits.acceleration[i] * dt
+    rates = own_rates(limits, i, 1.0 - SHARE)
+    change = rates.acceleration * dt
     by = min(max(by, -most), most)
-    share = SHARE * limits.acceleration[i] * dt
-    before = min(max(before, by - share), by + share)
-    speed = min(max(own.speed[i] + by, -fastest), fastest)
-    before += own.speed_before[i]
+    speed = min(max(own.speed[i] + by, -rates.velocity), rates.velocity)
+    before = own.speed_before[i] + by
     own.speed_before[i] = min(max(before, speed - change), speed + change)
     own.speed[i] = speed
 
