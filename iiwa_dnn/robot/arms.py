@@ -188,8 +188,8 @@ Sources of the rates. iiwa7: KUKA publishes none. These accelerations are `drake
 iiwa_description/sdf/iiwa7_no_collision.sdf in github.com/RobotLocomotion/models; its README derives
 them from measured ones of an iiwa 14 (C. Larsen, master's thesis, Chalmers 2019, table 4) by the
 ratio of torque limits times inverse mass matrices. panda: kMaxJointAcceleration and kMaxJointJerk
-of include/franka/rate_limiting.h in libfranka 0.9.2, the last one for that arm. fr3: the same of
-libfranka 0.21, 10 rad/s^2 and 5000 rad/s^3 less its kLimitEps.
+of include/franka/rate_limiting.h in libfranka 0.9.2, the last one for that arm, plus its kLimitEps.
+fr3: the same of libfranka 0.21, 10 rad/s^2 and 5000 rad/s^3 less its kLimitEps.
 
 Sources of the motors. iiwa7: KUKA LBR iiwa technical data, page 1, by iiwa_description/README.md in
 github.com/RobotLocomotion/models; KUKA publishes no rotor inertia (that README takes those of a DLR
