@@ -273,12 +273,7 @@ def _keeps_between(step: StepViews, own: TorqueConstants, motion: Motion, last: 
 def _is_below(
     own: TorqueConstants, paces: Matrix, load: Vector, other: Vector, width: float
 ) -> bool:
-    r"""Test whether all torques surely keep their limits between two periods.
-
-    With :math:`\sigma` twice the sum of the speeds of the angles that M depends on, and
-    :math:`\dot\sigma` of their changes, the second derivative of M a is at most :math:`|M|
-    ((\sigma^2 + \dot\sigma) |a| + 2 \sigma |\dot a| + |\ddot a|)`, and so on for the velocities'
-    part.
+    """Test whether all torques surely keep their limits between two periods.
 
     Args:
         own: The limit.
@@ -287,7 +282,30 @@ def _is_below(
         other: Torques in the second one [N m], (n,).
         width: Time between them [s].
     """
-    n = load.size
+    bends = np.empty(load.size)
+    _write_bends(own, paces, bends)
+    for i in range(load.size):
+        most = max(load[i], other[i]) + width * width / 8.0 * bends[i]
+        if most > own.limit[i] * (1.0 + ROUNDING):
+            return False
+    return True
+
+
+@compiled
+def _write_bends(own: TorqueConstants, paces: Matrix, bends: Vector) -> None:
+    r"""Write bounds on the second derivatives of the torques by time [N m/s^2], bends (n,).
+
+    With :math:`\sigma` twice the sum of the speeds of the angles that M depends on, and
+    :math:`\dot\sigma` of their changes, the second derivative of M a is at most :math:`|M|
+    ((\sigma^2 + \dot\sigma) |a| + 2 \sigma |\dot a| + |\ddot a|)`, and so on for the velocities'
+    part.
+
+    Args:
+        own: The limit.
+        paces: `Pace` of each joint, (n, 4).
+        bends: The bounds, overwritten.
+    """
+    n = bends.size
     total = Pace.of(np.zeros(Pace.width()))
     held = Pace.of(np.zeros(Pace.width()))  # each joint's, times the root of its inertia
     turns = np.zeros(n + 1)  # of the angles from each joint on
@@ -310,10 +328,11 @@ def _is_below(
         squares = held.speed * (2.0 * inertia * total.speed + held.speed)
         slopes = inertia * (held.speed * total.change + total.speed * held.change)
         slopes += held.speed * held.change
-        bends = inertia * (held.speed * total.jerk + total.speed * held.jerk)
-        bends += held.speed * held.jerk
-        bends += held.change * (2.0 * inertia * total.change + held.change)
-        second = (turn * turn + changes[1]) * squares + 4.0 * turn * slopes + 2.0 * bends
+        second = inertia * (held.speed * total.jerk + total.speed * held.jerk)
+        second += held.speed * held.jerk
+        second += held.change * (2.0 * inertia * total.change + held.change)
+        second *= 2.0
+        second += (turn * turn + changes[1]) * squares + 4.0 * turn * slopes
         second += own.weight[i] * 0.5 * (0.5 * turns[0] * turns[0] + changes[0])
         second += own.rotor[i] * Pace.of(paces[i]).snap
         for j in range(n):
@@ -322,10 +341,7 @@ def _is_below(
             bend = (turns[after] * turns[after] + changes[after]) * other_pace.change
             bend += 2.0 * turns[after] * other_pace.jerk + other_pace.snap
             second += inertia * own.inertia[j] * bend
-        most = max(load[i], other[i]) + width * width / 8.0 * second
-        if most > own.limit[i] * (1.0 + ROUNDING):
-            return False
-    return True
+        bends[i] = second
 
 
 @compiled

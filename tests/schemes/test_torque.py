@@ -20,7 +20,7 @@ from iiwa_dnn.results.plots import overview_figure
 from iiwa_dnn.schemes import AccelerationLimits, JerkLimits
 from iiwa_dnn.schemes.joint_limits import MotionLimits
 from iiwa_dnn.schemes.rest import Motion, displacement_after, velocity_at
-from iiwa_dnn.schemes.torque import TorqueLimits, _write_paces, keeps_torque
+from iiwa_dnn.schemes.torque import TorqueLimits, _write_bends, _write_paces, keeps_torque
 
 DT = 2e-3
 CENTER = np.array([0.0, 0.0, 0.1])
@@ -161,6 +161,50 @@ def test_the_pace_of_a_motion_to_rest_bounds_what_its_curves_do() -> None:
         assert ([*of_v, *of_q] <= bounds).all()
         used.append(of_q[0] / pace[0, 0])
     assert np.median(used) > 0.8
+
+
+@pytest.mark.parametrize(("name", "armature"), [("panda", 0.0), ("ur5", 0.1), ("panda", 1e5)])
+def test_no_torque_bends_more_than_the_bound_along_a_motion_to_rest(
+    name: str, armature: float
+) -> None:
+    """By differences of Pinocchio's; where rotors bear all, the bound is what they bear."""
+    random = np.random.default_rng(4)
+    robot = d.load_robot(name).with_armature(armature)
+    own = TorqueLimits(1.0, friction=0.0).constants(robot)
+    model, data = robot.model, robot.model.createData()
+    n = robot.dof
+    used = []
+    for draw, q in enumerate(robot.draw(random, 30)):
+        cubic = draw % 3 > 0
+        periods = random.uniform(20.0, 200.0)
+        x, b = random.standard_normal((2, n)) * [[1.0], [3.0 * cubic]]
+        motion = Motion(x, b, periods, DT, cubic, False, False)
+        left = random.uniform(1.0, 0.7 * periods)
+        paces, bends = np.empty((n, 4)), np.empty(n)
+        _write_paces(motion, 1.0 - (left - 1.0) / periods, paces)
+        _write_bends(own, paces, bends)
+
+        def torque(t: float, q: Array = q, motion: Motion = motion) -> Array:
+            joints = list(zip(motion.first, motion.coefficient, strict=True))
+            way = [displacement_after(motion, *joint, t) for joint in joints]
+            v, after = (
+                np.array(
+                    [
+                        velocity_at(*joint, (t - k) / motion.periods, motion.cubic)
+                        for joint in joints
+                    ]
+                )
+                for k in (1.0, 0.0)
+            )
+            return np.array(pin.rnea(model, data, q + way, v, (after - v) / DT))
+
+        for t in np.linspace(left + 0.2, periods - 0.2, 25):
+            bend = torque(t + 0.2) - 2.0 * torque(t) + torque(t - 0.2)
+            found = np.abs(bend) / (0.2 * DT) ** 2
+            noise = 1e-12 * (1.0 + armature) / (0.2 * DT) ** 2
+            assert (found <= bends * (1.0 + 1e-6) + noise).all()
+            used.append((found / (bends + noise)).max())
+    assert (max(used) > 0.9) == (armature > 1e3)
 
 
 @pytest.mark.parametrize(("jerk", "dt"), [(np.inf, 2e-3), (2000.0, 2e-3), (np.inf, 1e-3)])
