@@ -2,8 +2,9 @@
 
 ``loop`` measures steps of every kind, beside PlaCo, Pink and mink; ``solvers`` the network beside
 QP solvers; ``export`` controllers in C; ``arrivals`` a shield's beside Ruckig's; ``sns`` saturation
-in the null space; ``cuda`` shields of many arms on a GPU; ``figures`` all but that, the heart, the
-paper's tables, the league of networks and hostile motion: every figure that the pages quote.
+in the null space; ``coworker`` an arm beside a person; ``cuda`` shields of many arms on a GPU;
+``figures`` all but that, the heart, the paper's tables, the league of networks and hostile motion:
+every figure that the pages quote.
 Filters of commands have `benchmarks.hostile`.
 """
 
@@ -17,7 +18,7 @@ from benchmarks.report import machine
 def main() -> int:
     """Carry out one of the commands; returns the exit code."""
     parser = argparse.ArgumentParser("python -m benchmarks", description=__doc__)
-    commands = ("loop", "solvers", "export", "arrivals", "sns", "cuda", "figures")
+    commands = ("loop", "solvers", "export", "arrivals", "sns", "coworker", "cuda", "figures")
     parser.add_argument("command", choices=commands)
     parser.add_argument("--steps", type=int, default=10_000, help="number of steps of a kind")
     for library in ("placo", "mink"):
@@ -48,6 +49,10 @@ def main() -> int:
         from benchmarks import sns
 
         sns.report()
+    if options.command in ("coworker", "figures"):
+        from benchmarks import coworker
+
+        coworker.report()
     if options.command == "cuda":
         from benchmarks import cuda
 

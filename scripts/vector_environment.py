@@ -46,6 +46,10 @@ class Shielded(VectorActionWrapper):
         super().__init__(env)
         self.shields = shields
 
+    def reset(self, **options):
+        self.shields.reset()
+        return super().reset(**options)
+
     def actions(self, actions):
         return self.shields.step(self.unwrapped.joints, actions).dq
 

@@ -265,7 +265,8 @@ def _joins(
         Whether it begins there.
     """
     n = p.size
-    k = piece_at(own, own.clock) + PIECES
+    passed = piece_at(own, own.clock)
+    k = passed + PIECES
     end = own.times[min(k, own.count - 1)]
     span = end - own.clock
     if k > own.count - 2 or span < dt:
@@ -284,12 +285,12 @@ def _joins(
     for i in range(n):
         there = state_at(own, i, end)
         for j in range(PIECES, own.count - k + PIECES):
-            own.positions[j * n + i] = own.positions[(j + k - PIECES) * n + i]
-            own.slopes[j * n + i] = own.slopes[(j + k - PIECES) * n + i]
+            own.positions[j * n + i] = own.positions[(j + passed) * n + i]
+            own.slopes[j * n + i] = own.slopes[(j + passed) * n + i]
         bend(own, i, Curve(p[i], v[i], c[i], 0.0), there, span)
     count = own.count - k + PIECES
     for j in range(PIECES, count):
-        own.times[j] = own.times[j + k - PIECES]
+        own.times[j] = own.times[j + passed]
     lay_out(own, span)
     own.count = count
     return True

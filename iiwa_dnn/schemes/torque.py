@@ -310,9 +310,13 @@ def _write_bends(own: TorqueConstants, paces: Matrix, bends: Vector) -> None:
     held = Pace.of(np.zeros(Pace.width()))  # each joint's, times the root of its inertia
     turns = np.zeros(n + 1)  # of the angles from each joint on
     changes = np.zeros(n + 1)
+    turn = 0.0
+    change = 0.0
     for k in range(n):
         at = n - 1 - k
         pace = Pace.of(paces[at])
+        turn = turns[at + 1]  # in the end, of all but the first: it turns with gravity alone
+        change = changes[at + 1]
         turns[at] = turns[at + 1] + 2.0 * pace.speed
         changes[at] = changes[at + 1] + 2.0 * pace.change
         total.speed += pace.speed
@@ -321,7 +325,6 @@ def _write_bends(own: TorqueConstants, paces: Matrix, bends: Vector) -> None:
         held.speed += own.inertia[at] * pace.speed
         held.change += own.inertia[at] * pace.change
         held.jerk += own.inertia[at] * pace.jerk
-    turn = turns[1]  # no torque depends on the first angle but by gravity
     for i in range(n):
         inertia = own.inertia[i]
         # |Gamma_ijk| <= M_ij + M_ik + M_jk, each at most the product of two roots.
@@ -332,8 +335,8 @@ def _write_bends(own: TorqueConstants, paces: Matrix, bends: Vector) -> None:
         second += held.speed * held.jerk
         second += held.change * (2.0 * inertia * total.change + held.change)
         second *= 2.0
-        second += (turn * turn + changes[1]) * squares + 4.0 * turn * slopes
-        second += own.weight[i] * 0.5 * (0.5 * turns[0] * turns[0] + changes[0])
+        second += (turn * turn + change) * squares + 4.0 * turn * slopes
+        second += own.weight[i] * (total.speed * total.speed + total.change)
         second += own.rotor[i] * Pace.of(paces[i]).snap
         for j in range(n):
             after = min(i, j) + 1

@@ -40,7 +40,7 @@ def test_the_wheel_repeats_recorded_steps_without_this_package(tmp_path: Path) -
     [source] = (tmp_path / "unpacked").iterdir()
     run(*build, "wheel", cwd=source)
     [wheel] = (source / "dist").glob("armstep-*-py3-none-linux_*.whl")
-    assert wheel.stat().st_size < 270_000  # half of it for GPUs
+    assert wheel.stat().st_size < 275_000  # half of it for GPUs
     with zipfile.ZipFile(wheel) as own:
         assert "armstep/armstep.c" not in own.namelist()
         assert "armstep/shields.cu" in own.namelist()
