@@ -43,6 +43,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Reference
 from iiwa_dnn.robot.obstacles import names_of
 from iiwa_dnn.schemes.collisions import avoidance_of
+from iiwa_dnn.schemes.joint_limits import motion_constants
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
 from iiwa_dnn.schemes.program import ProgramArrays
@@ -148,16 +149,10 @@ class Tables:
 
     @property
     def limits(self) -> dict[str, np.ndarray[Any, Any]]:
-        """Limits of the robot's joints by their names."""
-        robot = self.program.robot
-        lower, upper = robot.limits[:2]
-        return {
-            "lower": lower,
-            "upper": upper,
-            "velocity": robot.dq_max,
-            "acceleration": robot.ddq_max,
-            "jerk": robot.dddq_max,
-        }
+        """Limits of the joints that commands keep, by their names; inf for none."""
+        own = motion_constants(self.program.arrays)
+        names = ("lower", "upper", "velocity", "acceleration", "jerk")
+        return {name: np.array(getattr(own, name)) for name in names}
 
     @cached_property
     def digest(self) -> int:

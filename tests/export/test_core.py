@@ -345,6 +345,15 @@ def test_tables_that_were_changed_are_refused(text: str, library: Any) -> None:
     assert status("joint_names", value=["a"] * 6) == UNFIT
 
 
+def test_tables_have_the_limits_that_commands_keep(tmp_path: Path) -> None:
+    """Those of the scheme, which may be narrower than the robot's."""
+    controller, q0 = drawing(with_limits(AccelerationLimits(1.0)))
+    controller.warm_up(q0)
+    tables = json.loads(export.tables(controller, tmp_path / "arm.json").read_text())
+    assert tables["limits"]["acceleration"] == [1.0] * 7
+    assert tables["limits"]["velocity"] == controller.robot.dq_max.tolist()
+
+
 FUZZ = Path(__file__).parents[1] / "core_fuzz.c"
 
 

@@ -99,7 +99,7 @@ struct armstep_tables {
     const char *const *limit_names; /* (limits), by the codes of armstep_active_limits */
     ptrdiff_t limits;
     ptrdiff_t first_row; /* code of the first row */
-    const double *lower, *upper, *velocity, *acceleration, *jerk; /* the robot's limits, (joints) each */
+    const double *lower, *upper, *velocity, *acceleration, *jerk; /* what commands keep, (joints) each; INFINITY: none */
     double dt; /* control period */
     double longest; /* longest one where periods vary; 0: they do not */
     double delay; /* time by which a shield's arm is behind its commands */
@@ -249,7 +249,7 @@ ARMSTEP_API double armstep_time(const struct armstep *arm, const double *memory)
  * period; NULL: nothing is followed; */
 ARMSTEP_API const double *armstep_followed(const struct armstep *arm, const double *memory, double *late);
 
-/* the axes and the position (12) of the frame of a shield's twists at joint positions q (joints), and
+/* the axes, one a row, and the position (12) of the frame of a shield's twists at joint positions q (joints), and
  * its Jacobian, linear over angular (6, joints); */
 ARMSTEP_API enum armstep_status armstep_frame(
     const struct armstep *arm, double *scratch, const double *q, double *placement, double *jacobian
