@@ -89,6 +89,21 @@ def test_arms_have_targets_clocks_and_halts_of_their_own() -> None:
     assert np.isfinite(command.dq).all()
 
 
+def test_a_scheme_without_a_home_has_the_start_posture() -> None:
+    start = SMOOTH.start_posture()
+    heart = d.Heart(scale=6e-3, period=2.0).anchored(d.Configuration(SMOOTH, start))
+    q = np.tile(start + 0.001, (2, 1))
+    found = []
+    for home in (None, tuple(start)):
+        scheme = d.DoubleIndicator(home=home, extra_limits=RATES)
+        many = d.Controllers(d.Controller(SMOOTH, scheme, heart, dt=DT), 2)
+        for k in range(50):
+            command = many.step(q, k * DT)
+        found.append(command.dq)
+    assert found[0].any()
+    np.testing.assert_array_equal(*found)
+
+
 def test_what_is_in_python_is_refused_by_its_name() -> None:
     controller = made(solver=d.DNNSolver(d.PrimalDualNetwork()))
     with pytest.raises(
