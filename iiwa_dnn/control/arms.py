@@ -814,8 +814,14 @@ def _update_request(arm: ArmState, settings: ArmSettings, inputs: ArmInput) -> N
         elif i < count:
             arm.request[i] = inputs.request[i]
     refused = is_refused(arm)
+    arm.is_repeated = not refused and differing(arm.request, before) == 0
+    _note_behind(arm, before, streams)
+
+
+@compiled
+def _note_behind(arm: ArmState, before: Vector, streams: bool) -> None:
+    """Note for each joint whether it is behind a new position, by the way from that `before`."""
     changes = differing(arm.request, before)
-    arm.is_repeated = not refused and changes == 0
     for i in range(arm.behind.size if changes > 0 else 0):
         way = abs(arm.request[i] - before[i])
         arm.behind[i] = 1.0 if streams and 0.0 < BEHIND * way < abs(_left(arm, i)) else 0.0

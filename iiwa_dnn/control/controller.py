@@ -374,7 +374,7 @@ class Controller:
         if action == INVALID:
             self._refuse(q, clock, targets)
         arm.computed = arm.spare
-        words = arm.layout.reasons_of_bodies(arm.spare) if arm.plan.separation >= 0 else ()
+        words = arm.layout.reasons_of_bodies(arm.spare)
         return Command(data, step.log_layout, ACTION_OF[action], periods, words)
 
     def _refuse(self, q: Vector, clock: Vector3, targets: Vector) -> None:

@@ -106,7 +106,7 @@ class ArmLayout(NamedTuple):
 
     def reasons_of_bodies(self, memory: Vector) -> tuple[str, ...]:
         """Name the reasons of an arm's last step that bodies of bounded speed are."""
-        return self.reasons(memory, OF_BODIES)
+        return self.reasons(memory, OF_BODIES) if self.plan.separation >= 0 else ()
 
     def separation_words(self, memory: Vector) -> str:
         """Name the link and the body that slow an arm's last command down, or the body's age."""
@@ -191,8 +191,7 @@ def lay_out_arm(
     positions = ArmState.columns(*sizes)["positions"]
     called: list[object] = [program.parts[k] for k in program.refreshed if k != scene]
     called += movers if scene >= 0 else []
-    if request < 0 and not step.has_network:
-        called.append(solver.network)
+    called += [solver.network] * (request < 0 and not step.has_network)
     names = tuple(type(part).__name__ for part in called)
     return ArmLayout(plan, step, memory.numbers, positions, names)
 
