@@ -255,7 +255,7 @@ def make_scene(
     if not watched.any():
         bare = unwatched_links(robot)
         reason = f"; {unwatched(bare)}" if bare else ""
-        problem = f"there is no pair that could meet, leave them out{reason}"
+        problem = f"leave them out, there is no pair that could meet{reason}"
         raise InvalidInputError("obstacles", problem, obstacles)
     reasons = np.where(moved.any(axis=1), "may touch", "no joint moves it").tolist()
     left = tuple((*named[at], reasons[at]) for at in np.flatnonzero(~watched))
