@@ -83,7 +83,7 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
     (lambda: d.CollisionAvoidance(nearest=0), "nearest"),
     (
         lambda: d.CollisionAvoidance(self_collision=False).scene(ROBOT),
-        "obstacles: there is no pair",
+        "obstacles: leave them out, there is no pair",
     ),
     (lambda: d.CollisionAvoidance().scene(ROBOT.with_limits(velocity=np.inf)), "robot"),
     (lambda: run(d.DoubleIndicator(sample="end"), motion="rk4"), "motion: .*next target"),
