@@ -11,10 +11,10 @@ from numba import njit
 
 import iiwa_dnn
 from benchmarks.report import show
-from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.schemes import own_rate_limits
 from iiwa_dnn.schemes.joint_limits import MotionLimits
+from iiwa_dnn.step.stopping import least_periods
 from tests.judge_people import apart, judge, place, skeleton_of
 
 DT = 1e-3

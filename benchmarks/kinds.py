@@ -17,8 +17,8 @@ from benchmarks.loop import BALLS, DISTANCE, DT, RADII
 from benchmarks.report import show
 from hostile import streams
 from iiwa_dnn import AccelerationLimits, MovingTarget, Reference, Robot, Scheme, Sphere, Target
-from iiwa_dnn.control.policies import Action, Policy
 from iiwa_dnn.schemes import PoseTask
+from iiwa_dnn.step.policies import Action, Policy
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
 

@@ -16,6 +16,7 @@ ROOMS = {
     "references": (),
     "schemes": (),
     "control": (),
+    "posing": (),
     "simulation": (
         *("Plant", "PlantState", "Disturbances", "Push"),
         *("estimation.JointEstimator", "estimation.NoiseModel"),

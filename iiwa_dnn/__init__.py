@@ -77,11 +77,11 @@ from iiwa_dnn.schemes import (
 if TYPE_CHECKING:
     from iiwa_dnn import export as export
     from iiwa_dnn.control.controllers import Controllers, ControllersCommand
-    from iiwa_dnn.control.posing import PoseSolution, solve_pose
     from iiwa_dnn.control.shields import Shields, ShieldsCommand
     from iiwa_dnn.networks.batch import BatchSolution, solve_batch
     from iiwa_dnn.networks.problems import solve_problem
     from iiwa_dnn.networks.tracking import TrackingSolver
+    from iiwa_dnn.posing import PoseSolution, solve_pose
     from iiwa_dnn.qp.agreement import Agreement
     from iiwa_dnn.qp.crosscheck import CrossCheck
     from iiwa_dnn.qp.proof import Proof, prove
@@ -111,7 +111,7 @@ else:
 
 _LATER = {
     "control.controllers": "Controllers ControllersCommand",
-    "control.posing": "PoseSolution solve_pose",
+    "posing": "PoseSolution solve_pose",
     "control.shields": "Shields ShieldsCommand",
     "networks.batch": "BatchSolution solve_batch",
     "networks.problems": "solve_problem",

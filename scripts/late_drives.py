@@ -11,7 +11,7 @@ import tyro
 from tabulate import tabulate
 
 import iiwa_dnn
-from iiwa_dnn.control.requests import Reason
+from iiwa_dnn.step.requests import Reason
 
 DT = 1e-3  # [s]
 STATED = {"`delay` right": 1.0, "20 % less": 0.8, "20 % more": 1.2, "none": 0.0}

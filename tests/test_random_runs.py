@@ -8,9 +8,9 @@ import pytest
 
 import iiwa_dnn
 from iiwa_dnn import Configuration, Record, Robot
-from iiwa_dnn.control.policies import POLICIES
 from iiwa_dnn.simulation import NOISE_ENTRIES
 from iiwa_dnn.simulation.estimation import NoiseModel
+from iiwa_dnn.step.policies import POLICIES
 
 ROBOTS = ("iiwa7", "panda", "xarm7")
 STEPS = 60

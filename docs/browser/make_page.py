@@ -22,10 +22,10 @@ import numpy as np
 import pinocchio as pin
 
 import iiwa_dnn
-from iiwa_dnn.control.requests import Request
 from iiwa_dnn.files import write_text
 from iiwa_dnn.robot.collision import collision_model
 from iiwa_dnn.robot.shapes import visual_shapes
+from iiwa_dnn.step.requests import Request
 
 HERE = Path(__file__).parent
 HEART = ("q", "dq", "target", "begin", "step", "ball")

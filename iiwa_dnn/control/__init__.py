@@ -1,1 +1,1 @@
-"""The velocity controller: one control step, and the policies for steps without a solution."""
+"""Faces of the step at the desk: controllers and shields, their commands, words and warnings."""

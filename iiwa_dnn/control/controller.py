@@ -15,21 +15,10 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Vector3
-from iiwa_dnn.control.arms import (
-    LONGEST,
-    SHORTEST,
-    ArmInput,
-    ArmPlan,
-    ArmSettings,
-    begin_step,
-    halt_arm,
-    motion_of,
-    send_arm,
-    step_measured,
-)
+from iiwa_dnn.control.arm_layout import ArmLayout, lay_out_arm, see
 from iiwa_dnn.control.command import EXCEEDED, Command
-from iiwa_dnn.control.cycle import INVALID, ControlLayout
-from iiwa_dnn.control.layout import ArmLayout, lay_out_arm, see
+from iiwa_dnn.control.desk import step_measured
+from iiwa_dnn.control.news import News, separation_in
 from iiwa_dnn.control.paths import (
     References,
     beyond_reach,
@@ -40,11 +29,7 @@ from iiwa_dnn.control.paths import (
     target_warnings,
     warn_of_bodies,
 )
-from iiwa_dnn.control.people import News, separation_in
-from iiwa_dnn.control.plan import Instant
-from iiwa_dnn.control.policies import POLICIES, Action, Policy
-from iiwa_dnn.control.state import MotionState
-from iiwa_dnn.control.stopping import TRIES, periods_to_rest
+from iiwa_dnn.control.step_layout import ControlLayout
 from iiwa_dnn.errors import InvalidInputError, warn_caller
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
@@ -55,6 +40,22 @@ from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.layout import ProgramLayout, targets_of
 from iiwa_dnn.schemes.periods import Periods, checked_longest, stated_periods
 from iiwa_dnn.schemes.step import TARGET_SIZE
+from iiwa_dnn.step.arms import (
+    LONGEST,
+    SHORTEST,
+    ArmInput,
+    ArmPlan,
+    ArmSettings,
+    begin_step,
+    halt_arm,
+    motion_of,
+    send_arm,
+)
+from iiwa_dnn.step.cycle import INVALID
+from iiwa_dnn.step.plan import Instant
+from iiwa_dnn.step.policies import POLICIES, Action, Policy
+from iiwa_dnn.step.state import MotionState
+from iiwa_dnn.step.stopping import TRIES, periods_to_rest
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")

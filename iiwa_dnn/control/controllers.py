@@ -10,17 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.arms import ArmInput, motion_of
+from iiwa_dnn.control.arm_layout import ArmLayout
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.layout import ArmLayout
 from iiwa_dnn.control.many import ManyArms
-from iiwa_dnn.control.requests import Request
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.qp.layout import IntVector
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes.periods import stated_periods
 from iiwa_dnn.schemes.step import TARGET_SIZE
+from iiwa_dnn.step.arms import ArmInput, motion_of
+from iiwa_dnn.step.requests import Request
 
 
 class ControllersCommand(NamedTuple):

@@ -12,15 +12,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.arms import ArmInput, halt_arm, rest_arm, step_arms, write_margins
+from iiwa_dnn.control.arm_layout import ArmLayout, Margin, see
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.layout import ArmLayout, Margin, see
-from iiwa_dnn.control.people import News, is_of_each, separation_in
+from iiwa_dnn.control.desk import step_arms, write_margins
+from iiwa_dnn.control.news import News, is_of_each, separation_in
 from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.qp.layout import IntVector
 from iiwa_dnn.robot import Robot
+from iiwa_dnn.step.arms import ArmInput, halt_arm, rest_arm
 
 BLOCK = 64
 """Number of arms that a thread takes at a time."""

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.control.samples import SHORTEST, FollowState
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import IntVector
+from iiwa_dnn.step.samples import SHORTEST, FollowState
 
 MISSED = 1e-3
 """Distance from a sample up to which it counts as reached [rad]."""

@@ -31,41 +31,19 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.trigonometry import LARGEST
-from iiwa_dnn.control.arms import (
-    ArmInput,
-    ArmPlan,
-    ArmSettings,
-    ArmState,
-    add_pending,
-    begin_step,
-    finish_step,
-    follow_arm,
-    follow_of,
-    halt_arm,
-    motion_of,
-    place_arm,
-    rest_arm,
-    scale_speed,
-    send_arm,
-)
+from iiwa_dnn.control.arm_layout import ArmLayout, Margin, lay_out_arm, own_movers, reasons_of, see
+from iiwa_dnn.control.chunks import KEEPS, SAMPLES, checked_times, stream_mode
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import ACTION_OF, periods_of_step
-from iiwa_dnn.control.cycle import INVALID, ControlLayout
-from iiwa_dnn.control.layout import ArmLayout, Margin, lay_out_arm, own_movers, reasons_of, see
+from iiwa_dnn.control.desk import finish_step
+from iiwa_dnn.control.news import News, separation_in, split_bodies
 from iiwa_dnn.control.paths import long_times, setup_warnings, warn_of_bodies
-from iiwa_dnn.control.people import News, separation_in, split_bodies
-from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.posing import PoseChunk, Poses, solve_poses
 from iiwa_dnn.control.preview import Preview, Rehearsal
-from iiwa_dnn.control.requests import (
-    TWIST,
-    Request,
-    RequestCost,
-    one_request,
-)
-from iiwa_dnn.control.samples import KEEPS, SAMPLES, FollowState, checked_times, stream_mode
+from iiwa_dnn.control.requests import RequestCost, one_request
+from iiwa_dnn.control.step_layout import ControlLayout
 from iiwa_dnn.errors import InvalidInputError, warn_caller
 from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.posing import PoseChunk, Poses, solve_poses
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.obstacles import names_of
@@ -82,6 +60,26 @@ from iiwa_dnn.schemes.periods import SLACK, Periods, checked_longest
 from iiwa_dnn.schemes.separation import PEOPLE_SPEED, Separation
 from iiwa_dnn.schemes.step import TARGET_SIZE
 from iiwa_dnn.schemes.torque import own_torque_limits
+from iiwa_dnn.step.arms import (
+    ArmInput,
+    ArmPlan,
+    ArmSettings,
+    ArmState,
+    add_pending,
+    begin_step,
+    follow_arm,
+    follow_of,
+    halt_arm,
+    motion_of,
+    place_arm,
+    rest_arm,
+    scale_speed,
+    send_arm,
+)
+from iiwa_dnn.step.cycle import INVALID
+from iiwa_dnn.step.policies import Action
+from iiwa_dnn.step.requests import TWIST, Request
+from iiwa_dnn.step.samples import FollowState
 
 DISTANCE = 0.02
 """Least distance from obstacles where none is stated [m]."""

@@ -11,20 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.arms import (
-    ArmInput,
-    follow_arm,
-    motion_of,
-    scale_speed,
-)
-from iiwa_dnn.control.layout import ArmLayout
+from iiwa_dnn.control.arm_layout import ArmLayout
+from iiwa_dnn.control.chunks import KEEPS, checked_times, stream_mode
 from iiwa_dnn.control.many import ManyArms
 from iiwa_dnn.control.requests import one_request
-from iiwa_dnn.control.samples import KEEPS, checked_times, stream_mode
 from iiwa_dnn.control.shield import Shield, check_held, place
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.periods import stated_periods
+from iiwa_dnn.step.arms import ArmInput, follow_arm, motion_of, scale_speed
 
 
 class ShieldsCommand(NamedTuple):

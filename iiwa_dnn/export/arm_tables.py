@@ -19,11 +19,9 @@ from iiwa_dnn.compiling.sources import Module, TranslationError, c_name
 from iiwa_dnn.compiling.translator import Function, Translator
 from iiwa_dnn.control.command import SINGULAR
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.fitting import arm_scratch
+from iiwa_dnn.control.news import separation_in
 from iiwa_dnn.control.paths import by_frame
-from iiwa_dnn.control.people import separation_in
-from iiwa_dnn.control.plan import Paths
-from iiwa_dnn.control.requests import REASONS, TWIST, Reason
+from iiwa_dnn.control.requests import REASONS
 from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.core import (
@@ -48,6 +46,9 @@ from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
 from iiwa_dnn.schemes.program import ProgramArrays
 from iiwa_dnn.schemes.separation import Separation
+from iiwa_dnn.step.fitting import arm_scratch
+from iiwa_dnn.step.plan import Paths
+from iiwa_dnn.step.requests import TWIST, Reason
 
 STEPS = 200
 """Recorded steps that tables in JSON hold."""

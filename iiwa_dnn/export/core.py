@@ -23,11 +23,11 @@ from iiwa_dnn.compiling.library import numbered_kernels, source_of
 from iiwa_dnn.compiling.readers import write_readers
 from iiwa_dnn.compiling.sources import decoration
 from iiwa_dnn.compiling.translator import Translator
-from iiwa_dnn.control import arms, cycle, fitting
-from iiwa_dnn.control.policies import Action, ProgramKind
-from iiwa_dnn.control.requests import FASTEST, Reason, Request
 from iiwa_dnn.naming import ACTIONS, LimitKind
 from iiwa_dnn.qp.dense import all_finite
+from iiwa_dnn.step import arms, cycle, fitting
+from iiwa_dnn.step.policies import Action, ProgramKind
+from iiwa_dnn.step.requests import FASTEST, Reason, Request
 
 RELEASE = 1
 """Number of the layout of tables; another one where a release reads others."""
@@ -65,7 +65,7 @@ SECTIONS = {
     "qp": "Quadratic programs",
     "schemes": "Program of a step: costs, tasks, limits",
     "networks": "Network that solves the program",
-    "control": "Control step: answer, yielding, braking",
+    "step": "Control step: answer, yielding, braking",
     "": "Parts from outside of the package",
 }
 """Titles of the sections of the code, by the packages that they are translated from."""

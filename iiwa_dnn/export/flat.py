@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn.compiling.kinds import BOOL, FLOAT, Kind
-from iiwa_dnn.control.plan import PathColumn, Paths
 from iiwa_dnn.export.core import WRITTEN
 from iiwa_dnn.export.nodes import Labels, Node, PartNumber, about_members, rows_of, table_node
 from iiwa_dnn.networks.integrators.base import CompiledAnswer
 from iiwa_dnn.schemes.program import Column, ProgramArrays
+from iiwa_dnn.step.plan import PathColumn, Paths
 
 ADDRESSES: dict[tuple[type, str], type[IntEnum] | None] = {
     (CompiledAnswer, "address"): None,

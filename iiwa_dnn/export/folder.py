@@ -18,7 +18,6 @@ from iiwa_dnn import checks
 from iiwa_dnn.compiling.sources import c_word
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import by_frame
-from iiwa_dnn.control.requests import TWIST, Request
 from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.control.shields import Shields
 from iiwa_dnn.errors import FileError, InvalidInputError
@@ -31,6 +30,7 @@ from iiwa_dnn.references import Lissajous
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.step import TARGET_SIZE
+from iiwa_dnn.step.requests import TWIST, Request
 
 STEPS = 500
 """Steps of the vectors."""

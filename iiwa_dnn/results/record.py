@@ -160,7 +160,7 @@ class Record:
         CodeArray,
         Column(
             "Action of the policy at each step: codes of "
-            "`iiwa_dnn.control.policies.Action`, 0 where the network's answer was taken",
+            "`iiwa_dnn.step.policies.Action`, 0 where the network's answer was taken",
             ("N",),
             np.int8,
         ),

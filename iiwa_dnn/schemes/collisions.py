@@ -9,7 +9,7 @@ each end :math:`x` of the second body's segment has one row. Along the normal th
 with the speed :math:`v_o` of the obstacle, `CLEARANCE` :math:`\mu`, and a bound
 :math:`\varepsilon` on the distance that a step like the last one loses although its row holds, as
 points move on curves. The rows keep the distance to first order; what guarantees it is the stopping
-motion that is verified for each command (`iiwa_dnn.control.stopping`).
+motion that is verified for each command (`iiwa_dnn.step.stopping`).
 
 Source: B. Faverjon, P. Tournassoud, "A local based approach for path planning of manipulators with
 a high number of degrees of freedom", ICRA 1987.

@@ -333,7 +333,7 @@ class AccelerationLimits(RateLimits):
     """Bounds on the change of the joint velocities from one command to the next.
 
     Within them a joint can always stop before its position limit. If a task conflicts with them,
-    the task yields (`iiwa_dnn.control.policies`); the bounds never do.
+    the task yields (`iiwa_dnn.step.policies`); the bounds never do.
 
     Attributes:
         limit: Largest acceleration [rad/s^2], one number or (n,); None takes `Robot.ddq_max`, inf

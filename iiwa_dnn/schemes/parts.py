@@ -321,7 +321,7 @@ class Task(Part):
     Attributes:
         tracks: Whether the task needs a target of its frame.
         row_weight: Weight of the error of a row where a policy relaxes the task
-            (`iiwa_dnn.control.policies`), 1 for an error in [m/s]. With 0 they are not relaxed.
+            (`iiwa_dnn.step.policies`), 1 for an error in [m/s]. With 0 they are not relaxed.
         weight: None for hard rows, else the weight of the soft task.
     """
 

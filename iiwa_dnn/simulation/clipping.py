@@ -7,10 +7,10 @@ keeps. A simulated drive clips it to the limits at the joints' true positions.
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.control.fallback import Yielding, nearest_within
 from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.qp.layout import qp_views
+from iiwa_dnn.step.fallback import Yielding, nearest_within
 
 TOLERANCE = 1e-12
 """Change of a velocity up to which a joint does not count as clipped [rad/s]: rounding."""

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.policies import Action
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.simulation.motion import Method
 from iiwa_dnn.simulation.noise import SignalChain
 from iiwa_dnn.simulation.plants import Plant
+from iiwa_dnn.step.policies import Action
 
 
 class Outcome(NamedTuple):

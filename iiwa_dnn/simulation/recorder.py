@@ -5,9 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.control.command import log_of
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.policies import Action
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL
@@ -15,6 +13,8 @@ from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import TorqueLimits
 from iiwa_dnn.simulation.loop import Outcome
+from iiwa_dnn.step.log import log_of
+from iiwa_dnn.step.policies import Action
 
 SEARCHED = 100
 """Steps of the continuous mode of which one is tested for a solution."""

@@ -11,7 +11,6 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.command import log_of
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import References, beyond_reach, by_frame
 from iiwa_dnn.errors import RunInterrupted
@@ -28,6 +27,7 @@ from iiwa_dnn.simulation.motion import MOTIONS, check_motion
 from iiwa_dnn.simulation.noise import SignalChain
 from iiwa_dnn.simulation.recorder import Recorder
 from iiwa_dnn.simulation.settings import RunSettings
+from iiwa_dnn.step.log import log_of
 
 COMPLETED = "completed"
 

@@ -11,13 +11,13 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Mode
 from iiwa_dnn.control.paths import References, by_frame
-from iiwa_dnn.control.policies import Policy
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.simulation.estimation import NoiseModel
 from iiwa_dnn.simulation.motion import MOTIONS, Motion
 from iiwa_dnn.simulation.plants import IdealPlant, Plant
+from iiwa_dnn.step.policies import Policy
 
 MAX_STEPS = 20_000_000
 """Largest number of steps of a run, for memory: a record takes 0.4 kB a step."""

@@ -14,12 +14,12 @@ from helpers_kinematics import PAPER_Q0
 from helpers_physics import run_python
 from helpers_simulation import heart, paper_robot
 from iiwa_dnn.compiling.library import _LIBRARY
-from iiwa_dnn.control.policies import Action
 from iiwa_dnn.export.folder import run
 from iiwa_dnn.networks.integrators.implicit import solve
 from iiwa_dnn.references.base import enter_path
 from iiwa_dnn.references.shapes import heart_path
 from iiwa_dnn.schemes.parts import enter_limit
+from iiwa_dnn.step.policies import Action
 
 
 def _limit(step: Any, constants: Any, G: Any, h: Any, lb: Any, ub: Any) -> None:
@@ -110,7 +110,7 @@ def test_kernels_that_can_be_entered_are_numbered_and_others_are_not() -> None:
     own = _LIBRARY.numbers["references_shapes_heart_path"]
     assert enter_path.address(iiwa_dnn.Heart.path) == own
     assert _LIBRARY.numbers["networks_integrators_implicit_solve"]
-    assert not _LIBRARY.numbers["control_cycle_take_step"]
+    assert not _LIBRARY.numbers["step_cycle_take_step"]
 
 
 def test_a_path_is_entered_from_python_and_by_two_threads() -> None:
@@ -135,8 +135,8 @@ RUNS = """
 import sys; sys.path.insert(0, "tests")
 from export_settings import SETTINGS
 from iiwa_dnn.compiling.library import INTERPRETED
-from iiwa_dnn.control.policies import Action
 from iiwa_dnn.export.folder import run
+from iiwa_dnn.step.policies import Action
 assert INTERPRETED == FLAG
 for name, make in SETTINGS.items():
     for row in run(*make(), 720):

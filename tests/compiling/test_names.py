@@ -12,10 +12,10 @@ from iiwa_dnn.compiling.sources import decoration
 ROOT = Path(iiwa_dnn.__file__).parent
 
 SPATIAL = {
-    "control/people.py": {"place.axes"},
     "references/rotations.py": {"R", "u", "v"},
     "references/shapes.py": {"target.position", "target.linear_velocity"},
     "robot/kinematics_kernel.py": {"axes", "v", "moved.axes", "start.axes", "placed"},
+    "step/bodies.py": {"place.axes"},
     "schemes/collisions.py": {"Body.of(scene.bodies[pair.second]).half"},
     "schemes/dynamics.py": {
         *("A", "here.axes", "link.placement.axes", "wrench.force", "wrench.moment"),

@@ -5,9 +5,10 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_simulation import driven
-from iiwa_dnn.control.command import LogLayout, lay_out_log, log_of
-from iiwa_dnn.control.policies import Policy, ProgramKind
+from iiwa_dnn.control.command import LogLayout, lay_out_log
 from iiwa_dnn.schemes.program import ProgramSizes
+from iiwa_dnn.step.log import log_of
+from iiwa_dnn.step.policies import Policy, ProgramKind
 
 STEPS = 120
 SPEED = 0.15

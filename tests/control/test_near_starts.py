@@ -9,8 +9,8 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_simulation import driven
-from iiwa_dnn.control.policies import ProgramKind
 from iiwa_dnn.schemes.collisions import CLEARANCE
+from iiwa_dnn.step.policies import ProgramKind
 from judge_distances import SLACK, Judge
 
 ROBOT = d.load_robot("iiwa7").with_limits(acceleration=10.0)

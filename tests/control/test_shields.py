@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import iiwa_dnn as d
-from iiwa_dnn.control.requests import REASONS, Reason
+from iiwa_dnn.control.requests import REASONS
+from iiwa_dnn.step.requests import Reason
 
 DT = 1e-3
 START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])

@@ -1,7 +1,9 @@
 """The core: tables as C and as JSON, several arms in one program, refusals, mutated tables."""
 
+import ast
 import ctypes
 import json
+import re
 import struct
 import subprocess
 from collections.abc import Iterator
@@ -28,16 +30,17 @@ from iiwa_dnn import (
     Shields,
     Sphere,
     export,
+    step,
 )
 from iiwa_dnn.compiling.library import Entry
-from iiwa_dnn.control import arms, fitting
-from iiwa_dnn.control.requests import Reason
 from iiwa_dnn.export.arm_tables import STATE
 from iiwa_dnn.export.core import LAID_OUT, core
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.schemes import CollisionAvoidance
 from iiwa_dnn.schemes.parts import enter_limit
 from iiwa_dnn.schemes.step import StepViews
+from iiwa_dnn.step import arms, fitting
+from iiwa_dnn.step.requests import Reason
 from judge_limits import breaches
 
 pytestmark = needs("gcc")
@@ -151,6 +154,20 @@ def tracking_text(tmp_path_factory: pytest.TempPathFactory) -> str:
     smooth = with_limits(AccelerationLimits(1.0), JerkLimits(50.0))
     path = tmp_path_factory.mktemp("json") / "arm.json"
     return export.tables(drawing(smooth)[0], path, q0=drawing()[1]).read_text(encoding="utf-8")
+
+
+def test_the_room_of_the_step_is_what_goes_to_a_robot() -> None:
+    code = core().code
+    functions = {
+        f"step_{path.stem}_{node.name.lstrip('_')}"
+        for path in Path(step.__path__[0]).glob("*.py")
+        for node in ast.parse(path.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.FunctionDef)
+    }
+    there = {name.replace("__", "_") for name in re.findall(r"\b(step_\w+)\(", code)}
+    assert len(functions) > 150
+    assert functions <= there
+    assert not re.search(r"\b(control|posing)_\w+\(", code)
 
 
 def test_tables_in_json_give_the_bits_of_shields(text: str, library: Any) -> None:

@@ -254,7 +254,7 @@ def test_the_code_is_plain_c_and_its_memory_is_stated(heart: Path) -> None:
     assert not re.search(r"\b(malloc|free|alloca|printf|fopen|goto|setjmp|restrict)\b", code)
     assert not re.search(r"__(builtin|atomic|attribute)", code)
     for words in (
-        "static inline ptrdiff_t control_cycle_take_step(struct arena *arena, Vector data,",
+        "static inline ptrdiff_t step_cycle_take_step(struct arena *arena, Vector data,",
         "/* Tighten the bounds lb and ub (n,) [rad/s] to those of `JointLimits`; clip",
         " * iiwa_dnn/schemes/joint_limits.py: motion_limits */",
     ):

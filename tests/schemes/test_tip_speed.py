@@ -7,11 +7,11 @@ from numpy.testing import assert_allclose
 import iiwa_dnn as d
 from helpers_kinematics import Array
 from helpers_simulation import driven, paper_robot, paper_start, rows_of
-from iiwa_dnn.control.stopping import least_periods, write_cubic_coefficients
 from iiwa_dnn.schemes import AccelerationLimits, JerkLimits
 from iiwa_dnn.schemes.joint_limits import MotionLimits
 from iiwa_dnn.schemes.rest import Motion
 from iiwa_dnn.schemes.tip_speed import TipSpeedConstants, keeps_speed, velocity_after
+from iiwa_dnn.step.stopping import least_periods, write_cubic_coefficients
 
 DT = 2e-3
 PANDA = d.load_robot("panda").with_limits(acceleration=10.0, jerk=500.0)

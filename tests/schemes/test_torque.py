@@ -14,13 +14,13 @@ import iiwa_dnn as d
 from helpers_export import in_armstep
 from helpers_kinematics import Array
 from helpers_simulation import rows_of
-from iiwa_dnn.control.arms import motion_of
-from iiwa_dnn.control.stopping import least_periods, write_cubic_coefficients
 from iiwa_dnn.results.plots import overview_figure
 from iiwa_dnn.schemes import AccelerationLimits, JerkLimits
 from iiwa_dnn.schemes.joint_limits import MotionLimits
 from iiwa_dnn.schemes.rest import Motion, displacement_after, velocity_at
 from iiwa_dnn.schemes.torque import TorqueLimits, _write_bends, _write_paces, keeps_torque
+from iiwa_dnn.step.arms import motion_of
+from iiwa_dnn.step.stopping import least_periods, write_cubic_coefficients
 
 DT = 2e-3
 CENTER = np.array([0.0, 0.0, 0.1])

@@ -6,9 +6,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import linprog
 
 import iiwa_dnn as d
-from iiwa_dnn.control.fallback import Yielding
 from iiwa_dnn.qp import QP
 from iiwa_dnn.simulation.clipping import clip_command
+from iiwa_dnn.step.fallback import Yielding
 
 
 def settling(tol: float = 1e-9) -> Yielding:

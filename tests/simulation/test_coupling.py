@@ -8,7 +8,7 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_simulation import driven
-from iiwa_dnn.control.policies import ProgramKind
+from iiwa_dnn.step.policies import ProgramKind
 from judge_limits import breaches
 
 START = np.array([0.0, 0.6, 0.0, -1.2, 0.0, 0.6, 0.0])

@@ -10,9 +10,9 @@ import pytest
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, dh_pose, rotation_angle
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, run
-from iiwa_dnn.control.policies import Action
 from iiwa_dnn.simulation import NOISE_ENTRIES, gaussian_noise
 from iiwa_dnn.simulation.estimation import NoiseModel
+from iiwa_dnn.step.policies import Action
 
 UNLIMITED = paper_robot().with_limits(acceleration=np.inf)  # white noise is beyond any limit
 OPTIONS = {

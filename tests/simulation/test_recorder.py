@@ -6,9 +6,10 @@ from numpy.testing import assert_array_equal
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, run
-from iiwa_dnn.control.command import lay_out_log, log_of, note_active
-from iiwa_dnn.control.policies import Action
+from iiwa_dnn.control.command import lay_out_log
 from iiwa_dnn.schemes.program import ProgramSizes, program_views
+from iiwa_dnn.step.log import log_of, note_active
+from iiwa_dnn.step.policies import Action
 
 
 def test_a_decision_is_noted_at_its_step_with_the_bound_limiting() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_simulation import UNCHECKED, paper_robot
-from iiwa_dnn.control.policies import ProgramKind
+from iiwa_dnn.step.policies import ProgramKind
 
 
 def vertical_start() -> d.Configuration:

@@ -19,10 +19,10 @@ from export_settings import drawing, with_limits
 from helpers_export import run
 from hostile_arms import START, hostile_steps, make_shield
 from iiwa_dnn import AccelerationLimits, Limit, Robot, Shield, Shields, export
-from iiwa_dnn.control import policies, requests
 from iiwa_dnn.export import core
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.schemes.step import StepViews
+from iiwa_dnn.step import policies, requests
 
 
 @pytest.fixture(scope="module")

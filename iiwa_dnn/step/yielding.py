@@ -1,6 +1,6 @@
 """Commands of steps whose nominal program is not answered: the task is relaxed, not the limits.
 
-`iiwa_dnn.control.policies` defines the policies. The nominal program is tried before, unless a
+`iiwa_dnn.step.policies` defines the policies. The nominal program is tried before, unless a
 policy acted at the last step. Then the first of these programs that has a solution is answered:
 
 1. The scaled program, with the scaling factor of the task; its bounds are those of position and
@@ -10,7 +10,7 @@ policy acted at the last step. Then the first of these programs that has a solut
 
 With acceleration or jerk limits the command is a step from the last command towards the answer,
 within the bounds of the nominal program. If collisions are avoided too, the command is blended
-towards the stored stopping motion until the arm can stop after it (`iiwa_dnn.control.stopping`).
+towards the stored stopping motion until the arm can stop after it (`iiwa_dnn.step.stopping`).
 """
 
 import math
@@ -18,8 +18,17 @@ import math
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.command import NOT_CONVERGED, SOLVED, StepLog, note_active, note_command
-from iiwa_dnn.control.fallback import (
+from iiwa_dnn.naming import LimitKind
+from iiwa_dnn.networks.integrators.base import SolveStats
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.dense import largest_entry, row_dot, times
+from iiwa_dnn.qp.layout import QPViews, copied
+from iiwa_dnn.qp.residuals import point_residuals, within
+from iiwa_dnn.references.targets import TargetData
+from iiwa_dnn.schemes.joint_limits import MotionConstants, joint_range, motion_constants
+from iiwa_dnn.schemes.profiles import braking
+from iiwa_dnn.schemes.program import program_views
+from iiwa_dnn.step.fallback import (
     REACHED,
     Yielding,
     attained,
@@ -30,9 +39,10 @@ from iiwa_dnn.control.fallback import (
     scale_task,
     solve_warm,
 )
-from iiwa_dnn.control.plan import ControlPlan, Instant
-from iiwa_dnn.control.policies import Action, ProgramKind
-from iiwa_dnn.control.stopping import (
+from iiwa_dnn.step.log import NOT_CONVERGED, SOLVED, StepLog, note_active, note_command
+from iiwa_dnn.step.plan import ControlPlan, Instant
+from iiwa_dnn.step.policies import Action, ProgramKind
+from iiwa_dnn.step.stopping import (
     TRIES,
     least_periods,
     next_velocity,
@@ -40,18 +50,6 @@ from iiwa_dnn.control.stopping import (
     slow_down,
     store_command,
 )
-from iiwa_dnn.naming import LimitKind
-from iiwa_dnn.networks.integrators.base import SolveStats
-from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import largest_entry, row_dot, times
-from iiwa_dnn.qp.layout import QPViews, copied
-from iiwa_dnn.qp.residuals import point_residuals, within
-from iiwa_dnn.references.targets import TargetData
-from iiwa_dnn.schemes.joint_limits import MotionConstants, joint_range, motion_constants
-from iiwa_dnn.schemes.layout import ProgramLayout
-from iiwa_dnn.schemes.parts import Limit
-from iiwa_dnn.schemes.profiles import braking
-from iiwa_dnn.schemes.program import program_views
 
 NONE, SLOW, RELAX, STOP, _ = map(int, Action)
 BRAKE = -1
@@ -72,28 +70,6 @@ POSITION_GAIN = 20.0
 HALVINGS = 12
 """Number of halvings of the way from a command to the stored stopping motion. A pair that begins
 near an obstacle may leave it slowly alone."""
-
-
-def make_yielding(program: ProgramLayout, tol: float, alike: bool) -> Yielding:
-    """Return the constants of the fallback programs of a scheme.
-
-    Args:
-        program: The scheme.
-        tol: Tolerance of the residuals of an answer.
-        alike: Whether the network of the nominal program is compiled.
-    """
-    weights = program.row_weights
-    rests = [k for k, part in enumerate(program.parts) if part.rest_kernel][::-1]  # joints first
-    lasting = [program.parts[k] for k in rests]
-    return Yielding(
-        weights,
-        tol,
-        np.array(rests, dtype=np.int64),
-        np.array([float(isinstance(part, Limit) and part.slower_helps) for part in lasting]),
-        not all(isinstance(part, Limit) and part.rows_suffice for part in lasting),
-        bool((weights == 0.0).any()),
-        alike,
-    )
 
 
 @compiled

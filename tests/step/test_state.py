@@ -15,7 +15,7 @@ import pytest
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import driven, heart, paper_robot, paper_start
-from iiwa_dnn.control.policies import ProgramKind
+from iiwa_dnn.step.policies import ProgramKind
 
 DT = 1e-3
 ACCELERATION = 5.0

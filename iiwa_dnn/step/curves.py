@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.samples import FollowState
+from iiwa_dnn.step.samples import FollowState
 
 PIECES = 3
 """Cubic pieces of the curve of a stream: as many as reach given positions, velocities and

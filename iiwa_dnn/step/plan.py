@@ -3,14 +3,14 @@
 from enum import IntEnum
 from typing import NamedTuple
 
-from iiwa_dnn.control.fallback import Yielding
-from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.networks.integrators.base import CompiledAnswer
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.qp.layout import IntMatrix
 from iiwa_dnn.schemes.periods import Periods
 from iiwa_dnn.schemes.program import ProgramArrays
 from iiwa_dnn.schemes.step import StepViews
+from iiwa_dnn.step.fallback import Yielding
+from iiwa_dnn.step.state import MotionState
 
 
 class PathColumn(IntEnum):

@@ -8,7 +8,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.control.arms import (
+from iiwa_dnn.control.chunks import follow_width
+from iiwa_dnn.control.news import News, separation_in
+from iiwa_dnn.control.requests import REASONS, RequestCost
+from iiwa_dnn.control.step_layout import ControlLayout
+from iiwa_dnn.naming import active_limits, describe
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp import Vector
+from iiwa_dnn.robot.kinematics_kernel import model_tables
+from iiwa_dnn.robot.obstacles import Obstacle
+from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.layout import ProgramLayout
+from iiwa_dnn.schemes.scene import Body, scene_views
+from iiwa_dnn.schemes.separation import FreeBody, Separation
+from iiwa_dnn.schemes.torque import TorqueLimits
+from iiwa_dnn.step.arms import (
     ArmPlan,
     ArmSettings,
     ArmSizes,
@@ -22,21 +36,8 @@ from iiwa_dnn.control.arms import (
     stopping_time_of,
     torque_of,
 )
-from iiwa_dnn.control.cycle import ControlLayout
-from iiwa_dnn.control.people import News, separation_in
-from iiwa_dnn.control.requests import CUT, FASTEST, REASONS, TWIST, Reason, RequestCost
-from iiwa_dnn.control.samples import follow_width
-from iiwa_dnn.control.state import MotionState
-from iiwa_dnn.naming import active_limits, describe
-from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import Vector
-from iiwa_dnn.robot.kinematics_kernel import model_tables
-from iiwa_dnn.robot.obstacles import Obstacle
-from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.layout import ProgramLayout
-from iiwa_dnn.schemes.scene import Body, scene_views
-from iiwa_dnn.schemes.separation import FreeBody, Separation
-from iiwa_dnn.schemes.torque import TorqueLimits
+from iiwa_dnn.step.requests import CUT, FASTEST, TWIST, Reason
+from iiwa_dnn.step.state import MotionState
 
 ALL_REASONS = range(len(REASONS))
 

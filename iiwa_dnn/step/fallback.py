@@ -47,7 +47,7 @@ from iiwa_dnn.networks.integrators.base import SolveStats
 from iiwa_dnn.networks.integrators.implicit import solve_within
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry, row_dot
-from iiwa_dnn.qp.layout import IntVector, QPViews, Sizes, copied, data_size, qp_views
+from iiwa_dnn.qp.layout import IntVector, QPViews, copied, data_size, qp_views
 from iiwa_dnn.qp.residuals import cost_size, is_small_enough, within
 from iiwa_dnn.schemes.program import add_soft
 
@@ -112,16 +112,6 @@ class Yielding(NamedTuple):
     verifies: bool
     coupled: bool
     alike: bool
-
-
-def fallback_size(sizes: Sizes) -> int:
-    """Return the length of the network states of the fallback programs, one after another.
-
-    The first is that of the search of the scaling factor, which has one variable more; the second
-    that of the scaled or relaxed program. `sizes` is (n, m, p) of the nominal program.
-    """
-    n, m, p = sizes
-    return (3 * n + 3 + m + p) + (3 * n + m + p)
 
 
 @compiled

@@ -22,8 +22,14 @@ from __future__ import annotations
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.clocks import SHARE, limit_clock, own_rates
-from iiwa_dnn.control.curves import (
+from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp.layout import copied
+from iiwa_dnn.schemes.joint_limits import MotionConstants
+from iiwa_dnn.schemes.periods import Periods
+from iiwa_dnn.schemes.profiles import Rates, usable_jerk
+from iiwa_dnn.schemes.viability import reaching, rest_ahead
+from iiwa_dnn.step.clocks import SHARE, limit_clock, own_rates
+from iiwa_dnn.step.curves import (
     PIECES,
     Curve,
     Knot,
@@ -35,14 +41,8 @@ from iiwa_dnn.control.curves import (
     solve_slopes,
     state_at,
 )
-from iiwa_dnn.control.samples import SHORTEST, FollowState, Mode
-from iiwa_dnn.control.state import MotionState
-from iiwa_dnn.qp import Vector
-from iiwa_dnn.qp.layout import copied
-from iiwa_dnn.schemes.joint_limits import MotionConstants
-from iiwa_dnn.schemes.periods import Periods
-from iiwa_dnn.schemes.profiles import Rates, usable_jerk
-from iiwa_dnn.schemes.viability import reaching, rest_ahead
+from iiwa_dnn.step.samples import SHORTEST, FollowState, Mode
+from iiwa_dnn.step.state import MotionState
 
 FADE = 1.0
 """Time in which the largest offset that a new chunk may leave fades [s]."""

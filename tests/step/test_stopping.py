@@ -7,12 +7,12 @@ import pytest
 
 import iiwa_dnn as d
 from helpers_simulation import driven, limits_of_joints, own
-from iiwa_dnn.control import stopping
-from iiwa_dnn.control.policies import ProgramKind
-from iiwa_dnn.control.state import MotionState
 from iiwa_dnn.schemes import rest
 from iiwa_dnn.schemes.joint_limits import MotionConstants
 from iiwa_dnn.schemes.scene import Pair, second_order
+from iiwa_dnn.step import stopping
+from iiwa_dnn.step.policies import ProgramKind
+from iiwa_dnn.step.state import MotionState
 from judge_limits import breaches
 
 ROBOT = d.load_robot("iiwa7")

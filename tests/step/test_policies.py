@@ -10,10 +10,10 @@ from scipy.optimize import linprog
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import fixed, near_target, paper_robot, paper_start, run
-from iiwa_dnn.control import fallback
-from iiwa_dnn.control.policies import Action, Policy, ProgramKind
 from iiwa_dnn.naming import ACTIONS
 from iiwa_dnn.networks.integrators.base import SolveStats
+from iiwa_dnn.step import fallback
+from iiwa_dnn.step.policies import Action, Policy, ProgramKind
 
 WEIGHTS = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])
 """Weights of a pose's rows where they yield: a metre counts twice as much as a radian."""

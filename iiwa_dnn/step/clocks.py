@@ -8,11 +8,11 @@ from enum import IntEnum
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.curves import curve_of
-from iiwa_dnn.control.samples import FollowState, Mode
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.schemes.joint_limits import MotionConstants
 from iiwa_dnn.schemes.profiles import Rates
+from iiwa_dnn.step.curves import curve_of
+from iiwa_dnn.step.samples import FollowState, Mode
 
 SHARE = 0.1
 """Share of the limits with which an offset fades."""

@@ -8,12 +8,6 @@ separation. That the others are those of their parts is what a digest of the tab
 from __future__ import annotations
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.arms import ArmPlan
-from iiwa_dnn.control.command import log_sizes
-from iiwa_dnn.control.fallback import Yielding
-from iiwa_dnn.control.plan import ControlPlan, PathColumn
-from iiwa_dnn.control.requests import RequestConstants
-from iiwa_dnn.control.samples import ALONE, OF_JOINT, samples_of
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.references.targets import TargetData
 from iiwa_dnn.robot.kinematics_kernel import ModelTables
@@ -27,6 +21,12 @@ from iiwa_dnn.schemes.separation import (
     separation_views,
 )
 from iiwa_dnn.schemes.step import TARGET_SIZE
+from iiwa_dnn.step.arms import ArmPlan
+from iiwa_dnn.step.fallback import Yielding
+from iiwa_dnn.step.log import log_sizes
+from iiwa_dnn.step.plan import ControlPlan, PathColumn
+from iiwa_dnn.step.requests import RequestConstants
+from iiwa_dnn.step.samples import ALONE, OF_JOINT, samples_of
 
 MOST = 1000
 """Largest size of a plan: joints, rows, frames, pairs."""

@@ -18,49 +18,14 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.checks import Vector3
-from iiwa_dnn.compiling.library import compiled, released
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.compiling.trigonometry import LARGEST
-from iiwa_dnn.control.command import StepLog, log_of
-from iiwa_dnn.control.cycle import INVALID, sample_targets, take_step
-from iiwa_dnn.control.following import follow_samples
-from iiwa_dnn.control.people import (
-    grow_older,
-    is_newer,
-    take_body,
-    take_people,
-    twist_rates,
-    write_bodies,
-)
-from iiwa_dnn.control.plan import ControlPlan
-from iiwa_dnn.control.policies import ProgramKind
-from iiwa_dnn.control.requests import (
-    CUT,
-    FASTEST,
-    FOLLOW,
-    TWIST,
-    Reason,
-    Request,
-    RequestConstants,
-    falls_short,
-    twist_rows,
-)
-from iiwa_dnn.control.samples import (
-    FollowState,
-    asks,
-    forget_samples,
-    have_meaning,
-    keep_samples,
-    samples_of,
-)
-from iiwa_dnn.control.state import MotionState, change_spacing, count_as_sent
-from iiwa_dnn.control.stopping import brake_blindly, least_periods
-from iiwa_dnn.control.yielding import NOMINAL, NONE, SLOW
 from iiwa_dnn.naming import LimitKind
 from iiwa_dnn.networks.integrators.base import AnswerSettings, CompiledAnswer
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import all_finite, largest_entry
-from iiwa_dnn.qp.layout import IntVector, copied
+from iiwa_dnn.qp.layout import copied
 from iiwa_dnn.robot.kinematics import Twist
 from iiwa_dnn.robot.kinematics_kernel import ModelTables, write_kinematics
 from iiwa_dnn.schemes.joint_limits import (
@@ -82,6 +47,41 @@ from iiwa_dnn.schemes.separation import (
 )
 from iiwa_dnn.schemes.torque import torque_margin
 from iiwa_dnn.schemes.viability import joint_bounds, reaching
+from iiwa_dnn.step.bodies import (
+    grow_older,
+    is_newer,
+    take_body,
+    take_people,
+    write_bodies,
+)
+from iiwa_dnn.step.cycle import INVALID, sample_targets, take_step
+from iiwa_dnn.step.following import follow_samples
+from iiwa_dnn.step.log import StepLog, log_of
+from iiwa_dnn.step.plan import ControlPlan
+from iiwa_dnn.step.policies import ProgramKind
+from iiwa_dnn.step.requests import (
+    CUT,
+    FASTEST,
+    FOLLOW,
+    TWIST,
+    Reason,
+    Request,
+    RequestConstants,
+    falls_short,
+    twist_rates,
+    twist_rows,
+)
+from iiwa_dnn.step.samples import (
+    FollowState,
+    asks,
+    forget_samples,
+    have_meaning,
+    keep_samples,
+    samples_of,
+)
+from iiwa_dnn.step.state import MotionState, change_spacing, count_as_sent
+from iiwa_dnn.step.stopping import brake_blindly, least_periods
+from iiwa_dnn.step.yielding import NOMINAL, NONE, SLOW
 
 TURN = 2.0 * math.pi
 """Turn after which a joint without position limits is at the same place [rad]."""
@@ -509,41 +509,8 @@ def step_arm(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> int:
     )
     write_kinematics(plan.robot, arm.positions, arrays.jacobian, arrays.placements, arrays.inertia)
     data = np.empty(plan.width)
-    action = _finish(plan, arm, inputs, arrays, data, arm.network)
+    action = finish_arm(plan, arm, inputs, arrays, data, arm.network)
     return action if _tracks(plan) else first_reason(arm)
-
-
-@compiled
-def step_measured(
-    plan: ArmPlan,
-    memory: Vector,
-    next_memory: Vector,
-    q: Vector,
-    targets: Vector,
-    clock: Vector3,
-    data: Vector,
-    network: Vector,
-) -> int:
-    """Take a step of a controller whose kinematics at the measured positions are known.
-
-    Args:
-        plan: Layout of the step, with the kinematics.
-        memory: The arm's memory, (k,).
-        next_memory: That after the step, (k,), overwritten.
-        q: Measured joint positions [rad], (n,).
-        targets: Targets of the tracked frames, (18 frames,); or none: those of the paths.
-        clock: The time, and `dt` and `elapsed` of `ArmInput` [s].
-        data: The log of the control step, overwritten, (width,).
-        network: State of the network, (size,).
-
-    Returns:
-        The `Action` that was taken, or `INVALID`.
-    """
-    t, dt, elapsed = clock
-    copied(next_memory, memory)
-    inputs = ArmInput(q, Request.NONE, targets, dt, elapsed, t)
-    begin_step(plan, next_memory, inputs)
-    return finish_step(plan, next_memory, inputs, data, network)
 
 
 @compiled
@@ -845,40 +812,7 @@ def differing(values: Vector, others: Vector) -> int:
 
 
 @compiled
-def finish_step(
-    plan: ArmPlan, memory: Vector, inputs: ArmInput, data: Vector, network: Vector
-) -> int:
-    """Compute the command of a step, and advance the arm by it: the part after the kinematics.
-
-    Args:
-        plan: Layout of the step, with the kinematics at the arm's positions.
-        memory: The arm's memory after `begin_step`, (k,); the command, and positions and time after
-            it, are written to it.
-        inputs: The inputs of the step.
-        data: The log of the control step, overwritten, (width,).
-        network: State of the network, (size,), of a controller's solver; empty: that in the memory.
-
-    Returns:
-        The `Action` that was taken; `NONE`, without a log, if the positions are not known;
-        `INVALID`, without a log, if an input is not valid: the arm brakes.
-    """
-    arm = arm_state(plan, memory)
-    base = plan.step.arrays
-    arrays = ProgramArrays(
-        base.sizes,
-        base.table,
-        base.constants.copy(),
-        base.jacobian,
-        base.placements,
-        base.support,
-        base.inertia,
-        base.tip,
-    )
-    return _finish(plan, arm, inputs, arrays, data, network if network.size > 0 else arm.network)
-
-
-@compiled
-def _finish(
+def finish_arm(
     plan: ArmPlan,
     arm: ArmState,
     inputs: ArmInput,
@@ -886,7 +820,21 @@ def _finish(
     data: Vector,
     network: Vector,
 ) -> int:
-    """Compute a step's command as `finish_step`, by arrays with constants that are overwritten."""
+    """Compute the command of a step, and advance the arm by it: the part after the kinematics.
+
+    Args:
+        plan: Layout of the step, with the kinematics at the arm's positions.
+        arm: The arm's state after `begin_step`; the command, and positions and time after it, are
+            written to it.
+        inputs: The inputs of the step.
+        arrays: Arrays of the program, with constants that are overwritten.
+        data: The log of the control step, overwritten, (width,).
+        network: State of the network, (size,).
+
+    Returns:
+        The `Action` that was taken; `NONE`, without a log, if the positions are not known;
+        `INVALID`, without a log, if an input is not valid: the arm brakes.
+    """
     action = NONE
     motion = motion_of(plan, arm)
     if arm.answered != Request.NONE or _tracks(plan):
@@ -1399,22 +1347,6 @@ def torque_of(plan: ArmPlan, memory: Vector) -> float:
     return torque_margin(constants, motion.q, motion.before, motion.last, arm.period)
 
 
-@released
-def write_margins(
-    plan: ArmPlan,
-    memories: Matrix,
-    joint: Vector,
-    distance: Vector,
-    separation: Vector,
-    torque: Vector,
-) -> None:
-    """Write the `Margin` of each of N arms, whose memories are (N, k), to four arrays (N,)."""
-    for k in range(len(memories)):
-        joint[k], distance[k] = margin_of(plan, memories[k])
-        separation[k], _, _ = separation_of(plan, memories[k])
-        torque[k] = torque_of(plan, memories[k])
-
-
 @compiled
 def stopping_time_of(plan: ArmPlan, memory: Vector) -> float:
     """Compute the time of the stopping motion from an arm's last command [s]."""
@@ -1424,27 +1356,3 @@ def stopping_time_of(plan: ArmPlan, memory: Vector) -> float:
     limits = motion_constants(plan.step.arrays)
     periods = least_periods(motion.last, motion.before, limits, dt, False)
     return dt * max(periods, 1.0 if largest_entry(motion.last) > 0.0 else 0.0)
-
-
-@released
-def step_arms(
-    plan: ArmPlan, memories: Matrix, inputs: ArmInput, kinds: IntVector, first: int, last: int
-) -> None:
-    """Take a step of the arms from number `first` to the one before `last`.
-
-    Args:
-        plan: Layout of the step.
-        memories: Memories of all N arms, (N, k).
-        inputs: Inputs of all arms: the positions (N n,) and requests (N n,) or (N 6,) of one arm
-            after those of another; `kind` does not count.
-        kinds: `Request` of each arm's new request, (N,); overwritten by what `step_arm` returns.
-        first: Number of the first arm.
-        last: Number after that of the last arm.
-    """
-    n = plan.sizes.n
-    width = inputs.request.size // len(memories)
-    for k in range(first, last):
-        q = inputs.q[k * n : (k + 1) * n]
-        request = inputs.request[k * width : (k + 1) * width]
-        own = ArmInput(q, kinds[k], request, inputs.dt, inputs.elapsed, inputs.t)
-        kinds[k] = step_arm(plan, memories[k], own)

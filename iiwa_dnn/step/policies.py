@@ -1,7 +1,7 @@
 r"""Policies for a step whose program has no solution, or one that the network did not find.
 
 A program has no solution if no joint velocity within the limits gives its task velocity b. The
-policies ``slow`` and ``relax`` then answer a fallback program (`iiwa_dnn.control.fallback`), which
+policies ``slow`` and ``relax`` then answer a fallback program (`iiwa_dnn.step.fallback`), which
 keeps the bounds and the inequality rows; ``stop`` brakes. `Command.qp` and the record hold the
 program that was answered (`ProgramKind`).
 
@@ -27,7 +27,7 @@ largest feasible one. If the limits contradict each other even then, the arm bra
 With limits on acceleration or jerk the fallback programs have the bounds of position and velocity
 alone. The command is then a step from the last command towards their answer, within the bounds of
 the nominal program. Each joint changes its velocity as quickly as its limits allow, so that
-``slow`` may leave the path and return to it (`iiwa_dnn.control.yielding`).
+``slow`` may leave the path and return to it (`iiwa_dnn.step.yielding`).
 
 Sources: J. M. Hollerbach, "Dynamic scaling of manipulator trajectories", Journal of Dynamic
 Systems, Measurement, and Control 106 (1984); for velocity limits, F. Flacco, A. De Luca, O. Khatib,
@@ -62,7 +62,7 @@ class ProgramKind(IntEnum):
     NOMINAL = 0
     """The program that the scheme builds."""
     SCALED = 1
-    """The scaled program, A x = s b (`iiwa_dnn.control.fallback`)."""
+    """The scaled program, A x = s b (`iiwa_dnn.step.fallback`)."""
     RELAXED = 2
     """The relaxed program, with the task in its cost."""
     RATE_LIMITED = 3

@@ -7,8 +7,8 @@ import hostile
 import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import UNCHECKED, driven, heart, paper_robot, paper_start, run
-from iiwa_dnn.control.policies import Action, Policy, ProgramKind
 from iiwa_dnn.schemes.tasks import ROTATION_LENGTH
+from iiwa_dnn.step.policies import Action, Policy, ProgramKind
 from judge_limits import Breach, breaches
 
 JERK = 500.0

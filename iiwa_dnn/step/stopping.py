@@ -10,8 +10,6 @@ import math
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.plan import ControlPlan, Instant
-from iiwa_dnn.control.state import MotionState, change_spacing
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.qp.dense import largest_entry
 from iiwa_dnn.schemes.joint_limits import (
@@ -25,6 +23,8 @@ from iiwa_dnn.schemes.periods import constant_periods
 from iiwa_dnn.schemes.program import Column, block_constants
 from iiwa_dnn.schemes.rest import SLACK, Motion, cubic_coefficient, velocity_at
 from iiwa_dnn.schemes.viability import joint_bounds
+from iiwa_dnn.step.plan import ControlPlan, Instant
+from iiwa_dnn.step.state import MotionState, change_spacing
 
 LONGEST = 1e6
 """Number of periods above which no motion to rest is searched for."""

@@ -34,7 +34,6 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.requests import TWIST
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.naming import LimitKind, active_limits, describe
 from iiwa_dnn.networks.solver import DNNSolver
@@ -54,6 +53,7 @@ from iiwa_dnn.schemes import (
 from iiwa_dnn.schemes.collisions import ENDS
 from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
+from iiwa_dnn.step.requests import TWIST
 
 _STEP = 0.5
 """Largest change of a joint in an iteration, as a part of its scale (`_units`)."""
