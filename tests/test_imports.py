@@ -16,7 +16,7 @@ PACKAGE = Path(__file__).parents[1] / "iiwa_dnn"
 ORDER = (
     *("errors", "compiling", "checks", "files", "naming", "processes"),
     *("robot", "references", "qp", "networks"),
-    *("schemes", "posing", "step", "control", "results", "simulation", "export", "__init__"),
+    *("schemes", "step", "posing", "control", "results", "simulation", "export", "__init__"),
     *("studies", "app", "__main__"),
 )
 # Results read a record and recompute nothing; what draws the robot needs its shapes too.

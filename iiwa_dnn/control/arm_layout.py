@@ -22,19 +22,16 @@ from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.scene import Body, scene_views
 from iiwa_dnn.schemes.separation import FreeBody, Separation
 from iiwa_dnn.schemes.torque import TorqueLimits
-from iiwa_dnn.step.arms import (
+from iiwa_dnn.step.asking import margin_of, separation_of, stopping_time_of, torque_of
+from iiwa_dnn.step.memory import (
     ArmPlan,
     ArmSettings,
     ArmSizes,
     ArmState,
-    margin_of,
     motion_of,
     rest_arm,
     see_body,
     see_people,
-    separation_of,
-    stopping_time_of,
-    torque_of,
 )
 from iiwa_dnn.step.requests import CUT, FASTEST, TWIST, Reason
 from iiwa_dnn.step.state import MotionState

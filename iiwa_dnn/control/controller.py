@@ -40,18 +40,10 @@ from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.layout import ProgramLayout, targets_of
 from iiwa_dnn.schemes.periods import Periods, checked_longest, stated_periods
 from iiwa_dnn.schemes.step import TARGET_SIZE
-from iiwa_dnn.step.arms import (
-    LONGEST,
-    SHORTEST,
-    ArmInput,
-    ArmPlan,
-    ArmSettings,
-    begin_step,
-    halt_arm,
-    motion_of,
-    send_arm,
-)
+from iiwa_dnn.step.arms import send_arm
 from iiwa_dnn.step.cycle import INVALID
+from iiwa_dnn.step.inputs import LONGEST, SHORTEST, begin_step
+from iiwa_dnn.step.memory import ArmInput, ArmPlan, ArmSettings, halt_arm, motion_of
 from iiwa_dnn.step.plan import Instant
 from iiwa_dnn.step.policies import POLICIES, Action, Policy
 from iiwa_dnn.step.state import MotionState

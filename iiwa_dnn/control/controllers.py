@@ -19,7 +19,7 @@ from iiwa_dnn.qp.layout import IntVector
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes.periods import stated_periods
 from iiwa_dnn.schemes.step import TARGET_SIZE
-from iiwa_dnn.step.arms import ArmInput, motion_of
+from iiwa_dnn.step.memory import ArmInput, motion_of
 from iiwa_dnn.step.requests import Request
 
 

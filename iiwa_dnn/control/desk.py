@@ -7,17 +7,10 @@ from iiwa_dnn.compiling.library import compiled, released
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import IntVector, copied
 from iiwa_dnn.schemes.program import ProgramArrays
-from iiwa_dnn.step.arms import (
-    ArmInput,
-    ArmPlan,
-    arm_state,
-    begin_step,
-    finish_arm,
-    margin_of,
-    separation_of,
-    step_arm,
-    torque_of,
-)
+from iiwa_dnn.step.arms import finish_arm, step_arm
+from iiwa_dnn.step.asking import margin_of, separation_of, torque_of
+from iiwa_dnn.step.inputs import begin_step
+from iiwa_dnn.step.memory import ArmInput, ArmPlan, arm_state
 from iiwa_dnn.step.requests import Request
 
 

@@ -21,7 +21,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.qp.layout import IntVector
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.step.arms import ArmInput, halt_arm, rest_arm
+from iiwa_dnn.step.memory import ArmInput, halt_arm, rest_arm
 
 BLOCK = 64
 """Number of arms that a thread takes at a time."""

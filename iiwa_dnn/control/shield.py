@@ -60,13 +60,14 @@ from iiwa_dnn.schemes.periods import SLACK, Periods, checked_longest
 from iiwa_dnn.schemes.separation import PEOPLE_SPEED, Separation
 from iiwa_dnn.schemes.step import TARGET_SIZE
 from iiwa_dnn.schemes.torque import own_torque_limits
-from iiwa_dnn.step.arms import (
+from iiwa_dnn.step.arms import send_arm
+from iiwa_dnn.step.cycle import INVALID
+from iiwa_dnn.step.inputs import add_pending, begin_step
+from iiwa_dnn.step.memory import (
     ArmInput,
     ArmPlan,
     ArmSettings,
     ArmState,
-    add_pending,
-    begin_step,
     follow_arm,
     follow_of,
     halt_arm,
@@ -74,9 +75,7 @@ from iiwa_dnn.step.arms import (
     place_arm,
     rest_arm,
     scale_speed,
-    send_arm,
 )
-from iiwa_dnn.step.cycle import INVALID
 from iiwa_dnn.step.policies import Action
 from iiwa_dnn.step.requests import TWIST, Request
 from iiwa_dnn.step.samples import FollowState

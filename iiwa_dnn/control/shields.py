@@ -19,7 +19,7 @@ from iiwa_dnn.control.shield import Shield, check_held, place
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.periods import stated_periods
-from iiwa_dnn.step.arms import ArmInput, follow_arm, motion_of, scale_speed
+from iiwa_dnn.step.memory import ArmInput, follow_arm, motion_of, scale_speed
 
 
 class ShieldsCommand(NamedTuple):

@@ -25,7 +25,7 @@ from iiwa_dnn.compiling.sources import decoration
 from iiwa_dnn.compiling.translator import Translator
 from iiwa_dnn.naming import ACTIONS, LimitKind
 from iiwa_dnn.qp.dense import all_finite
-from iiwa_dnn.step import arms, cycle, fitting
+from iiwa_dnn.step import arms, asking, cycle, fitting, memory
 from iiwa_dnn.step.policies import Action, ProgramKind
 from iiwa_dnn.step.requests import FASTEST, Reason, Request
 
@@ -50,10 +50,11 @@ WRITTEN = ("jacobian", "placements", "inertia", "fallback")
 """Arrays of a plan that steps write: tables have their shapes alone."""
 
 _KERNELS = (
-    *(arms.arm_state, arms.rest_arm, arms.halt_arm, arms.send_arm, arms.step_arm, arms.place_arm),
-    *(arms.brake_arm, arms.motion_of, arms.margin_of, arms.stopping_time_of, all_finite),
-    *(arms.see_people, arms.see_body, arms.separation_of, arms.torque_of, arms.frame_at),
-    *(arms.scale_speed, arms.follow_arm, arms.follow_of, cycle.sample_targets),
+    *(memory.arm_state, memory.rest_arm, memory.halt_arm, memory.place_arm, memory.motion_of),
+    *(memory.see_people, memory.see_body, memory.scale_speed, memory.follow_arm, memory.follow_of),
+    *(arms.send_arm, arms.step_arm, arms.brake_arm, all_finite, cycle.sample_targets),
+    *(asking.margin_of, asking.stopping_time_of, asking.separation_of, asking.torque_of),
+    asking.frame_at,
     *(fitting.arm_fits, fitting.arm_scratch),
 )
 """Kernels that the interface calls, by their names."""
@@ -155,7 +156,7 @@ def core() -> Core:
         module = package.module(kernel.__module__)
         own = translator.function(module, module.names[kernel.__name__])
         calls[kernel.__name__] = f"{own.name}({'arena, ' * own.uses_arena}"
-    plan, state = (_kind(translator, own) for own in (arms.ArmPlan, arms.ArmState))
+    plan, state = (_kind(translator, own) for own in (memory.ArmPlan, memory.ArmState))
     readers: dict[str, str] = {}
     write_readers(plan, WRITTEN, readers)
     code = translator.text(SECTIONS)

@@ -7,6 +7,8 @@ separation. That the others are those of their parts is what a digest of the tab
 
 from __future__ import annotations
 
+import math
+
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.references.targets import TargetData
@@ -21,15 +23,29 @@ from iiwa_dnn.schemes.separation import (
     separation_views,
 )
 from iiwa_dnn.schemes.step import TARGET_SIZE
-from iiwa_dnn.step.arms import ArmPlan
 from iiwa_dnn.step.fallback import Yielding
 from iiwa_dnn.step.log import log_sizes
+from iiwa_dnn.step.memory import ArmPlan
 from iiwa_dnn.step.plan import ControlPlan, PathColumn
 from iiwa_dnn.step.requests import RequestConstants
 from iiwa_dnn.step.samples import ALONE, OF_JOINT, samples_of
 
 MOST = 1000
 """Largest size of a plan: joints, rows, frames, pairs."""
+
+MOST_WHOLE = 1e9
+"""Largest integer of a record."""
+
+AFTER_GAIN = 2
+AFTER_AGE = 8
+"""Places from which on all numbers of a `SceneHead` and of a `SeparationHead` are integers."""
+
+FIRST_WHOLE = 1
+PAIR_WHOLE = 3
+"""Numbers of a `Body` or a `WatchedLink`, and of a `Pair`, that are integers, the first ones."""
+
+REQUEST_WHOLE = 2
+"""Numbers of `RequestConstants` that are integers or truth values, the first ones."""
 
 LOG = 20
 MOTION = 5
@@ -117,6 +133,15 @@ def _samples_fit(plan: ArmPlan) -> bool:
 def _is_within(index: int, first: int, end: int) -> bool:
     """Test whether an index is one from `first` to the one before `end`."""
     return first <= index and index < end
+
+
+@compiled
+def _are_whole(numbers: Vector) -> bool:
+    """Test whether the integers of a record are such, before they are read as integers."""
+    for i in range(numbers.size):
+        if not abs(numbers[i]) <= MOST_WHOLE or math.floor(numbers[i]) != numbers[i]:
+            return False
+    return True
 
 
 @compiled
@@ -256,6 +281,8 @@ def _scene_fits(constants: Vector, arrays: ProgramArrays) -> bool:
     n = arrays.sizes.joints
     if constants.size < SceneHead.width():
         return False
+    if not _are_whole(constants[AFTER_GAIN : SceneHead.width()]):
+        return False
     head = SceneHead.of(constants[: SceneHead.width()])
     if not _is_within(head.bodies, 0, MOST) or not _is_within(head.pairs, 0, MOST):
         return False
@@ -267,12 +294,14 @@ def _scene_fits(constants: Vector, arrays: ProgramArrays) -> bool:
     scene = scene_views(constants)
     for k in range(head.bodies):
         body = Body.of(scene.bodies[k])
-        if not _is_within(body.frame, 0, len(arrays.placements)):
+        if not _are_whole(scene.bodies[k, :FIRST_WHOLE]) or not _is_within(
+            body.frame, 0, len(arrays.placements)
+        ):
             return False
     fit = True
     for k in range(head.pairs):
         pair = Pair.of(scene.pairs[k])
-        fit = fit and _pair_fits(pair, n, head.bodies)
+        fit = fit and _are_whole(scene.pairs[k, :PAIR_WHOLE]) and _pair_fits(pair, n, head.bodies)
     return fit
 
 
@@ -289,6 +318,8 @@ def _separation_fits(constants: Vector, arrays: ProgramArrays) -> bool:
     """Test the constants of a separation from bodies of bounded speed: links in frames."""
     if constants.size < SeparationHead.width():
         return False
+    if not _are_whole(constants[AFTER_AGE : SeparationHead.width()]):
+        return False
     head = SeparationHead.of(constants[: SeparationHead.width()])
     if not _is_within(head.bodies, 0, MOST) or not _is_within(head.links, 0, MOST):
         return False
@@ -303,7 +334,8 @@ def _separation_fits(constants: Vector, arrays: ProgramArrays) -> bool:
     outside = 0
     for k in range(head.links):
         link = WatchedLink.of(own.links[k])
-        outside += not _is_within(link.frame, 0, len(arrays.placements))
+        whole = _are_whole(own.links[k, :FIRST_WHOLE])
+        outside += not (whole and _is_within(link.frame, 0, len(arrays.placements)))
     return outside == 0
 
 
@@ -377,7 +409,8 @@ def _parts_fit(plan: ArmPlan, collisions: int) -> bool:
 def _request_fits(plan: ArmPlan) -> bool:
     """Test the part that a shield writes its request into."""
     arrays = plan.step.arrays
-    request = RequestConstants.of(block_constants(arrays, plan.request))
-    if request.velocity.size != plan.sizes.request:
+    constants = block_constants(arrays, plan.request)
+    request = RequestConstants.of(constants)
+    if not _are_whole(constants[:REQUEST_WHOLE]) or request.velocity.size != plan.sizes.request:
         return False
     return _is_within(request.frame, 0, len(arrays.placements))

@@ -8,7 +8,8 @@ import pytest
 import iiwa_dnn as d
 from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.requests import REASONS
-from iiwa_dnn.step.arms import ArmInput, motion_of, place_arm, step_arm
+from iiwa_dnn.step.arms import step_arm
+from iiwa_dnn.step.memory import ArmInput, motion_of, place_arm
 from iiwa_dnn.step.requests import Reason, Request
 from judge_limits import breaches
 

@@ -40,6 +40,7 @@ from iiwa_dnn.schemes import CollisionAvoidance
 from iiwa_dnn.schemes.parts import enter_limit
 from iiwa_dnn.schemes.step import StepViews
 from iiwa_dnn.step import arms, fitting
+from iiwa_dnn.step.memory import arm_state, motion_of
 from iiwa_dnn.step.requests import Reason
 from judge_limits import breaches
 
@@ -47,7 +48,8 @@ pytestmark = needs("gcc")
 
 OK, OTHER_RELEASE, DAMAGED, UNFIT, ARITHMETIC, OTHER_TABLES, WRONG_KIND, NOT_FINITE = range(8)
 INVALID = -1
-SANITIZED = ("-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+SANITIZERS = "address,undefined,float-cast-overflow"
+SANITIZED = ("-O1", f"-fsanitize={SANITIZERS}", "-fno-sanitize-recover=all")
 
 
 NAMED = ("joint", "frame", "obstacle", "limit")
@@ -236,7 +238,7 @@ def test_braking_without_a_program_keeps_the_limits(longest: float | None) -> No
         now = q.copy()
         for _ in range(3000):
             arms.brake_arm(plan, memory)
-            dq = np.array(arms.motion_of(plan, arms.arm_state(plan, memory)).last)
+            dq = np.array(motion_of(plan, arm_state(plan, memory)).last)
             slope, was = (dq - last) / DT, (last - before) / spacing
             assert (np.abs(slope) <= ROBOT.ddq_max * (1.0 + 1e-9)).all()
             assert (np.abs(slope - was) / DT <= ROBOT.dddq_max * (1.0 + 1e-6)).all()

@@ -19,7 +19,7 @@ from iiwa_dnn.schemes import AccelerationLimits, JerkLimits
 from iiwa_dnn.schemes.joint_limits import MotionLimits
 from iiwa_dnn.schemes.rest import Motion, displacement_after, velocity_at
 from iiwa_dnn.schemes.torque import TorqueLimits, _write_bends, _write_paces, keeps_torque
-from iiwa_dnn.step.arms import motion_of
+from iiwa_dnn.step.memory import motion_of
 from iiwa_dnn.step.stopping import least_periods, write_cubic_coefficients
 
 DT = 2e-3

@@ -1,6 +1,6 @@
 /* The layout that tables describe. */
 struct layout {
-    step_arms_ArmPlan plan;
+    step_memory_ArmPlan plan;
     const double *places;
 };
 
@@ -8,7 +8,7 @@ typedef char layout_has_room[sizeof(struct layout) <= sizeof(((struct armstep *)
 
 enum { STATE = 1 }; /* where an arm's state begins in its memory, behind the digest of the tables */
 
-static const step_arms_ArmPlan *plan_of(const struct armstep *arm)
+static const step_memory_ArmPlan *plan_of(const struct armstep *arm)
 {
     return &((const struct layout *)(const void *)arm->laid_out)->plan;
 }
@@ -43,7 +43,7 @@ static Vector numbers_of(const struct armstep *arm, const double *memory)
     return view(memory + STATE, arm->tables->memory - STATE);
 }
 
-static step_arms_ArmState state_of(const struct armstep *arm, const double *memory)
+static step_memory_ArmState state_of(const struct armstep *arm, const double *memory)
 {
     return @arm_state@plan_of(arm), numbers_of(arm, memory));
 }
@@ -57,7 +57,7 @@ static struct arena arena_of(const struct armstep *arm, double *scratch)
 
 static step_state_MotionState motion_state_of(const struct armstep *arm, const double *memory)
 {
-    const step_arms_ArmState state = state_of(arm, memory);
+    const step_memory_ArmState state = state_of(arm, memory);
     return @motion_of@plan_of(arm), &state);
 }
 
@@ -168,7 +168,7 @@ static bool knows_parts(const struct armstep_tables *tables)
 static bool is_laid_out(const struct armstep *arm, struct reader *reader)
 {
     const struct armstep_tables *tables = arm->tables;
-    const step_arms_ArmPlan *plan = plan_of(arm);
+    const step_memory_ArmPlan *plan = plan_of(arm);
     if (reader->is_bad || reader->number != reader->last_number || reader->integer != reader->last_integer) {
         return false;
     }
@@ -201,7 +201,7 @@ enum armstep_status armstep_load(struct armstep *arm, const struct armstep_table
     if (armstep_digest(tables) != tables->digest) {
         return ARMSTEP_DAMAGED;
     }
-    own->plan = read_step_arms_ArmPlan(&reader);
+    own->plan = read_step_memory_ArmPlan(&reader);
     own->places = read_doubles(&reader, 3 * own->plan.sizes.obstacles);
     return is_laid_out(arm, &reader) ? ARMSTEP_OK : ARMSTEP_UNFIT;
 }
@@ -329,7 +329,7 @@ enum armstep_status armstep_body(
 
 static int64_t step(const struct armstep *arm, struct arena *arena, double *memory, const struct armstep_input *input)
 {
-    const step_arms_ArmInput own = {
+    const step_memory_ArmInput own = {
         view(input->q, arm->tables->joints),
         input->request != NULL && is_shield(arm) ? input->kind : ARMSTEP_REQUEST_NONE,
         view_if_any(input->request, request_width(arm, input->kind)),
@@ -497,7 +497,7 @@ int armstep_active_limits(const struct armstep *arm, const double *memory, int *
     if (!has_begun(arm, memory)) {
         return 0;
     }
-    const step_arms_ArmState state = state_of(arm, memory);
+    const step_memory_ArmState state = state_of(arm, memory);
     if (is_shield(arm) && state.at->is_clipped == 0.0) {
         return 0;
     }
@@ -534,7 +534,7 @@ double armstep_time(const struct armstep *arm, const double *memory)
 
 const double *armstep_followed(const struct armstep *arm, const double *memory, double *late)
 {
-    const step_arms_ArmState state = state_of(arm, memory);
+    const step_memory_ArmState state = state_of(arm, memory);
     if (state.following.size0 == 0) {
         return NULL;
     }
