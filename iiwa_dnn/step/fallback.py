@@ -270,6 +270,14 @@ def relax_task(qp: QPViews, weights: Vector, retreat: float) -> None:
 
 
 @compiled
+def hold_distances(qp: QPViews) -> None:
+    """Ask for no retreat in a relaxed program: distances must not shrink. Writes h and b."""
+    qp.b[:] = 0.0  # of coupled joints; the task is in the cost
+    for j in range(qp.h.size):
+        qp.h[j] = max(qp.h[j], 0.0)
+
+
+@compiled
 def note_limiting(point: Vector, n: int, m: int, extra: int, limiting: Vector) -> None:
     """Find the bounds and inequality rows whose multipliers are not negligible.
 

@@ -7,8 +7,6 @@ separation. That the others are those of their parts is what a digest of the tab
 
 from __future__ import annotations
 
-import math
-
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.references.targets import TargetData
@@ -33,19 +31,12 @@ from iiwa_dnn.step.samples import ALONE, OF_JOINT, samples_of
 MOST = 1000
 """Largest size of a plan: joints, rows, frames, pairs."""
 
-MOST_WHOLE = 1e9
-"""Largest integer of a record."""
+LARGEST_NUMBER = 1e9
+"""Largest number of a record that holds integers: beyond the range of those, C leaves open what
+they are."""
 
-AFTER_GAIN = 2
-AFTER_AGE = 8
-"""Places from which on all numbers of a `SceneHead` and of a `SeparationHead` are integers."""
-
-FIRST_WHOLE = 1
-PAIR_WHOLE = 3
-"""Numbers of a `Body` or a `WatchedLink`, and of a `Pair`, that are integers, the first ones."""
-
-REQUEST_WHOLE = 2
-"""Numbers of `RequestConstants` that are integers or truth values, the first ones."""
+COUNTS = 4
+"""Numbers at the end of a `SeparationHead` that are integers; others may be infinite."""
 
 LOG = 20
 MOTION = 5
@@ -136,12 +127,12 @@ def _is_within(index: int, first: int, end: int) -> bool:
 
 
 @compiled
-def _are_whole(numbers: Vector) -> bool:
-    """Test whether the integers of a record are such, before they are read as integers."""
+def _are_bounded(numbers: Vector) -> bool:
+    """Test whether the numbers of a record may be read as integers."""
+    outside = 0
     for i in range(numbers.size):
-        if not abs(numbers[i]) <= MOST_WHOLE or math.floor(numbers[i]) != numbers[i]:
-            return False
-    return True
+        outside += not abs(numbers[i]) <= LARGEST_NUMBER
+    return outside == 0
 
 
 @compiled
@@ -281,7 +272,7 @@ def _scene_fits(constants: Vector, arrays: ProgramArrays) -> bool:
     n = arrays.sizes.joints
     if constants.size < SceneHead.width():
         return False
-    if not _are_whole(constants[AFTER_GAIN : SceneHead.width()]):
+    if not _are_bounded(constants[: SceneHead.width()]):
         return False
     head = SceneHead.of(constants[: SceneHead.width()])
     if not _is_within(head.bodies, 0, MOST) or not _is_within(head.pairs, 0, MOST):
@@ -294,14 +285,14 @@ def _scene_fits(constants: Vector, arrays: ProgramArrays) -> bool:
     scene = scene_views(constants)
     for k in range(head.bodies):
         body = Body.of(scene.bodies[k])
-        if not _are_whole(scene.bodies[k, :FIRST_WHOLE]) or not _is_within(
+        if not _are_bounded(scene.bodies[k]) or not _is_within(
             body.frame, 0, len(arrays.placements)
         ):
             return False
     fit = True
     for k in range(head.pairs):
         pair = Pair.of(scene.pairs[k])
-        fit = fit and _are_whole(scene.pairs[k, :PAIR_WHOLE]) and _pair_fits(pair, n, head.bodies)
+        fit = fit and _are_bounded(scene.pairs[k]) and _pair_fits(pair, n, head.bodies)
     return fit
 
 
@@ -318,7 +309,8 @@ def _separation_fits(constants: Vector, arrays: ProgramArrays) -> bool:
     """Test the constants of a separation from bodies of bounded speed: links in frames."""
     if constants.size < SeparationHead.width():
         return False
-    if not _are_whole(constants[AFTER_AGE : SeparationHead.width()]):
+    counts = SeparationHead.width() - COUNTS
+    if not _are_bounded(constants[counts : SeparationHead.width()]):
         return False
     head = SeparationHead.of(constants[: SeparationHead.width()])
     if not _is_within(head.bodies, 0, MOST) or not _is_within(head.links, 0, MOST):
@@ -334,8 +326,8 @@ def _separation_fits(constants: Vector, arrays: ProgramArrays) -> bool:
     outside = 0
     for k in range(head.links):
         link = WatchedLink.of(own.links[k])
-        whole = _are_whole(own.links[k, :FIRST_WHOLE])
-        outside += not (whole and _is_within(link.frame, 0, len(arrays.placements)))
+        bounded = _are_bounded(own.links[k])
+        outside += not (bounded and _is_within(link.frame, 0, len(arrays.placements)))
     return outside == 0
 
 
@@ -411,6 +403,6 @@ def _request_fits(plan: ArmPlan) -> bool:
     arrays = plan.step.arrays
     constants = block_constants(arrays, plan.request)
     request = RequestConstants.of(constants)
-    if not _are_whole(constants[:REQUEST_WHOLE]) or request.velocity.size != plan.sizes.request:
+    if not _are_bounded(constants) or request.velocity.size != plan.sizes.request:
         return False
     return _is_within(request.frame, 0, len(arrays.placements))

@@ -32,6 +32,7 @@ from iiwa_dnn.step.fallback import (
     REACHED,
     Yielding,
     attained,
+    hold_distances,
     largest_factor,
     nearest_within,
     note_limiting,
@@ -275,6 +276,9 @@ def _answer_fallback(
         retreat = max(retreat, 0.0)  # without a factor, the distance must not shrink
     relax_task(qp, yielding.weights, retreat)
     found = solve_warm(qp, tol, fallback[size:], log.point, log.stats)
+    if not found and retreat > 0.0:  # retreats that contradict each other by less than rounding
+        hold_distances(qp)
+        found = solve_warm(qp, tol, fallback[size:], log.point, log.stats)
     note_limiting(log.point, n, m, 0, log.limiting)
     return RELAXED if found else STOPPED, 0.0
 

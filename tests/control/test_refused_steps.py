@@ -76,7 +76,7 @@ def test_a_refused_step_brakes_within_the_limits_and_names_its_reason(
         found = arm.step(**wrong) if is_wrong else arm.step()
         if is_wrong:
             assert found == reason
-            assert REASONS[reason] in d.control.layout.reasons_of(arm.state)
+            assert REASONS[reason] in d.control.arm_layout.reasons_of(arm.state)
         if k == 101:
             assert 0.9 * speed < np.abs(arm.motion.last).max()
     for _ in range(200):

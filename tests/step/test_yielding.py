@@ -180,3 +180,17 @@ def test_joints_that_follow_others_brake_within_their_acceleration() -> None:
             path.append(made.step(path[-1], k * 1e-3, far).next_q)
         assert np.abs(np.diff(path, axis=0)).max() > 4e-5
         assert breaches(np.array(path), 1e-3, *robot.limits) == []
+
+
+def test_an_arm_that_retreats_contradict_by_less_than_rounding_turns_its_wrist() -> None:
+    """Two pairs ask for rates of -1e-10 and -3e-9 m/s, and not both can be had."""
+    robot = d.load_robot("ur5").with_limits(acceleration=12.65833663)
+    q = np.array([2.53302831846189, 0.937016385900153, 2.5292710037728128])
+    q = np.append(q, [-2.0157959554906455, -1.665795739180214, -4.604778754789702])
+    for joint in range(3, 6):
+        shield = d.Shield(robot, 1e-3, [], 0.02)
+        now = q
+        for _ in range(200):
+            now = shield.step(now, 0.2 * np.eye(6)[joint]).next_q
+        assert now[joint] - q[joint] == pytest.approx(0.2 * (0.2 - 0.5 * 0.2 / 12.658), rel=0.02)
+        np.testing.assert_allclose(now[:3], q[:3], atol=1e-7)
