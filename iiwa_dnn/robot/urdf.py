@@ -13,6 +13,7 @@ from threading import Lock
 from xml.parsers import expat
 
 import coal
+import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn.errors import FileError, warn_caller
@@ -148,7 +149,7 @@ def read_geometry(
 ) -> pin.GeometryModel:
     """Read the visual or collision shapes of a URDF; meshes in its folder or above it.
 
-    A mesh without triangles is left out, and a warning says so.
+    A mesh without triangles, and a solid whose sizes are all 0, are left out with a warning.
 
     Args:
         model: Its Pinocchio model.
@@ -157,13 +158,14 @@ def read_geometry(
         kind: Visual or collision shapes.
 
     Raises:
-        FileError: A mesh is missing or damaged.
+        FileError: A mesh is missing or damaged, or a size of a solid is negative.
     """
     folders = [str(folder) for folder in (*path.absolute().parents, *path.resolve().parents)]
     loader = coal.CachedMeshLoader(coal.BV_OBB)  # half of the default's time
     try:
         with parser_messages():  # they were shown when the robot was loaded
-            return pin.buildGeomFromUrdfString(model, text, kind, None, folders, loader)
+            found = pin.buildGeomFromUrdfString(model, text, kind, None, folders, loader)
+        return _with_sizes(found, model, path)
     except (ValueError, RuntimeError) as error:
         empty = _NO_TRIANGLES.search(str(error))
         rest, links = _without_mesh(text, empty[1]) if empty else (text, [])
@@ -176,6 +178,25 @@ def read_geometry(
     named = ", ".join(dict.fromkeys(links))
     warn_caller(f"{path}: the mesh {empty[1]} of {named} has no triangles: it is left out")
     return read_geometry(model, path, rest, kind)
+
+
+def _with_sizes(found: pin.GeometryModel, model: pin.Model, path: Path) -> pin.GeometryModel:
+    """Return shapes without solids whose sizes are all 0, of which a warning tells."""
+    for shape in list(found.geometryObjects):
+        solid = shape.geometry
+        sizes = [
+            float(size)
+            for name in ("radius", "halfLength", "halfSide")
+            for size in np.ravel(getattr(solid, name, ()))
+        ]
+        link = model.frames[shape.parentFrame].name
+        if min(sizes, default=1.0) < 0.0:
+            what = f"a {type(solid).__name__.lower()} has a negative size"
+            raise FileError(path, f"link {link!r}: {what}")
+        if max(sizes, default=1.0) == 0.0:
+            warn_caller(f"{path}: a {type(solid).__name__.lower()} of {link} has no size: left out")
+            found.removeGeometryObject(shape.name)
+    return found
 
 
 def _without_mesh(text: str, file: str) -> tuple[str, list[str]]:

@@ -241,6 +241,29 @@ def test_a_mesh_without_triangles_is_left_out_and_said_and_the_others_are_watche
     assert {capsule.link for capsule in model.capsules} == {"p1", "p2"}
 
 
+def solid_of(shape: str) -> str:
+    return f"<collision><geometry><{shape}/></geometry></collision>"
+
+
+@pytest.mark.parametrize(
+    "shape", ["sphere radius='-0.1'", "cylinder radius='-0.1' length='1'", "box size='1 -1 1'"]
+)
+def test_a_solid_with_a_negative_size_is_refused(shape: str, tmp_path) -> None:
+    robot = arm_of(tmp_path, p1=COVER, p2=solid_of(shape))
+    kind = shape.partition(" ")[0]
+    with pytest.raises(
+        iiwa_dnn.errors.FileError, match=f"link 'p2': a {kind} has a negative size$"
+    ):
+        make_collision_model(robot, samples=9)
+
+
+def test_a_solid_without_a_size_is_left_out_and_said(tmp_path) -> None:
+    robot = arm_of(tmp_path, p1=COVER, p2=solid_of("sphere radius='0'"))
+    with pytest.warns(UserWarning, match="a sphere of p2 has no size: left out$"):
+        model = make_collision_model(robot, samples=9)
+    assert {capsule.link for capsule in model.capsules} == {"p1"}
+
+
 @pytest.mark.parametrize("version", ["", "version='1.0'", "version='1.1'", "version='1.2'"])
 def test_a_capsule_of_a_file_is_a_shape_whatever_its_version(version: str, tmp_path) -> None:
     rod = "<collision><geometry><capsule radius='0.03' length='0.2'/></geometry></collision>"
