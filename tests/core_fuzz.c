@@ -1,7 +1,8 @@
 /* Mutated tables and hostile steps: ./core_fuzz ROUNDS STEPS SEED, to be compiled with sanitizers.
  *
  * In each round the tables of one arm, with up to three numbers, integers or ends changed, are loaded: as they are,
- * which their digest forbids, and with the digest that they would need. The tables themselves take hostile steps.
+ * which their digest forbids, and with the digest that they would need. Before, each number in turn is one beyond all
+ * integers. The tables themselves take hostile steps.
  */
 #include "left.h"
 #include "right.h"
@@ -68,6 +69,23 @@ static long steps(const struct armstep *arm, double *memory, double *scratch, lo
     return found;
 }
 
+static void forge(const struct armstep_tables *usual)
+{
+    static struct armstep arm;
+    struct armstep_tables own = *usual;
+    const size_t size = sizeof(double) * (size_t)own.number_count;
+    double *numbers = malloc(size);
+    memcpy(numbers, usual->numbers, size);
+    own.numbers = numbers;
+    for (ptrdiff_t i = 0; i < own.number_count; i++) {
+        numbers[i] = 1e300;
+        own.digest = armstep_digest(&own);
+        (void)armstep_load(&arm, &own);
+        numbers[i] = usual->numbers[i];
+    }
+    free(numbers);
+}
+
 int main(int count, char **words)
 {
     static const struct armstep_tables *const all[] = {&left, &right};
@@ -75,6 +93,8 @@ int main(int count, char **words)
     const long most = count > 2 ? atol(words[2]) : 20;
     long loaded = 0, invalid = 0;
     state = count > 3 ? (uint64_t)atoll(words[3]) : 88172645463325252ULL;
+    forge(&left);
+    forge(&right);
     for (long round = 0; round < rounds; round++) {
         static struct armstep arm;
         struct armstep_tables own = *all[round % 2];
