@@ -267,6 +267,17 @@ def test_a_shield_takes_the_period_of_a_command_without_a_longest_one() -> None:
     np.testing.assert_array_equal(shield.step(q, dt=1e-3).log.q, q)
 
 
+def test_the_clock_of_a_shield_counts_the_periods_that_have_passed() -> None:
+    robot = d.load_robot("iiwa7")
+    shield = d.Shield(robot, 1e-3, [], longest_period=4e-3)
+    q = shield.step(robot.start_posture(), np.full(7, 0.1), dt=1e-3).next_q
+    passed = 0.0
+    for elapsed in np.random.default_rng(0).uniform(5e-4, 4e-3, 20):
+        q = shield.step(q, np.full(7, 0.1), elapsed=elapsed).next_q
+        passed += elapsed
+        assert shield.time == pytest.approx(passed + 1e-3, abs=1e-12)  # and the command's own
+
+
 @pytest.mark.parametrize("late", [10, 40])
 @pytest.mark.parametrize("jitter", [False, True])
 def test_drives_that_are_late_pass_no_limit(late: int, jitter: bool) -> None:

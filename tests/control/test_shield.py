@@ -258,6 +258,9 @@ def test_margin_and_stopping_time_are_those_of_closed_forms() -> None:
     shield = d.Shield(ROBOT, DT)
     _, commands = drive(shield, 100, dq=np.full(7, 0.5))
     assert commands[-1].stopping_time == pytest.approx(0.05, abs=DT)
+    shield = d.Shield(PLAIN, DT, [])  # without a limit of acceleration, the period of the command
+    assert shield.step(START, np.full(7, 0.1)).stopping_time == DT
+    assert shield.step(START, np.zeros(7)).stopping_time == 0.0
 
 
 @pytest.mark.parametrize(
