@@ -62,7 +62,7 @@ from iiwa_dnn.schemes.step import TARGET_SIZE
 from iiwa_dnn.schemes.torque import own_torque_limits
 from iiwa_dnn.step.arms import send_arm
 from iiwa_dnn.step.cycle import INVALID
-from iiwa_dnn.step.inputs import add_pending, begin_step
+from iiwa_dnn.step.inputs import add_pending, begin_step, is_refused
 from iiwa_dnn.step.memory import (
     ArmInput,
     ArmPlan,
@@ -738,7 +738,8 @@ class Shield:
         kinematics = layout.step.program.kinematics
         positions = memory[layout.positions]
         kinematics.update(positions)
-        if layout.called:
+        # A step that is refused brakes whatever the parts say, which may be what is broken.
+        if layout.called and not is_refused(layout.state(memory)):
             self._call_parts(layout, memory, periods)
         data = np.empty(plan.width)
         action = finish_step(plan, memory, inputs, data, OWN_NETWORK)

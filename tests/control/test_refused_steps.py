@@ -148,3 +148,30 @@ def test_a_shield_without_positions_brakes_as_an_arm_of_shields_does(name: str) 
         assert ("q not finite" in one.reasons) == blind
         q = one.next_q
     assert np.isnan(d.Shields(ROBOT, 1, dt=DT).step(np.full((1, 7), np.nan)).next_q).all()
+
+
+class Blind(d.Limit):
+    """A limit in numpy whose sensor fails."""
+
+    fails = False
+
+    def bounds(self, step: Any) -> tuple[np.ndarray, np.ndarray]:
+        if self.fails:
+            raise RuntimeError("no sensor")
+        return np.full(7, -9.0), np.full(7, 9.0)
+
+
+def test_without_positions_an_arm_comes_to_rest_though_a_limit_in_numpy_fails() -> None:
+    limit = Blind()
+    shield = d.Shield(ROBOT, DT)
+    shield.limits += (limit,)
+    path = [START, START]
+    for _ in range(100):
+        path.append(shield.step(path[-1], np.ones(7)).next_q)
+    object.__setattr__(limit, "fails", True)
+    with pytest.raises(RuntimeError, match="no sensor"):
+        shield.step(path[-1], np.ones(7))
+    for _ in range(600):
+        path.append(path[-1] + DT * shield.step(None).dq)
+    assert not np.ptp(path[-2:], axis=0).any()
+    assert breaches(np.array(path), DT, *ROBOT.limits) == []
