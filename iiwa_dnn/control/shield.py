@@ -240,7 +240,7 @@ class Shield:
     `tracking_error` of those commanded `delay` ago do not change the integrated ones, unless
     periods vary and are not stated. Threads may share a shield: steps wait for each other.
 
-    What has no meaning is refused, and an arm never stops dead for it. Numbers that are not finite
+    What has no meaning is refused, and an arm never stops dead for it. Requests that are not finite
     brake the arm, with a reason; so do, in C and for an arm of `Shields`, all others. An argument
     that raises an error changes nothing: `step` with None for the joint positions then brakes.
 
