@@ -7,7 +7,6 @@ that breaks a limit or loses 20 commands in a row, as the robot does. Its clock 
 
 import ctypes
 import fcntl
-import json
 import os
 import signal
 import socket
@@ -17,7 +16,6 @@ import time
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
-from threading import Event, Thread
 
 import numpy as np
 import pytest
@@ -121,35 +119,20 @@ def test_the_motion_is_accepted_with_reserve_for_lost_commands(
 
 
 RECORDING = """
+import sys
+sys.path.insert(0, "tests")
 import numpy as np
 from armstep import Shield
-step, log = Shield.step, []
+from franka_requests import Sender
+step, log, sender = Shield.step, [], Sender(PORT)
 def recorded(shield, q, **request):
+    sender.cycle(len(log))
     begin = time.perf_counter()
     command = step(shield, q, **request)
     log.append((*q, time.perf_counter() - begin, bool(request), *command.dq))
     return command
 Shield.step = recorded
 """
-PERIOD = 1.0 / 30.0  # of a policy [s]
-
-
-def ask(place: tuple[str, int], ended: Event) -> None:
-    """Send hostile requests by UDP at the rate of a slow policy, in runs of a kind."""
-    random = np.random.default_rng(0)
-    bad = (b"", b"{}", b'{"dq": [1]}', b'{"twist": "up"}', b'{"dq": [1e999, 0, 0, 0, 0, 0, 0]}')
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
-        while not ended.is_set():
-            kind = random.choice(["dq", "twist", "position", "bad", "silence"])
-            size = random.choice([1.0, 3.0, 30.0])
-            for _ in range(random.integers(1, 30)):
-                numbers = size * random.normal(size=6 if kind == "twist" else 7)
-                packet = json.dumps({str(kind): numbers.tolist()}).encode()
-                if kind == "bad":
-                    packet = bad[random.integers(len(bad))]
-                if kind != "silence":
-                    link.sendto(packet, place)
-                ended.wait(PERIOD)
 
 
 def test_a_port_alone_is_one_of_this_machine_and_a_refusal_is_said_at_once(capfd) -> None:
@@ -169,20 +152,16 @@ def test_hostile_requests_of_a_slow_policy_abort_no_motion(server, tmp_path: Pat
     seconds = float(os.environ.get("SECONDS_OF_HOSTILE_REQUESTS", "5"))
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
         link.bind(("127.0.0.1", 0))
-        place = link.getsockname()
-    ended = Event()
-    sender = Thread(target=ask, args=(place, ended))
-    sender.start()
+        port = link.getsockname()[1]
     file = tmp_path / "log.npy"
     code = (
-        f"import atexit, time\n{RECORDING}\natexit.register(lambda: np.save({str(file)!r}, log))\n"
+        f"import atexit, time\nPORT = {port}\n{RECORDING}\n"
+        f"atexit.register(lambda: np.save({str(file)!r}, log))\n"
         "from scripts import franka\n"
-        f"franka.main('127.0.0.1', {seconds}, requests='{place[0]}:{place[1]}',"
+        f"franka.main('127.0.0.1', {seconds}, requests='{port}',"
         f" shield={str(tables)!r})"
     )
     done = run_python(code, timeout=300.0 + 5.0 * seconds, PYTHONPATH=str(package))
-    ended.set()
-    sender.join()
     assert done.returncode == 0, done.stderr
     assert server.poll() is None
     log = np.load(file)
@@ -195,4 +174,7 @@ def test_hostile_requests_of_a_slow_policy_abort_no_motion(server, tmp_path: Pat
     assert (q >= robot.q_lower).all()
     assert (q <= robot.q_upper).all()
     judge = Judge(robot, iiwa_dnn.CollisionAvoidance([], distance=0.02))
-    assert min(judge.distance(each, 0.0) for each in q[::20]) >= 0.02 - 1e-4
+    first, *others = (judge.distance(each, 0.0) for each in q[::20])
+    print(f"distance {1e3 * first:.2f} mm at the start, least {1e3 * min(others):.2f}")
+    # Where the motion before has left the arm nearer, it comes no nearer.
+    assert min(others) >= min(first, 0.02) - 1e-4
