@@ -1,4 +1,4 @@
-"""What can be asked about an arm between its steps: margins, stopping time, frames."""
+"""Margins, stopping time and frames of an arm, asked between its steps."""
 
 from __future__ import annotations
 

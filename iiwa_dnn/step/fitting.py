@@ -283,25 +283,28 @@ def _scene_fits(constants: Vector, arrays: ProgramArrays) -> bool:
     if not _is_within(head.first, 0, arrays.sizes.pairs + 1 - head.pairs):
         return False
     scene = scene_views(constants)
+    fit = True
     for k in range(head.bodies):
         body = Body.of(scene.bodies[k])
-        if not _are_bounded(scene.bodies[k]) or not _is_within(
-            body.frame, 0, len(arrays.placements)
-        ):
-            return False
-    fit = True
+        fit = fit and _body_fits(body, len(arrays.placements))
     for k in range(head.pairs):
         pair = Pair.of(scene.pairs[k])
-        fit = fit and _are_bounded(scene.pairs[k]) and _pair_fits(pair, n, head.bodies)
+        fit = fit and _pair_fits(pair, n, head.bodies)
     return fit
+
+
+@compiled
+def _body_fits(body: Body, frames: int) -> bool:
+    """Test a body by the number of frames."""
+    return _are_bounded(body.numbers) and _is_within(body.frame, 0, frames)
 
 
 @compiled
 def _pair_fits(pair: Pair, joints: int, bodies: int) -> bool:
     """Test a pair of bodies by the numbers of joints and of bodies."""
-    if pair.radii.size != joints or not _is_within(pair.first, 0, bodies):
+    if pair.radii.size != joints or not _are_bounded(pair.numbers):
         return False
-    return _is_within(pair.second, 0, bodies)
+    return _is_within(pair.first, 0, bodies) and _is_within(pair.second, 0, bodies)
 
 
 @compiled
