@@ -1,6 +1,7 @@
 """A recording of a shield's steps on an arm, and its replay by judges that are not the shield's."""
 
 import json
+import threading
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -116,6 +117,26 @@ def test_the_ring_keeps_the_last_chunks_whole(
     assert (rows["kind"][-1], rows["dt"][-1]) == (1, DT)
     with pytest.raises(FileExistsError):
         armstep.recorded(armstep.Shield(tables), folder)
+
+
+def test_a_disk_that_is_slow_at_first_loses_no_chunk(
+    tables: Path, clock: list[float], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    armstep = use_armstep()
+    save, ready = np.savez_compressed, threading.Event()
+
+    def save_when_ready(*arguments: Any, **given: Any) -> None:
+        assert ready.wait(60.0)
+        save(*arguments, **given)
+
+    monkeypatch.setattr(np, "savez_compressed", save_when_ready)
+    with armstep.recorded(armstep.Shield(tables), tmp_path / "slow") as shield:
+        for _ in range(6000):
+            shield.step(START, dq=np.zeros(7))
+            clock[0] += DT
+        threading.Timer(0.2, ready.set).start()
+    _, rows = read_recording(tmp_path / "slow")
+    assert len(rows) == 6000
 
 
 def test_what_is_no_recording_is_said_in_a_line(

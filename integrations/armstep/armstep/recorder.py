@@ -95,14 +95,17 @@ class Recorded:
         return command
 
     def _hand_over(self) -> None:
-        """Let a thread write the rows that are full, and begin new ones."""
-        self._writer = threading.Thread(target=self._write, args=(self._rows[: self._count],))
+        """Let a thread write the rows that are full, after those before, and begin new ones."""
+        given = (self._rows[: self._count], self._writer)
+        self._writer = threading.Thread(target=self._write, args=given)
         self._writer.start()
         self._rows = np.zeros_like(self._rows)
         self._count = 0
 
-    def _write(self, rows: NDArray[Any]) -> None:
+    def _write(self, rows: NDArray[Any], before: threading.Thread | None) -> None:
         """Write a chunk, whole or not at all, and let the oldest ones go."""
+        if before is not None:
+            before.join()
         file = self.folder / f"{rows['time'][0]:018.6f}.npz"
         part = file.with_suffix(".part")
         with part.open("wb") as opened:
