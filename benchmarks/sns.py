@@ -24,8 +24,10 @@ from judge_limits import breaches
 GAIN = 10.2
 """Gain of the position and of the orientation [1/s], the paper's delta."""
 
+RUNS = 10
 STEPS = 1000
-"""Hostile steps of a run, at most."""
+RADIUS = 0.08
+"""Hostile runs, each of so many steps at most, among spheres of this radius [m]."""
 
 SLACK = 1e-9
 """Excess over a bound [rad/s] that is rounding."""
@@ -206,10 +208,24 @@ def hostile_controller(case: hostile.Case) -> Any:
     return lambda q, t, target: made.step(q, t, target).dq
 
 
+def draw_cases() -> dict[int, hostile.Case]:
+    """Draw cases whose acceleration is limited, by their seeds, with spheres as obstacles."""
+    cases: dict[int, hostile.Case] = {}
+    seed = 0
+    while len(cases) < RUNS:
+        seed += 1
+        case = hostile.draw_case(seed)
+        if case and np.isfinite(case.robot.ddq_max).all():
+            balls = [iiwa_dnn.Sphere(place, RADIUS) for place in hostile.places_of(case)]
+            avoidance = iiwa_dnn.CollisionAvoidance(balls, False, distance=hostile.DISTANCE)
+            case = case._replace(avoidance=avoidance, moving=False)
+            if hostile.is_clear(case, 0.0):
+                cases[seed] = case
+    return cases
+
+
 def report() -> None:
     """Print both tables."""
-    from benchmarks.shields import draw_cases  # which needs other filters
-
     filters = {"network": by_network, "saturation in the null space": by_saturation}
     columns = {
         "the heart": "{name}",

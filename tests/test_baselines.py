@@ -62,6 +62,17 @@ def test_without_active_bounds_saturation_is_the_pseudo_inverse() -> None:
     np.testing.assert_allclose(dq, iiwa_dnn.solve_problem(qp).x, atol=1e-8)
 
 
+def test_a_hostile_run_of_both_is_judged(monkeypatch) -> None:
+    monkeypatch.setattr(sns, "RUNS", 1)
+    monkeypatch.setattr(sns, "STEPS", 30)
+    cases = sns.draw_cases()
+    own, other = (
+        sns.hostile_row(make, cases) for make in (sns.hostile_controller, sns.hostile_saturation)
+    )
+    assert own["acceleration"] == 0
+    assert other["jerk"] >= own["jerk"]
+
+
 def test_arrival_counts_the_last_period_away_from_the_goal(monkeypatch) -> None:
     pytest.importorskip("ruckig")
     pytest.importorskip("pylibfranka")

@@ -1,5 +1,6 @@
 """``collisions``: the capsules and pairs of a robot's links, beside its URDF."""
 
+from dataclasses import replace
 from typing import Annotated
 
 from tyro.conf import Positional
@@ -7,7 +8,7 @@ from tyro.conf import Positional
 from iiwa_dnn import FileError, load_robot
 from iiwa_dnn.app.command_line import shown
 from iiwa_dnn.naming import unguarded
-from iiwa_dnn.robot.collision import collision_file, make_collision_model
+from iiwa_dnn.robot.collision import collision_file, digest_of, make_collision_model
 
 
 def collisions(
@@ -29,7 +30,7 @@ def collisions(
     file = collision_file(loaded)
     if file.exists():
         raise FileError(file, "exists already; it is made anew where it is removed")
-    model = make_collision_model(loaded, srdf=srdf)
+    model = replace(make_collision_model(loaded, srdf=srdf), source=digest_of(loaded))
     model.save(file)
     pairs = len(model.pairs(loaded))
     print(f"written to {file}: {len(model.bodies)} bodies, {pairs} pairs that may meet")

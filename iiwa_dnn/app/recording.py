@@ -17,7 +17,7 @@ import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn.control.requests import REASONS
-from iiwa_dnn.errors import FileError
+from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line, write_text
 from iiwa_dnn.results.plots import new_figure
 from iiwa_dnn.results.report import markdown_table
@@ -44,6 +44,12 @@ SHORTEST = 0.02
 
 MOVING = 0.05
 """Range of a joint below which a window shows no lag [rad]."""
+
+WHOLE = WINDOW + SLOWEST
+"""Least length of a recording that is judged [s]."""
+
+OUTSIDE = 1e-6
+"""Way of a joint out of its range that is a finding [rad]."""
 
 SPARSE = 0.01
 LACK = 1e-4
@@ -101,27 +107,39 @@ def read_recording(folder: str | os.PathLike[str]) -> tuple[dict[str, Any], Any]
 
 
 def judge(tables: dict[str, Any], rows: Any, robot: Robot) -> list[Series]:
-    """Judge the steps of a recording, given the members of the shield's tables, and the arm."""
+    """Judge the steps of a recording, given the members of the shield's tables, and the arm.
+
+    Raises:
+        InvalidInputError: The recording is shorter than `WHOLE`.
+    """
     dt = tables["dt"]
     joints = np.array(tables["joint_names"])
     time = rows["time"] - rows["time"][0]
+    if time[-1] < WHOLE:
+        problem = f"lasts {time[-1]:.2f} s, less than {WHOLE:g} s, which judging takes"
+        raise InvalidInputError("recording", problem, time[-1])
     measured = rows["measured"]
+    blind = np.isnan(measured).any(axis=1)
     periods = np.diff(time)
-    error = np.abs(measured[1:] - rows["next_q"][:-1])
+    late = 1 + round(tables["delay"] / dt)
+    error = np.abs(measured[late:] - rows["next_q"][:-late])
     found = [
         Series("period [of the stated one]", time[1:], periods / dt, [""] * periods.size, LATE),
-        Series("following error [rad]", time[1:], *_worst(error, joints), FOLLOWING),
+        Series("steps without positions", time, 1.0 * blind, np.full(time.size, ""), 0.0),
+        Series("following error [rad]", time[late:], *_worst(error, joints), FOLLOWING),
         _lag(rows, time, dt, SHORTEST + tables["delay"]),
     ]
     limits = {name: np.array(own, float) for name, own in tables["limits"].items()}
-    middle = np.nan_to_num(0.5 * (limits["upper"] + limits["lower"]), posinf=0.0, neginf=0.0)
-    held = np.where(rows["dt"] > 0.0, rows["dt"], dt)[:, np.newaxis]
+    for name, own in (("commanded", rows["next_q"]), ("measured", measured)):
+        outside = np.maximum(own - limits["upper"], limits["lower"] - own)
+        values = _worst(outside, joints)
+        found.append(Series(f"{name} position [rad outside]", time, *values, OUTSIDE))
+    held = np.where(rows["dt"] > 0.0, rows["dt"], rows["elapsed"])
+    held = np.where(held > 0.0, held, dt)[:, np.newaxis]
     far = max(1, round(SHORTEST / dt))
     seen = (measured[far:] - measured[:-far]) / (time[far:] - time[:-far])[:, np.newaxis]
     acceleration = np.diff(rows["dq"], axis=0) / held[1:]
     for name, own, most, slack in (
-        ("commanded position", rows["next_q"] - middle, limits["upper"] - middle, ROUNDING),
-        ("measured position", measured - middle, limits["upper"] - middle, ROUNDING),
         ("commanded velocity", rows["dq"], limits["velocity"], ROUNDING),
         ("measured velocity", seen, limits["velocity"], NOISE),
         ("acceleration", acceleration, limits["acceleration"], ROUNDING),
@@ -129,11 +147,14 @@ def judge(tables: dict[str, Any], rows: Any, robot: Robot) -> list[Series]:
     ):
         values = _worst(np.abs(own) / most, joints)
         found.append(Series(f"{name} [of the limit]", time[-len(own) :], *values, 1.0 + slack))
-    return found if tables["scene"] is None else [*found, _distances(tables, rows, time, robot)]
+    if tables["scene"] is None:
+        return found
+    return [*found, _distances(tables, rows[~blind], time[~blind], robot)]
 
 
 def _worst(values: Any, names: Any) -> tuple[Any, Any]:
-    """Return the largest value of each row, and its name."""
+    """Return the largest value of each row, and its name; what is not known is nothing found."""
+    values = np.nan_to_num(values, nan=-np.inf, posinf=np.inf)
     return values.max(axis=1), names[values.argmax(axis=1)]
 
 
@@ -149,7 +170,7 @@ def _lag(rows: Any, time: Any, dt: float, most: float) -> Series:
     for k in begins:
         path = asked[k : k + length]
         misses = [np.abs(seen[k + s :][: len(path)] - path[: len(seen) - k - s]) for s in shifts]
-        best = np.argmin([np.minimum(each, FOLLOWING).mean() for each in misses])  # but for jumps
+        best = np.argmin([np.fmin(each, FOLLOWING).mean() for each in misses])  # but for jumps
         lags.append(grid * best * (np.ptp(path, axis=0).max() > MOVING))
     middles = time[::step][[k + length // 2 for k in begins]]
     return Series("lag [s]", middles, np.array(lags), np.full(len(lags), "all joints"), most)

@@ -10,7 +10,7 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.robot.obstacles import Box, Obstacle, PlacedBox, Sphere, box_around
+from iiwa_dnn.robot.obstacles import Box, Obstacle, PlacedBox, Sphere, box_around, names_of
 from iiwa_dnn.schemes.separation import Separation
 from iiwa_dnn.step.bodies import BoxPlace
 
@@ -24,8 +24,13 @@ def separation_in(parts: Iterable[object]) -> Separation | None:
 
 
 def split_bodies(obstacles: Any) -> tuple[list[Obstacle], list[Obstacle]]:
-    """Split obstacles, or the one, into bodies of bounded speed and all others."""
+    """Split obstacles, or the one, into bodies of bounded speed and all others.
+
+    Raises:
+        InvalidInputError: Two have the same name.
+    """
     given = tuple(obstacles) if isinstance(obstacles, Iterable) else (obstacles,)
+    names_of([each for each in given if isinstance(each, Obstacle)])
     free = [each for each in given if isinstance(each, Obstacle) and each.is_free]
     return free, [each for each in given if each not in free]
 

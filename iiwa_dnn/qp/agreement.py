@@ -48,7 +48,7 @@ _FLAT = ROUNDING
 """Eigenvalue of S, relative to n times the largest, up to which it is rounding: x is free along its
 eigenvector."""
 
-_NOISE = 2.0**-45
+NOISE = 2.0**-45
 """Root of a variable's curvature, relative to the largest, up to which it is rounding."""
 
 
@@ -107,6 +107,12 @@ def units(coefficients: Matrix) -> Matrix:
     return np.where(usual, 1.0, np.exp2(np.floor(np.log2(largest))))
 
 
+def curvatures(block: QPViews) -> Matrix:
+    """Return the root of each variable's own curvature, relative to the largest one, (N, n)."""
+    root = np.sqrt(np.abs(np.diagonal(block.P, axis1=1, axis2=2)))
+    return np.asarray(root / root.max(axis=1, keepdims=True, initial=np.finfo(float).tiny))
+
+
 def normalised(programs: Matrix, sizes: Sizes) -> tuple[Matrix, Matrix]:
     """Divide the cost and the rows of N programs by their `units`, and multiply their variables.
 
@@ -122,9 +128,8 @@ def normalised(programs: Matrix, sizes: Sizes) -> tuple[Matrix, Matrix]:
     """
     n, m, _ = sizes
     block = stacked(programs, sizes)
-    root = np.sqrt(np.abs(np.diagonal(block.P, axis1=1, axis2=2)))
-    root /= root.max(axis=1, keepdims=True, initial=np.finfo(float).tiny)
-    factors = 1.0 / units(np.where(root > _NOISE, root, 0.0)[:, :, np.newaxis])
+    root = curvatures(block)
+    factors = 1.0 / units(np.where(root > NOISE, root, 0.0)[:, :, np.newaxis])
     rows = factors[:, np.newaxis] * np.hstack(
         [block.P * factors[:, :, np.newaxis], block.q[:, np.newaxis], block.G, block.A]
     )

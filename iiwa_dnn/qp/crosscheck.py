@@ -5,8 +5,8 @@ only where its own KKT residual is small. If the one that was asked has no such 
 is asked. A proof judges instead (`iiwa_dnn.qp.proof`) where neither is believed, where an answer
 disagrees, and where the program is so flat that a point with the reference's residual may be far
 from the solution. Where nothing is proven, as of programs with several solutions, a reference that
-is not at the same point judges only if its residual says that it is near one. The agreement names
-the judge, or nobody.
+is not at the same point judges only if its residual says that it is near one, and no variable's own
+curvature is so slight that it may be rounding. The agreement names the judge, or nobody.
 
 "proof" stands among the references for a proof of the answer itself, which asks no solver.
 """
@@ -23,7 +23,9 @@ from numpy.typing import NDArray
 from iiwa_dnn import checks
 from iiwa_dnn.errors import IiwaDnnError, InvalidInputError
 from iiwa_dnn.qp.agreement import (
+    NOISE,
     Agreement,
+    curvatures,
     feasibility_gaps,
     normalised,
     objective_gaps,
@@ -154,6 +156,8 @@ class CrossCheck:
         agrees = (judge >= 0) & ~is_far
         curved = np.linalg.eigvalsh(stacked(scaled[agrees], sizes).P).min(axis=1, initial=np.inf)
         agrees[agrees] = curved * self.tolerance > errors[agrees]
+        root = curvatures(stacked(programs, sizes))
+        faint = np.any((root > 0.0) & (root <= NOISE), axis=1)  # rounding, or other units
         for i in np.flatnonzero(~agrees):
             qp = QP.from_data(scaled[i], sizes)
             center, radius, _, reason = enclose_solution(qp, references[i])
@@ -170,7 +174,8 @@ class CrossCheck:
                 gaps[i] = np.abs(factors[i] * unique).max()
                 # Of variables in other units, none is free for sure.
                 if is_far[i] and not (
-                    min(off, errors[i] / least) < self.tolerance
+                    not faint[i]
+                    and min(off, errors[i] / least) < self.tolerance
                     and (gaps[i] > self.tolerance or (factors[i] == 1.0).all())
                 ):
                     steps[i] = gaps[i] = np.nan

@@ -9,6 +9,7 @@ Tools and held objects are further capsules, by the names of their frames.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 from collections.abc import Callable, Iterable, Sequence
@@ -103,6 +104,7 @@ class CollisionModel(checks.Checked):
             `TOO_NEAR` or ``"no joint moves it"`` of a tool, or a text of one's own.
         watched: The pairs that are kept apart, by the numbers of their bodies. None: all pairs of
             capsules but those that are left out.
+        source: Digest of the URDF that all this is of (`digest_of`); "": not known.
     """
 
     _checks: ClassVar[checks.Checks] = {
@@ -112,6 +114,7 @@ class CollisionModel(checks.Checked):
     bodies: tuple[LinkBody, ...]
     left_out: tuple[tuple[str, str, str], ...]
     watched: tuple[Watched, ...] | None = None
+    source: str = ""
 
     @property
     def capsules(self) -> tuple[LinkBody, ...]:
@@ -146,6 +149,7 @@ class CollisionModel(checks.Checked):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the model as a TOML file that `collision_model` reads; lengths in [m]."""
         lines = ["# Collision geometry: links left out, bodies that are kept apart; lengths in [m]"]
+        lines += [f"source = {json.dumps(self.source)}"] if self.source else []
         for name, entries in (("left_out", self.left_out), ("watched", self.watched)):
             if entries is not None:
                 lines += [f"{name} = [", *(f"  {json.dumps(each)}," for each in entries), "]"]
@@ -167,7 +171,8 @@ class CollisionModel(checks.Checked):
         try:
             bodies = [_body_of(Capsule, **entry) for entry in tables["capsule"]]
             bodies += [_body_of(Box, **entry) for entry in tables.get("box", ())]
-            return cls(tuple(bodies), tables["left_out"], tables.get("watched"))
+            pairs = tables["left_out"], tables.get("watched")
+            return cls(tuple(bodies), *pairs, tables.get("source", ""))
         except (KeyError, ValueError, TypeError) as error:
             problem = one_line(error).rpartition("() ")[2]  # of Python's own message
             raise FileError(path, f"no collision geometry: {problem}") from error
@@ -184,6 +189,11 @@ def collision_file(robot: Robot) -> Path:
         if ARMS[robot.name].path == path:
             path = robots_folder() / robot.name / robot.name  # the arm's may be somebody else's
     return path.with_suffix(".collisions.toml")
+
+
+def digest_of(robot: Robot) -> str:
+    """Return the digest of a robot's URDF."""
+    return hashlib.sha256(str(robot.urdf).encode()).hexdigest()[:16]
 
 
 @lru_cache(maxsize=32)
@@ -218,8 +228,9 @@ def link_model(robot: Robot) -> CollisionModel:
     """Read the collision geometry of a robot's links; if it has no file, make it from the URDF.
 
     If a position limit is beyond the URDF's, within which pairs of a file never meet, the file has
-    the bodies alone. No file is written. If making takes longer than `LONG`, a warning says how to
-    keep the result. It is made once for all robots that differ in tools and rates alone.
+    the bodies alone. A warning tells of one that was made of another URDF. No file is written. If
+    making takes longer than `LONG`, a warning says how to keep the result. It is made once for all
+    robots that differ in tools and rates alone.
 
     Raises:
         InvalidInputError: The robot does not come from a file.
@@ -229,6 +240,8 @@ def link_model(robot: Robot) -> CollisionModel:
     least, most = model_limits(robot.model)[:2]
     is_within = bool((robot.q_lower >= least).all() and (robot.q_upper <= most).all())
     kept = CollisionModel.load(file) if file.exists() else None
+    if kept and kept.source not in ("", digest_of(robot)):
+        warn_caller(f"{file} was made of another {robot.path}: remove it, and make it anew")
     if kept and is_within:
         return kept
     flange = robot.tools[0].flange if robot.tools else robot.tip

@@ -13,7 +13,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.errors import FileError, import_extra
+from iiwa_dnn.errors import FileError, import_extra, warn_caller
 from iiwa_dnn.files import one_line
 from iiwa_dnn.robot.urdf import ENDLESS
 
@@ -40,6 +40,9 @@ def read_mjcf(path: Path) -> ET.Element:
         link = _add_body(mj, model, number, root, path)
         for geom in np.flatnonzero(model.geom_bodyid == number):
             _add_shape(mj, model, int(geom), link, meshes)
+    flat = np.isin(model.geom_type, (mj.mjtGeom.mjGEOM_PLANE, mj.mjtGeom.mjGEOM_HFIELD))
+    if (flat & ((model.geom_contype | model.geom_conaffinity) > 0)).any():
+        warn_caller(f"{path}: a plane or a field of heights is left out: state it as a HalfSpace")
     known = {link.get("name") for link in root.findall("link")}
     for number in np.flatnonzero(model.body_weldid[model.site_bodyid]):  # not those of the base
         site = model.site(number)

@@ -193,6 +193,9 @@ def _with_sizes(found: pin.GeometryModel, model: pin.Model, path: Path) -> pin.G
         if min(sizes, default=1.0) < 0.0:
             what = f"a {type(solid).__name__.lower()} has a negative size"
             raise FileError(path, f"link {link!r}: {what}")
+        if isinstance(solid, coal.BVHModelBase) and not np.isfinite(solid.vertices()).all():
+            what = f"the mesh {shape.meshPath} has vertices that are no numbers"
+            raise FileError(path, f"link {link!r}: {what}")
         if max(sizes, default=1.0) == 0.0:
             warn_caller(f"{path}: a {type(solid).__name__.lower()} of {link} has no size: left out")
             found.removeGeometryObject(shape.name)

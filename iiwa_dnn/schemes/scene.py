@@ -38,7 +38,7 @@ from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics, Placement
 from iiwa_dnn.robot.meetings import TOUCH, Watched
-from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox, names_of
+from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, PlacedBox, names_of
 from iiwa_dnn.schemes.step import axis_at, rate_along, seen_from
 
 ROUNDS = 60
@@ -237,16 +237,15 @@ def make_scene(
         raise InvalidInputError("robot", problem, robot)
     model = collision_model(robot)
     links = [each.link for each in model.bodies]
-    names = links + names_of(obstacles)
-    for name in {*links} & {*names[len(links) :]}:
-        raise InvalidInputError("obstacles", f"one goes by the link's name {name!r}", obstacles)
+    names = links + names_beside(links, obstacles)
     bodies = _bodies(robot, obstacles)
     numbered = model.pairs(robot) if self_collision else []
     numbered += _obstacle_pairs(robot, bodies, len(links))
     rows = [make_pair(robot, bodies, each, distances[0]) for each in numbered]
     pairs = np.reshape(rows, (-1, Pair.width(robot.dof)))
     frames = tuple(dict.fromkeys(links))
-    moved = _moved_ends(robot, frames, _constants(distances, bodies, pairs))
+    placed = [k for k, each in enumerate(obstacles, len(links)) if not isinstance(each, HalfSpace)]
+    moved = _moved_ends(robot, frames, _constants(distances, bodies, pairs), placed)
     unmoved = np.where(moved.all(axis=1), 0, 1 + moved[:, 0])
     for row, end in zip(pairs, unmoved, strict=True):
         Pair.of(row).unmoved_end = end
@@ -262,6 +261,14 @@ def make_scene(
     constants = _constants(distances, bodies, pairs[watched])
     moving = [(each, k) for k, each in enumerate(obstacles, len(links)) if each.speed]
     return Scene(robot, [*itertools.compress(named, watched)], frames, moving, constants, left)
+
+
+def names_beside(links: Sequence[str], obstacles: Sequence[Obstacle]) -> list[str]:
+    """Return the name of each obstacle; refuse that of a link, or one that two have."""
+    names = names_of(obstacles)
+    for name in {*links} & {*names}:
+        raise InvalidInputError("obstacles", f"one goes by the link's name {name!r}", obstacles)
+    return names
 
 
 def _are_given(
@@ -318,24 +325,33 @@ def _body(frame: int, box: PlacedBox, radius: float, speed: float) -> Body:
     )
 
 
-def _moved_ends(robot: Robot, frames: Sequence[str], constants: Vector) -> NDArray[np.bool_]:
+def _moved_ends(
+    robot: Robot, frames: Sequence[str], constants: Vector, placed: list[int]
+) -> NDArray[np.bool_]:
     """Test which ends of each pair's segment some joint moves along the normal, (pairs, 2).
 
-    Both ends count as moved if the first body is an obstacle that moves, and some joint moves the
-    second one.
+    An obstacle may be placed anew at any step, so an end counts as moved if it is with the obstacle
+    anywhere. Both ends do if it moves by itself, and some joint moves the second body.
 
     Args:
         robot: The robot, n joints.
         frames: Links whose placements are needed.
         constants: Constants of a scene of all pairs, (k,).
+        placed: Numbers of the obstacles but half-spaces, whose normal is the same anywhere.
     """
     scene = scene_views(constants)
     pairs = Pair.of(scene.pairs)
     kinematics = Kinematics(robot, frames)
     rates = np.zeros((len(pairs), 2))
-    for q in robot.draw(np.random.default_rng(0), POSTURES):
+    random = np.random.default_rng(0)
+    elsewhere = constants.copy()
+    bodies = scene_views(elsewhere).bodies
+    for q in robot.draw(random, POSTURES):
         kinematics.update(q)
-        raise_end_rates(constants, kinematics.jacobian, kinematics.placements, rates)
+        for k in placed:
+            Body.of(bodies[k]).center[:] = robot.reach * random.uniform(-1.0, 1.0, 3)
+        for own in (constants, elsewhere):
+            raise_end_rates(own, kinematics.jacobian, kinematics.placements, rates)
     alone = Body.of(scene.bodies[pairs.first]).speed > 0.0
     supported = np.any(pairs.support, axis=1)
     return np.array(((rates.T > UNMOVED) | alone) & supported).T

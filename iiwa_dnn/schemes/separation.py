@@ -50,6 +50,7 @@ from iiwa_dnn.schemes.scene import (
     box_contact,
     height_of,
     make_pair,
+    names_beside,
     second_order,
 )
 from iiwa_dnn.schemes.step import StepViews, axis_at, rate_along
@@ -652,6 +653,7 @@ class Separation(Limit):
         links = [self._watched(robot, each) for each in self.links(robot)]
         if not links:
             raise InvalidInputError("people", "need links with <collision> geometry", robot.name)
+        names_beside([each.link for each in collision_model(robot).bodies], self.bodies)
         seen = [(body, body.speed, body.error) for body in self.bodies]
         rows = [_unseen(body, *own) for body, *own in seen]
         rows += [_unseen(None, self.people_speed, 0.0)] * self.people

@@ -567,9 +567,13 @@ def _note_lag(arm: ArmState, limits: MotionConstants, log: StepLog) -> None:
     """Note by which limits joints stay behind a stream of positions, each of which is a rest."""
     for i in range(arm.behind.size if arm.answered == Request.POSITION else 0):
         left = displacement_left(arm, i) - arm.period * log.dq[i]
-        kind = float(LimitKind.ACCELERATION if limits.acceleration[i] < np.inf else LimitKind.JERK)
+        kind = 0.0  # nothing of its own
         if abs(log.dq[i]) >= limits.velocity[i] * (1.0 - FOLLOWING):
             kind = float(LimitKind.VELOCITY)
+        elif limits.acceleration[i] < np.inf:
+            kind = float(LimitKind.ACCELERATION)
+        elif limits.jerk[i] < np.inf:
+            kind = float(LimitKind.JERK)
         if arm.behind[i] > 0.0 and log.limiting[i] == 0.0 and abs(left) > FOLLOWING:
             log.limiting[i] = math.copysign(kind, left)
 

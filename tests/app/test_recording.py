@@ -49,12 +49,9 @@ def drive(shield: Any, clock: list[float], faults: bool) -> None:
         clock[0] += elapsed
 
 
-@pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    now = [100.0]
-    recorder = use_armstep().recorder
-    monkeypatch.setattr(recorder.time, "monotonic", lambda: now[0])
-    return now
+def record(shield: Any, folder: Path, clock: list[float], **own: Any) -> Any:
+    """Record a shield's steps on a clock of their own."""
+    return use_armstep().recorded(shield, folder, now=lambda: clock[0], **own)
 
 
 @pytest.fixture(scope="module")
@@ -68,12 +65,12 @@ def tables(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_lag_a_limit_late_cycles_and_a_near_pair_are_found_where_they_are(
     faults: bool,
     tables: Path,
-    clock: list[float],
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     armstep = use_armstep()
-    with armstep.recorded(armstep.Shield(tables), tmp_path / "day1") as shield:
+    clock = [100.0]
+    with record(armstep.Shield(tables), tmp_path / "day1", clock) as shield:
         drive(shield, clock, faults)
         assert shield.tables.name == "arm"
     assert call("replay", tmp_path / "day1") == int(faults)
@@ -83,7 +80,7 @@ def test_lag_a_limit_late_cycles_and_a_near_pair_are_found_where_they_are(
         "period [of the stated one] 4 1.5 19.",
         "following error [rad]",
         "lag [s] 0.07",
-        "measured position [of the limit]",
+        "measured position [rad outside] 0.02",
         "measured velocity [of the limit]",
         "lack of distance [m]",
     )
@@ -96,12 +93,35 @@ def test_lag_a_limit_late_cycles_and_a_near_pair_are_found_where_they_are(
         assert {"day1/report.md", "day1/recording.png", "day1/head.json"} < {*own.namelist()}
 
 
-def test_the_ring_keeps_the_last_chunks_whole(
-    tables: Path, clock: list[float], tmp_path: Path
+def test_periods_that_vary_delays_and_silence_are_judged_as_they_were(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """Periods are stated by what has elapsed; the arm is as late as its shield was told."""
+    armstep = use_armstep()
+    late = 8
+    shield = Shield(ROBOT, DT, [], longest_period=0.02, delay=late * DT)
+    clock, path = [0.0], [START] * (late + 1)
+    random = np.random.default_rng(0)
+    made = armstep.Shield(export.tables(shield, tmp_path / "arm.json"))
+    with record(made, tmp_path / "day2", clock) as arm:
+        for k in range(900):
+            elapsed = DT * random.uniform(0.8, 1.2)
+            blind = 500 <= k < 520
+            seen = None if blind else path[-1 - late]
+            dq = np.sign(np.sin(0.02 * k + np.arange(7)))
+            path.append(path[-1] + elapsed * arm.step(seen, dq=dq, elapsed=elapsed).dq)
+            clock[0] += elapsed
+    assert call("replay", tmp_path / "day2") == 1
+    found, _ = capsys.readouterr().out.splitlines()
+    assert found.startswith("found steps without positions 1 0 2.")
+    assert " 20, " in found
+
+
+def test_the_ring_keeps_the_last_chunks_whole(tables: Path, tmp_path: Path) -> None:
     armstep = use_armstep()
     folder = tmp_path / "ring"
-    shield = armstep.recorded(armstep.Shields(tables, 1), folder, minutes=1 / 6)
+    clock = [100.0]
+    shield = record(armstep.Shields(tables, 1), folder, clock, minutes=1 / 6)
     for k in range(6000):
         command = shield.step(START[np.newaxis], dq=np.full((1, 7), 0.1 * (k % 2)), dt=DT)
         clock[0] += DT
@@ -120,7 +140,7 @@ def test_the_ring_keeps_the_last_chunks_whole(
 
 
 def test_a_disk_that_is_slow_at_first_loses_no_chunk(
-    tables: Path, clock: list[float], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     armstep = use_armstep()
     save, ready = np.savez_compressed, threading.Event()
@@ -130,7 +150,8 @@ def test_a_disk_that_is_slow_at_first_loses_no_chunk(
         save(*arguments, **given)
 
     monkeypatch.setattr(np, "savez_compressed", save_when_ready)
-    with armstep.recorded(armstep.Shield(tables), tmp_path / "slow") as shield:
+    clock = [100.0]
+    with record(armstep.Shield(tables), tmp_path / "slow", clock) as shield:
         for _ in range(6000):
             shield.step(START, dq=np.zeros(7))
             clock[0] += DT
@@ -140,8 +161,12 @@ def test_a_disk_that_is_slow_at_first_loses_no_chunk(
 
 
 def test_what_is_no_recording_is_said_in_a_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tables: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    with record(use_armstep().Shield(tables), tmp_path / "short", [0.0]) as shield:
+        shield.step(START, dq=np.zeros(7))
+    assert call("replay", tmp_path / "short") == 2
+    assert "recording: lasts 0.00 s, less than 2.25 s" in capsys.readouterr().err
     assert call("replay", tmp_path) == 2
     (tmp_path / "head.json").write_text(json.dumps({"tables": {}}), encoding="utf-8")
     assert call("replay", tmp_path) == 2

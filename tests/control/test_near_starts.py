@@ -199,3 +199,18 @@ def test_an_obstacle_that_a_new_scheme_has_elsewhere_pushes_the_arm_back() -> No
     assert left[0] > 0.03 - 1e-6
     begun, _ = scene.nearest(np.array(path[:1]), np.zeros(1))
     assert begun[0] < 0.0
+
+
+def test_an_obstacle_stated_on_the_first_axis_is_kept_away_from_wherever_it_is_placed() -> None:
+    """There no joint moves a link that turns about the axis; its pair is watched all the same."""
+    robot = d.load_robot("fr3").with_limits(jerk=500.0)
+    start = np.array([-2.2298, -0.4013, -0.1437, -1.9628, -2.0947, 2.1525, -0.2847])
+    place, radius = np.array([-0.203, -0.028, 0.441]), 0.1058
+    judge = Judge(robot, d.CollisionAvoidance([d.Sphere(place, radius)]))
+    shield = d.Shield(robot, DT, [d.Sphere([0.0, 0.0, 0.0], radius)])
+    path = [start]
+    for _ in range(400):
+        path.append(shield.step(path[-1], 0.5 * np.eye(7)[0], obstacles=[place]).next_q)
+    away = [judge.distance(q, 0.0) for q in path]
+    assert away[0] > 0.03
+    assert LEAST - SLACK < min(away) < LEAST + 1e-3

@@ -232,6 +232,21 @@ def test_settings_that_have_no_meaning_are_refused() -> None:
         Separation((Sphere([1, 0, 0], 0.1),))
 
 
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        (("cup", "cup"), "two go by the name 'cup'"),
+        (("iiwa7_link_5", "cup"), "one goes by the link's name 'iiwa7_link_5'"),
+    ],
+)
+def test_a_name_is_that_of_one_body_whether_it_has_a_speed_or_not(
+    names: tuple[str, str], words: str
+) -> None:
+    bodies = [Sphere([2.0, k, 1.0], 0.1, name=name) for k, name in enumerate(names)]
+    with pytest.raises(InvalidInputError, match=words):
+        made(people=0, field=None, obstacles=[replace(bodies[0], speed=1.0), bodies[1]])
+
+
 def test_a_link_is_slow_after_the_periods_that_are_counted() -> None:
     part = Separation(people=1, field=2.0)
     own = separation_views(part.constants(ROBOT))

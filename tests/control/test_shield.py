@@ -539,3 +539,19 @@ def test_a_command_that_was_handed_out_never_changes() -> None:
         found = (command.clipped, command.active_limits, command.margin, command.stopping_time)
         assert found == own
         np.testing.assert_array_equal(command.qp.data, data)
+
+
+def test_a_joint_without_rate_limits_is_not_behind_because_of_any() -> None:
+    robot = d.load_robot("ur10").with_limits(acceleration=np.inf, jerk=np.inf)
+    shield = d.Shield(robot, 4e-3, [])
+    random = np.random.default_rng(0)
+    q = robot.start_posture()
+    named = set()
+    for k in range(300):
+        if k % 100 == 0:
+            goal = random.uniform(np.maximum(robot.q_lower, -3.0), np.minimum(robot.q_upper, 3.0))
+        command = shield.step(q, position=goal)
+        named |= {*command.active_limits}
+        q = command.next_q
+    assert any("velocity" in name for name in named)
+    assert not any("acceleration" in name or "jerk" in name for name in named)

@@ -108,6 +108,27 @@ def test_a_wrong_answer_along_a_slight_curvature_is_a_disagreement(curvature: fl
         assert verdict(check, qp, np.array([1.0, 1.0])) == "agrees"
 
 
+@pytest.mark.parametrize("solver", ["proxqp", "osqp", "daqp"])
+def test_a_right_answer_in_units_that_are_far_apart_is_not_blamed(solver: str) -> None:
+    """All numbers are whole times powers of two, so the answer is exact, and the only one."""
+    check = CrossCheck((solver,))
+    counts: Counter[str] = Counter()
+    for k in range(100):
+        rng = np.random.default_rng(k)
+        root = rng.integers(-3, 4, (3, 3)).astype(float)
+        x = rng.integers(-5, 6, 3).astype(float)
+        met = rng.random(3) < 0.4
+        if np.linalg.matrix_rank(root) == 3:
+            P = root.T @ root
+            unit = 2.0 ** np.array([26, 0, -26])
+            q = (-P @ x - 3.0 * met) * unit
+            ends = {"lb": (x - 3.0) / unit, "ub": (x + np.where(met, 0.0, 4.0)) / unit}
+            qp = QP(P * unit * unit[:, np.newaxis], q, **ends)
+            counts[verdict(check, qp, x / unit)] += 1
+    assert counts["blamed"] == 0
+    assert counts.total() > 80
+
+
 def answers(monkeypatch: pytest.MonkeyPatch, **parts: object) -> QP:
     """Let a solver answer with these parts; return a program of two variables."""
 

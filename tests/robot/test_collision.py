@@ -241,6 +241,14 @@ def test_a_mesh_without_triangles_is_left_out_and_said_and_the_others_are_watche
     assert {capsule.link for capsule in model.capsules} == {"p1", "p2"}
 
 
+def test_a_mesh_whose_vertices_are_no_numbers_is_named(tmp_path) -> None:
+    (tmp_path / "torn.ply").write_text(PLY.format(1, "3 0 1 2\n").replace("0.1 0 0", "nan 0 0"))
+    with pytest.raises(
+        iiwa_dnn.errors.FileError, match=r"link 'p1': the mesh .*torn\.ply has vert"
+    ):
+        make_collision_model(arm_of(tmp_path, p1=mesh_of("torn.ply")), samples=9)
+
+
 def solid_of(shape: str) -> str:
     return f"<collision><geometry><{shape}/></geometry></collision>"
 

@@ -76,7 +76,10 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def robot(path: Path) -> iiwa_dnn.Robot:
-    with pytest.warns(UserWarning, match="held still.*finger at 0"):
+    with (
+        pytest.warns(UserWarning, match="held still.*finger at 0"),
+        pytest.warns(UserWarning, match="a plane or .* state it as a HalfSpace"),
+    ):
         return iiwa_dnn.load_robot(path, tip="grip")
 
 

@@ -1,4 +1,4 @@
-"""EmbodiK 0.23: a joint task, with its limits of position, velocity, acceleration and torque."""
+"""EmbodiK 0.23: a joint task, with its limits of position, velocity and acceleration."""
 
 import sys
 import tempfile

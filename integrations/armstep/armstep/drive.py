@@ -240,6 +240,7 @@ class Drive:
         joints: The driver's joints.
         command: Its last command, or None.
         fault: Why the arm brakes, or is not commanded yet; else "".
+        error: What the last request raised, for which the arm brakes, or None.
         held: Why it brakes until `reset`, or "".
         has_begun: Whether the arm is commanded.
         worst: Longest period since this was last set [s].
@@ -281,6 +282,7 @@ class Drive:
             raise InputError(f"joints: are not {count} different ones")
         self.command: ShieldCommand | None = None
         self.fault = "no joint states"
+        self.error: Exception | None = None
         self.worst = 0.0
         self._timeout = timeout
         self._stands = stands
@@ -314,7 +316,15 @@ class Drive:
         self.held = self.held or reason
 
     def see(self, t: float, q: Array) -> None:
-        """Take joint positions q (n,) [rad] that were measured at a time [s], the last ones."""
+        """Take joint positions q (n,) [rad] that were measured at a time [s], the last ones.
+
+        Raises:
+            InputError: They are others, or not finite, and do not count.
+        """
+        if np.shape(q) != (len(self.joints.names),) or not (np.abs(q) <= FARTHEST).all():
+            raise InputError(
+                f"measured: {q} are not the positions of {len(self.joints.names)} joints"
+            )
         self._fresh = (t, q)
         self._recent.see(t, q)
 
@@ -348,8 +358,14 @@ class Drive:
             blind = blind or self._begin(t)
         self.worst = max(self.worst, elapsed)
         self.fault = self.held or fault or late or blind or idle
+        self.error = None
         if self.has_begun:
-            self.command = self._answer(t, elapsed, request, blind)
+            try:
+                self.command = self._answer(t, elapsed, request, blind)
+            except Exception as error:  # whatever is asked, the arm brakes
+                self.error = error
+                self.fault = f"{error}"
+                self.command = self._answer(t, elapsed, {}, blind)
             self._following.command(self.command.dq)
         return self.command
 
@@ -455,33 +471,36 @@ class Drive:
             duration: Length of the motion [s].
 
         Raises:
-            Exception: `ask` raised it; the arm came to rest first.
+            Exception: `ask` raised it, or a step for what it returned or `read` measured; the arm
+                came to rest first.
         """
-        failure: Exception | None = None
+        failures: list[Exception] = []
         before = signal.signal(signal.SIGINT, lambda *_: self.hold("interrupted"))
         try:
             start = last = self.now()
             while not (self.held and self.is_at_rest):
                 q = self.read()
                 now = self.now()
-                if q is not None:
-                    self.see(now, q)
                 if now - start > duration:
                     self.hold("the time is over")
+                request: Mapping[str, Any] = {}
                 try:
-                    request = {} if failure else ask()
+                    if q is not None:
+                        self.see(now, q)
+                    request = {} if failures else ask()
                 except Exception as error:
-                    request = {}
-                    failure = error
-                    self.hold("no request")
+                    failures.append(error)
                 idle = "" if request else "no request"
                 blind = "" if q is not None else "no joint states"
                 command = self.step(now, now - last, request, blind=blind, idle=idle)
+                failures += [self.error] if self.error else []
+                if failures:
+                    self.hold("no request")
                 last = now
                 if command is not None:
                     self.send(command)
-            if failure:
-                raise failure
+            if failures:
+                raise failures[0]
             return self.held
         finally:
             signal.signal(signal.SIGINT, before)

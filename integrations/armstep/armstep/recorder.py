@@ -6,6 +6,7 @@ import json
 import platform
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path as _Path
 from typing import Any
 
@@ -37,19 +38,27 @@ class Recorded:
 
     measured: ArrayLike | None = None
 
-    def __init__(self, shield: Shield | Shields, folder: Path, minutes: float = 10.0) -> None:
+    def __init__(
+        self,
+        shield: Shield | Shields,
+        folder: Path,
+        minutes: float = 10.0,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
         """Begin a recording.
 
         Args:
             shield: Shield of one arm.
             folder: The folder, which is made; it holds one recording.
             minutes: Time that is kept [min].
+            now: The clock of the steps [s]; a simulation has its own.
 
         Raises:
             OSError: The folder cannot be written, or holds something.
         """
         self.shield = shield
         self.folder = _Path(folder)
+        self._now = now
         self._most = round(60.0 * minutes / SECONDS)
         n = len(shield.tables.joint_names)
         k = len(shield.tables.obstacle_names)
@@ -79,14 +88,14 @@ class Recorded:
 
     def step(self, *arguments: Any, **given: Any) -> Any:
         """Take the shield's step, with its arguments, and keep it."""
-        began = time.monotonic()
+        began = self._now()
         command = self.shield.step(*arguments, **given)
         own, said = self.shield._buffers, self.shield._input
         if given.get("obstacles") is not None:
             self._places = np.reshape(given["obstacles"], self._places.shape)
         seen = own.q[0] if self.measured is None else np.ravel(self.measured)
         joints = (own.q[0], seen, own.dq[0], own.next_q[0])
-        times = (began, time.monotonic() - began, said.dt, said.elapsed)
+        times = (began, self._now() - began, said.dt, said.elapsed)
         others = (said.kind, own.results[0], own.asked[: self._width], self._places)
         self._rows[self._count] = (*times, *joints, *others)
         self._count += 1
@@ -122,6 +131,11 @@ class Recorded:
             self._writer.join()
 
 
-def recorded(shield: Shield | Shields, folder: Path, minutes: float = 10.0) -> Recorded:
+def recorded(
+    shield: Shield | Shields,
+    folder: Path,
+    minutes: float = 10.0,
+    now: Callable[[], float] = time.monotonic,
+) -> Recorded:
     """Record the steps of a shield of one arm in a folder, the last minutes of them."""
-    return Recorded(shield, folder, minutes)
+    return Recorded(shield, folder, minutes, now)

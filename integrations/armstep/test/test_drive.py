@@ -136,6 +136,40 @@ def test_an_error_of_the_request_is_raised_once_the_arm_rests(tables: Path) -> N
 
 
 @pytest.mark.parametrize(
+    "request_", [{"dq": np.ones(2)}, {"dq": "up"}, {"torque": 1.0}, {"dq": []}]
+)
+def test_a_request_that_no_shield_takes_is_raised_once_the_arm_rests(
+    tables: Path, request_: dict[str, Any]
+) -> None:
+    arm = Ideal(tables)
+    usual = {"dq": np.full(ROBOT.dof, 0.5)}
+    with pytest.raises((armstep.InputError, TypeError)):
+        arm.run(lambda: request_ if len(arm.path) > 60 else usual)
+    assert arm.is_at_rest
+    assert len(arm.path) > 65
+    assert breaches(np.array(arm.path), arm.shield.dt, *ROBOT.limits) == []
+
+
+@pytest.mark.parametrize(
+    "wrong", [np.full(ROBOT.dof, np.nan), np.zeros(2), np.full(ROBOT.dof, 1e9)]
+)
+def test_readings_that_are_no_positions_are_raised_once_the_arm_rests(
+    tables: Path, wrong: np.ndarray
+) -> None:
+    arm = Ideal(tables)
+
+    def ask() -> dict[str, Any]:
+        if len(arm.path) == 60:
+            arm.read = lambda: wrong if Ideal.read(arm) is not None else None
+        return {"dq": np.full(ROBOT.dof, 0.5)}
+
+    with pytest.raises(armstep.InputError, match=r"measured: .* are not the positions of"):
+        arm.run(ask)
+    assert arm.is_at_rest
+    assert breaches(np.array(arm.path), arm.shield.dt, *ROBOT.limits) == []
+
+
+@pytest.mark.parametrize(
     ("q", "reason"),
     [(None, "no joint states"), (np.full(ROBOT.dof, 0.4), "does not follow its commands")],
 )
