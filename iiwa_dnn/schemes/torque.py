@@ -31,7 +31,7 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import row_dot
+from iiwa_dnn.qp.dense import largest_entry, row_dot
 from iiwa_dnn.qp.layout import copied
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.arms import WRONG_EFFORTS
@@ -221,8 +221,12 @@ def keeps_torque(step: StepViews, constants: Vector, motion: Motion) -> bool:
         if _load_in_period(step, own, motion, max(k, 1), load) > most:
             return False
     resting = _load_in_period(step, own, motion, last + 1, load)
-    if resting > most or (resting > 1.0 - AT_REST and resting > _load_here(step, own, load)):
+    if resting > most:
         return False
+    if resting > 1.0 - AT_REST:  # the arm may rest there before, and leave it
+        is_moving = largest_entry(step.last) > 0.0
+        if is_moving or resting > _load_here(step, own, load):
+            return False
     return own.slides or _keeps_between(step, own, motion, whole)
 
 
