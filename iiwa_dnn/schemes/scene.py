@@ -31,7 +31,7 @@ from iiwa_dnn.checks import Vector3
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.compiling.records import Record, part
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
-from iiwa_dnn.naming import unwatched
+from iiwa_dnn.naming import unguarded, unwatched
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references.rotations import combined, dot, triple
 from iiwa_dnn.robot import Robot
@@ -253,8 +253,10 @@ def make_scene(
     watched = moved.any(axis=1) & ~_are_given(named, may_touch, names)
     if not watched.any():
         bare = unwatched_links(robot)
-        reason = f"; {unwatched(bare)}" if bare else ""
-        problem = f"leave them out, there is no pair that could meet{reason}"
+        told = ["leave them out, there is no pair that could meet"]
+        if model.unguarded:
+            told = [f"no pair is watched; {unguarded(map(' and '.join, model.unguarded))}"]
+        problem = "; ".join([*told, unwatched(bare)] if bare else told)
         raise InvalidInputError("obstacles", problem, obstacles)
     reasons = np.where(moved.any(axis=1), "may touch", "no joint moves it").tolist()
     left = tuple((*named[at], reasons[at]) for at in np.flatnonzero(~watched))

@@ -385,6 +385,13 @@ def test_an_srdf_file_is_believed_unless_the_shapes_meet(tmp_path) -> None:
         warnings.simplefilter("error")
         iiwa_dnn.Shield(limited, obstacles=given)
         iiwa_dnn.Shield(limited)
+    srdf(tmp_path, "p2 base User", "p3 base User")
+    alone = arm_of(tmp_path, base=BALL_BESIDE + BALL_FAR, p2=BALL_OF_P2)
+    with pytest.raises(
+        iiwa_dnn.InvalidInputError,
+        match=f"no pair is watched; {said}",
+    ):
+        iiwa_dnn.Shield(alone.with_limits(acceleration=10.0), obstacles=[])
     (tmp_path / "arm.srdf").write_text("<robot>")
     with pytest.raises(iiwa_dnn.errors.FileError, match=r"arm.srdf: .*no element"):
         make_collision_model(robot)
