@@ -252,17 +252,22 @@ def make_scene(
     named = [(names[i], names[k]) for i, k, _ in numbered]
     watched = moved.any(axis=1) & ~_are_given(named, may_touch, names)
     if not watched.any():
-        bare = unwatched_links(robot)
-        told = ["leave them out, there is no pair that could meet"]
-        if model.unguarded:
-            told = [f"no pair is watched; {unguarded(map(' and '.join, model.unguarded))}"]
-        problem = "; ".join([*told, unwatched(bare)] if bare else told)
-        raise InvalidInputError("obstacles", problem, obstacles)
+        raise InvalidInputError("obstacles", _why_none(robot), obstacles)
     reasons = np.where(moved.any(axis=1), "may touch", "no joint moves it").tolist()
     left = tuple((*named[at], reasons[at]) for at in np.flatnonzero(~watched))
     constants = _constants(distances, bodies, pairs[watched])
     moving = [(each, k) for k, each in enumerate(obstacles, len(links)) if each.speed]
     return Scene(robot, [*itertools.compress(named, watched)], frames, moving, constants, left)
+
+
+def _why_none(robot: Robot) -> str:
+    """Tell why no pair is watched, and which links that leaves."""
+    left_out = collision_model(robot).unguarded
+    bare = unwatched_links(robot)
+    told = ["leave them out, there is no pair that could meet"]
+    if left_out:
+        told = [f"no pair is watched; {unguarded(map(' and '.join, left_out))}"]
+    return "; ".join([*told, unwatched(bare)] if bare else told)
 
 
 def names_beside(links: Sequence[str], obstacles: Sequence[Obstacle]) -> list[str]:
