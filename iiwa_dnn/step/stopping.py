@@ -256,10 +256,10 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector, tries: int)
         refusing = _first_refusing(plan, instant, motion)
         if refusing < 0:
             return periods * ratio
-        if periods == grown:
-            if yielding.lengthens[refusing] == 0.0:
-                return np.inf
-            grown = math.ceil(LONGER * grown)
+        if yielding.lengthens[refusing] > 0.0:
+            grown = math.ceil(LONGER * periods)
+        elif periods == grown:
+            return np.inf
         # What is left of the stored motion most likely is enough.
         periods = stored if k == 0 and stored > grown else grown
         if limits.cubic:

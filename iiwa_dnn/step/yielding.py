@@ -68,6 +68,9 @@ SINGULAR = 0.05
 POSITION_GAIN = 20.0
 """Velocity bound per distance to a position limit in fallback programs [1/s]."""
 
+SHORT = 0.1
+"""Time of a stored stopping motion up to which longer ones are tried for each command [s]."""
+
 HALVINGS = 12
 """Number of halvings of the way from a command to the stored stopping motion. A pair that begins
 near an obstacle may leave it slowly alone."""
@@ -446,8 +449,8 @@ def _make_stoppable(
         nearest_within(limits, wanted, plan.yielding, log.stats)
     brake = np.zeros(x.size)
     left = _brake(limits, plan, instant, log, brake)
-    # Near the stored motion, what is left of it is enough.
-    tries = 2 if instant.motion.stopping_periods > 0.0 else TRIES
+    # Near a long stored motion, what is left of it is enough; a short one may have to grow.
+    tries = 2 if instant.motion.stopping_periods * plan.timing.dt > SHORT else TRIES
     fraction = 1.0
     for _ in range(HALVINGS):
         for i in range(dof):

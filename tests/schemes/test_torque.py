@@ -39,6 +39,7 @@ def carrying(robot: d.Robot, mass: float, center: Array = CENTER) -> tuple[pin.M
     return model, model.createData()
 
 
+HELD = TorqueLimits(1.0, friction=0.0)
 CARRYING = [carrying(PANDA, mass) for mass in (0.0, 3.0, 1.1)]
 
 
@@ -78,6 +79,34 @@ def test_the_rows_are_the_torques_with_the_lightest_and_the_heaviest_payload() -
             inertia = pin.crba(own[0], own[1], q)
             size = np.linalg.norm(inertia, axis=1) / DT
             assert_allclose(found * size[:, np.newaxis], bound, atol=1e-4)
+
+
+def nearly_held(seed: int, target: float) -> tuple[Array, Array]:
+    """A posture of the panda that takes a part of its torques to be held, and one where it began.
+
+    Up to there the straight way from the other, which takes at most 0.9, takes no more.
+    """
+    random = np.random.default_rng(seed)
+    rest = np.zeros(7)
+    while True:
+        first, last = PANDA.draw(random, 2)
+        if load(first, rest, rest) < 0.9 and load(last, rest, rest) > target:
+            break
+    part = np.linspace(0.0, 1.0, 2001)[:, np.newaxis]
+    way = first + part * (last - first)
+    beyond = np.argmax([load(q, rest, rest) > target for q in way])
+    return way[beyond - 1], first
+
+
+@pytest.mark.parametrize("seed", [3, 5, 6, 8])
+def test_an_arm_that_its_motors_just_hold_leaves(seed: int) -> None:
+    """Only a longer motion to rest than the stored one lets it gain speed: it crept before."""
+    q, first = nearly_held(seed, 0.985)
+    shield = limited(d.Shield(d.load_robot("panda").with_payload(RANGE, CENTER), dt=DT), HELD)
+    arm = q
+    for _ in range(500):
+        arm = shield.step(arm, position=first).next_q
+    assert np.abs(arm - q).max() > 0.5
 
 
 def test_rows_that_no_command_reaches_are_idle() -> None:
