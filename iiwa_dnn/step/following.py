@@ -207,9 +207,16 @@ def _take_chunk(
     periods: Periods,
     now: float,
 ) -> None:
-    """Take the waiting samples as the chunk that is followed; what differs becomes an offset."""
+    """Take the waiting samples as the chunk that is followed; what differs becomes an offset.
+
+    Where they are the rest of the one that is followed, nothing changes: its clock may be braking
+    for the end.
+    """
     n = q.size
     dt = periods.dt
+    if own.mode == own.next_mode and _is_sent_again(own, n):
+        own.waiting = 0
+        return
     p = q.copy()
     v = np.empty(n)
     c = np.empty(n)
@@ -242,6 +249,20 @@ def _take_chunk(
     limit_clock(own, limits)
     own.rate = own.fastest
     own.rate_before = own.fastest
+
+
+@compiled
+def _is_sent_again(own: FollowState, n: int) -> bool:
+    """Test whether the waiting samples of n joints are the last ones of the chunk's."""
+    passed = own.count - own.waiting
+    if passed < 0:
+        return False
+    others = 0
+    for j in range(own.waiting):
+        others += not abs(own.times[passed + j] - own.next_times[j]) < SHORTEST
+    for j in range(own.waiting * n):
+        others += own.positions[passed * n + j] != own.next_positions[j]
+    return others == 0
 
 
 @compiled

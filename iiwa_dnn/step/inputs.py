@@ -77,7 +77,8 @@ def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> None:
     else:
         stated = inputs.dt + inputs.elapsed
         unstated = arm.reasons[Reason.PERIOD_REFUSED] != 0.0 or stated == 0.0
-        _update_positions(plan, arm, inputs.q, unstated and settings.longest > 0.0)
+        moves = largest_entry(motion_of(plan, arm).last) > 0.0
+        _update_positions(plan, arm, inputs.q, unstated and moves and settings.longest > 0.0)
         _take_samples(plan, arm, inputs)
     if arm.reason != Reason.NONE:
         arm.reasons[arm.reason] = 1.0
@@ -201,14 +202,14 @@ def _update_positions(plan: ArmPlan, arm: ArmState, measured: Vector, unstated: 
     """Set the commanded positions to the measured ones, where these count.
 
     They count at the first step; where they differ by more than the tracking error; and where
-    periods vary and none is stated, since the time for which the last command was held is then
-    unknown. The displacement that the delay still hides is added to them.
+    periods vary and none is stated, since the time for which the last command was held, if it was
+    not 0, is then unknown. The displacement that the delay still hides is added to them.
 
     Args:
         plan: Layout of the step.
         arm: The arm.
         measured: Measured joint positions [rad], (n,), or longer.
-        unstated: Whether periods vary, and none is stated.
+        unstated: Whether it is unknown how long a command that moved the arm was held.
     """
     settings = plan.settings
     q = arm.measured

@@ -388,3 +388,12 @@ def test_beside_obstacles_jerk_and_distances_are_kept_in_any_periods(said: str) 
         path.append(q)
     assert scene.nearest(np.array(path), np.zeros(len(path)))[0].min() > 0.02 - 1e-9
     assert np.ptp(path, axis=0).max() > 0.3
+
+
+def test_a_first_step_that_states_no_period_keeps_where_the_arm_was_put() -> None:
+    """As libfranka's, whose first time since the last step is 0; its encoders may be off."""
+    start = PLAIN.start_posture()
+    shield = d.Shield(PLAIN, DT, longest_period=LONGEST)
+    shield.reset(start)
+    command = shield.step(start + 8e-3, np.full(PLAIN.dof, 5.0))
+    np.testing.assert_allclose(command.next_q - start, DT * command.dq, atol=1e-12)

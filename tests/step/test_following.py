@@ -157,6 +157,23 @@ def test_chunk_ends_at_its_last_sample_without_passing_it():
     assert command.late < 1e-9
 
 
+def test_rest_of_a_chunk_that_is_sent_again_does_not_pass_its_end():
+    """Its clock brakes for the end: begun anew at full rate, the end was passed by 8 to 69 mrad."""
+    shield, start = make("iiwa7")
+    start = np.clip(start, shield.robot.q_lower + 0.6, shield.robot.q_upper - 0.9)
+    shield.reset(start)
+    times = np.arange(24) / RATE
+    u = np.minimum(times / 0.5, 1.0)
+    way = np.where(u < 1.0, 0.5 * u**4 * (2.5 - 3.0 * u + u * u), times - 0.25)  # to 1 rad/s
+    points = start + way[:, np.newaxis]
+    shield.follow(times, points)
+    path, _ = drive(shield, start, round(times[-2] / shield.dt) + 1)
+    shield.follow(times[-1:], points[-1:])
+    path, _ = drive(shield, path[-1], 400)
+    assert (path - points[-1]).max() < 1e-9
+    assert np.abs(path[-1] - points[-1]).max() < 1e-9
+
+
 def test_quick_path_is_kept_later():
     shield, start = make()
     times = np.linspace(0.0, 0.5, 12)
