@@ -224,7 +224,7 @@ def keeps_torque(step: StepViews, constants: Vector, motion: Motion) -> bool:
     if resting > most:
         return False
     if resting > 1.0 - AT_REST:  # the arm may rest there before, and leave it
-        is_moving = largest_entry(step.last) > 0.0
+        is_moving = max(largest_entry(step.last), largest_entry(step.before)) > 0.0
         if is_moving or resting > _load_here(step, own, load):
             return False
     return own.slides or _keeps_between(step, own, motion, whole)

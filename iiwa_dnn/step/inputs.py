@@ -35,6 +35,7 @@ from iiwa_dnn.step.requests import (
     Request,
 )
 from iiwa_dnn.step.samples import (
+    FollowState,
     asks,
     forget_samples,
 )
@@ -133,11 +134,25 @@ def _follow(plan: ArmPlan, arm: ArmState, periods: Periods) -> None:
         own.waiting = 0
     if own.count + own.waiting == 0 or arm.answered != Request.VELOCITY or is_refused(arm):
         return
+    _turn_samples(arm, own)
     motion = motion_of(plan, arm)
     change_spacing(motion, periods.dt)
     limits = motion_constants(plan.step.arrays)
     follow_samples(own, arm.positions, motion, limits, periods, arm.time, arm.request)
     arm.answered = FOLLOW
+
+
+@compiled
+def _turn_samples(arm: ArmState, own: FollowState) -> None:
+    """Put waiting samples on the nearest turns, of joints whose readings have skipped turns."""
+    n = arm.wraps.size
+    for i in range(n):
+        near: float = arm.positions[i]
+        for j in range(own.waiting if arm.wraps[i] != 0.0 else 0):
+            near = own.next_positions[j * n + i] + TURN * turns_between(
+                own.next_positions[j * n + i], near
+            )
+            own.next_positions[j * n + i] = near
 
 
 @compiled

@@ -38,6 +38,9 @@ LONGER = 1.6
 TRIES = 6
 """Largest number of motions to rest that are tried for a command."""
 
+SHORT = 0.1
+"""Time of a stored motion to rest up to which longer ones are tried, for each command [s]."""
+
 STRETCH = 1.01
 """Factor between successive numbers of periods that `stretched` tries."""
 
@@ -256,10 +259,11 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector, tries: int)
         refusing = _first_refusing(plan, instant, motion)
         if refusing < 0:
             return periods * ratio
-        if yielding.lengthens[refusing] > 0.0:
+        if yielding.lengthens[refusing] == 0.0:
+            if periods == grown:
+                return np.inf
+        elif periods == grown or periods * dt < SHORT:
             grown = math.ceil(LONGER * periods)
-        elif periods == grown:
-            return np.inf
         # What is left of the stored motion most likely is enough.
         periods = stored if k == 0 and stored > grown else grown
         if limits.cubic:

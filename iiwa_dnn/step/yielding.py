@@ -44,6 +44,7 @@ from iiwa_dnn.step.log import NOT_CONVERGED, SOLVED, StepLog, note_active, note_
 from iiwa_dnn.step.plan import ControlPlan, Instant
 from iiwa_dnn.step.policies import Action, ProgramKind
 from iiwa_dnn.step.stopping import (
+    SHORT,
     TRIES,
     least_periods,
     next_velocity,
@@ -67,9 +68,6 @@ SINGULAR = 0.05
 
 POSITION_GAIN = 20.0
 """Velocity bound per distance to a position limit in fallback programs [1/s]."""
-
-SHORT = 0.1
-"""Time of a stored stopping motion up to which longer ones are tried for each command [s]."""
 
 HALVINGS = 12
 """Number of halvings of the way from a command to the stored stopping motion. A pair that begins

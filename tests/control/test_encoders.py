@@ -57,6 +57,26 @@ def test_an_endless_joint_holds_a_position_at_its_encoders_seam(
     assert np.ptp(path, axis=0)[0] < 0.15
 
 
+@pytest.mark.parametrize("lead", [None, 1])
+def test_an_endless_joint_follows_samples_on_the_nearest_turn(
+    endless: d.Robot, lead: int | None
+) -> None:
+    """As a requested position is: it turned back once about."""
+    shield = d.Shield(endless, 2e-3)
+    q = np.zeros(endless.dof)
+    while q[0] < 3.6:
+        q = shield.step(wrapped(q), np.eye(endless.dof)[0]).next_q
+    start = q
+    points = wrapped(start) + np.linspace(0.0, 0.1, 5)[:, np.newaxis] * np.eye(endless.dof)[0]
+    times = np.linspace(0.3, 1.5, 5)
+    if lead is None:
+        shield.follow(shield.time + times, points)
+    for k in range(1500):
+        asked = {} if lead is None or k % 10 else {"position": points[-1], "lead": lead}
+        q = shield.step(wrapped(q), **asked).next_q
+    np.testing.assert_allclose(q[0], start[0] + 0.1, atol=1e-6)
+
+
 def test_an_endless_joint_turns_on_through_its_seam(endless: d.Robot) -> None:
     shield = d.Shield(endless, 5e-3)
     q = np.array([3.0, 0.0, 0.0])

@@ -377,25 +377,26 @@ class ShieldNode(Node):
     def _on_timer(self) -> None:
         """Begin a period of the clock, unless the timer makes up for one that was late."""
         self._is_stalled = False
-        elapsed = self._now() - self._began[0]
+        now = self._now()
+        elapsed = now - self._began[0]
         if not 0.0 <= elapsed < 0.5 * self._tables.dt:
-            self._step(elapsed)
+            self._step(now, elapsed)
 
     def _on_watch(self) -> None:
         """Begin a period while /clock stands still: the arm may not."""
         age = time.monotonic() - self._began[1]
         self._is_stalled = self._is_stalled or age > self._set["timeout"]
         if self._is_stalled and self._drive.has_begun:
-            self._step(self._tables.dt, "clock stands still")
+            self._step(self._now(), self._tables.dt, "clock stands still")
 
-    def _step(self, elapsed: float, fault: str = "") -> None:
+    def _step(self, now: float, elapsed: float, fault: str = "") -> None:
         """Send the command of a period.
 
         Args:
-            elapsed: Time since the last period began [s].
+            now: Time at which it begins, read once: the periods add up to the clock's [s].
+            elapsed: Time since the last one began [s].
             fault: Reason to brake.
         """
-        now = self._now()
         timeout = self._set["timeout"]
         self._began = (now, time.monotonic())
         before = self._drive.fault
