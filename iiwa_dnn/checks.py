@@ -53,6 +53,13 @@ def fix(owner: object, **values: Any) -> None:
         object.__setattr__(owner, name, value)
 
 
+class Whole:
+    """Base of objects whose attributes cannot be deleted."""
+
+    def __delattr__(self, name: str) -> None:
+        raise InvalidInputError(name, "cannot be deleted", getattr(self, name, None))
+
+
 def settable(kind: str, name: str, value: object, names: Sequence[str]) -> None:
     """Refuse to set a public attribute of an object of a kind, unless it is one of some names."""
     if not name.startswith("_") and name not in names:

@@ -98,7 +98,7 @@ class Arm:
     computed: Vector
 
 
-class Controller:
+class Controller(checks.Whole):
     """Velocity controller: the programs of a scheme, solved by a network at every step.
 
     In a robot's loop, `step` takes the measured joint positions and returns the command. Attributes

@@ -33,7 +33,7 @@ def _pool(process: int, threads: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(threads)
 
 
-class ManyArms:
+class ManyArms(checks.Whole):
     """N arms of a shield's kind or a controller's. Threads may share them: calls wait.
 
     Attributes:

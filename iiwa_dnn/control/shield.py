@@ -233,7 +233,7 @@ class ShieldCommand(Command):
         return f"<ShieldCommand dq = {dq} rad/s; clipped = {self.clipped}>"
 
 
-class Shield:
+class Shield(checks.Whole):
     """Safety filter for the commands of another controller: keeps the limits of a robot.
 
     The shield integrates the velocities that it commands. Measured positions within

@@ -191,6 +191,8 @@ class Shields(ManyArms):
         t = checked_times(times, self._made.samples)
         mode = KEEPS[checks.one_of("keep", keep, tuple(KEEPS))]
         points = checks.array("positions", positions, (self.count, t.size, self.robot.dof))
+        each = points.reshape(-1, self.robot.dof)
+        self._made._warn_of_degrees(each[np.abs(each).max(axis=1).argmax()])
         with self._made._lock:
             self._keep(t, points, mode, self._flags("given", given) > 0, now)
 

@@ -248,11 +248,12 @@ def _soft_limits(
 ) -> tuple[float, float]:
     """Return the position limits [rad] within which a joint's ``<safety_controller>`` keeps it.
 
-    They are `lower` and `upper`, or its soft limits where these are inside. Two equal soft limits
-    are not given; of others that leave nothing of the range, a warning tells.
+    They are `lower` and `upper`, or its soft limits where these are inside; a continuous joint has
+    none. Two equal soft limits are not given; of others that leave nothing of the range, a warning
+    tells.
     """
     controller = joint.find("safety_controller")
-    if controller is None:
+    if controller is None or lower == -np.inf:
         return lower, upper
     soft = [float(controller.get(f"soft_{side}_limit", 0.0)) for side in ("lower", "upper")]
     inside = (max(lower, soft[0]), min(upper, soft[1]))

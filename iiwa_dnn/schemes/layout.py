@@ -95,6 +95,10 @@ class ProgramLayout:
             target = self.target_frames.index(name) if name in self.target_frames else 0
             start = self.constants.size
             stop = start + own.size
+            if part.kernel is None:
+                methods = " or ".join(part._methods)
+                problem = f"{type(part).__name__} has no kernel, and no method {methods} in numpy"
+                raise InvalidInputError("parts", problem, part)
             address = part.entry.address(part.kernel)
             self.parts.append(part)
             rest = enter_rest.address(part.rest_kernel) if part.rest_kernel else 0

@@ -348,3 +348,33 @@ def test_the_margins_of_many_arms_are_arrays() -> None:
     assert found.joint.shape == found.distance.shape == (5,)
     for i in range(5):
         assert (found.joint[i], found.distance[i]) == shields.margin(i)[:2]
+
+
+@pytest.mark.parametrize("name", ["dt", "robot", "limits"])
+def test_attributes_cannot_be_deleted(name: str) -> None:
+    shield = d.Shield(ROBOT, DT)
+    shields = d.Shields(shield, 2)
+    controller = d.Controller(ROBOT, d.DoubleIndicator(orientation="none"), dt=DT)
+    for made in (shield, shields, controller):
+        with pytest.raises(d.InvalidInputError, match=f"{name}: cannot be deleted"):
+            delattr(made, name)
+
+
+def test_a_part_without_kernel_or_method_is_refused_by_name() -> None:
+    class Misspelt(Limit):
+        def bound(self, step: Any) -> tuple[np.ndarray, np.ndarray]:
+            return np.zeros(7), np.zeros(7)
+
+    shield = d.Shield(ROBOT, DT)
+    before = shield.limits
+    with pytest.raises(d.InvalidInputError, match="Misspelt has no kernel, and no method"):
+        shield.limits = (*before, Misspelt())
+    assert shield.limits == before
+
+
+def test_a_chunk_for_many_arms_in_degrees_is_noticed() -> None:
+    shields = d.Shields(ROBOT, 2, dt=DT, samples=8)
+    shields.step(np.tile(START, (2, 1)), np.zeros((2, 7)))
+    degrees = np.tile(np.degrees(START + 0.1), (2, 3, 1))
+    with pytest.warns(UserWarning, match="are the positions in degrees"):
+        shields.follow([0.1, 0.2, 0.3], degrees)

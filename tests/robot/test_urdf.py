@@ -299,3 +299,11 @@ def test_kinetic_energy_of_a_negative_mass_is_refused(written) -> None:
         scheme.build_qp(start, d.Target(start.position))
     unweighted = d.Scheme(costs=[d.KineticEnergy()], tasks=[d.PositionTask()])
     assert unweighted.build_qp(start, d.Target(start.position)).P.shape == (3, 3)
+
+
+def test_soft_limits_of_a_continuous_joint_are_none(written) -> None:
+    given = 'soft_lower_limit="-3.14" soft_upper_limit="3.14"'
+    soft = f'{LIMIT}<safety_controller k_velocity="1" {given}/>'
+    text = elbow(LIMIT, soft).replace('type="revolute"', 'type="continuous"')
+    robot = d.load_robot(written(text))
+    assert (robot.q_lower[1], robot.q_upper[1]) == (-np.inf, np.inf)

@@ -8,6 +8,7 @@ import json
 import os
 from collections.abc import Mapping
 from pathlib import Path as _Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -43,6 +44,9 @@ class Fixed:
         if not name.startswith("_"):
             raise InputError(f"{name}: is fixed when the object is made")
         super().__setattr__(name, value)
+
+    def __delattr__(self, name: str) -> None:
+        raise InputError(f"{name}: cannot be deleted")
 
 
 class Tables(Fixed):
@@ -163,9 +167,10 @@ def _attributes(members: Mapping[str, Any]) -> dict[str, Any]:
     """Return the attributes of tables."""
     own = {word: members[word] for word in ("name", "kind", "dt", "delay", "digest", "scratch")}
     own |= {f"{word}_names": tuple(members[f"{word}_names"]) for word in NAMED}
-    own["limits"] = {word: np.array(members["limits"][word], np.float64) for word in LIMITS}
-    for each in own["limits"].values():
+    limits = {word: np.array(members["limits"][word], np.float64) for word in LIMITS}
+    for each in limits.values():
         each.setflags(write=False)
+    own["limits"] = MappingProxyType(limits)
     own["memory"] = -(-members["memory"] // LINE) * LINE
     own["longest_period"] = members["longest"] or None
     own |= {"bodies": members.get("bodies", {}), "people": members.get("people", 0)}

@@ -290,6 +290,10 @@ def test_it_says_what_it_is(package: Any) -> None:
     assert command.reason is armstep.Reason.NONE
     with pytest.raises(armstep.InputError, match="dt: is fixed"):
         shield.dt = 0.1
+    with pytest.raises(armstep.InputError, match="dt: cannot be deleted"):
+        del own.dt
+    with pytest.raises(TypeError, match="does not support item assignment"):
+        own.limits["upper"] = np.full(7, 9.0)
     with pytest.raises(armstep.InputError, match="scratch: is fixed"):
         own.scratch = 1
     with pytest.raises(AttributeError):
