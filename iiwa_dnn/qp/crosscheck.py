@@ -5,7 +5,7 @@ only where its own KKT residual is small. If the one that was asked has no such 
 is asked. A proof judges instead (`iiwa_dnn.qp.proof`) where neither is believed, where an answer
 disagrees, and where the program is so flat that a point with the reference's residual may be far
 from the solution. Where nothing is proven, as of programs with several solutions, a reference that
-is not at the same point judges only if its residual says that it is near one, and none judges if
+is not at the same point judges only if its residual says that it is near one; it does not blame if
 some variable's own curvature may be rounding. The agreement names the judge, or nobody.
 
 "proof" stands among the references for a proof of the answer itself, which asks no solver.
@@ -173,9 +173,8 @@ class CrossCheck:
                 steps[i] = step
                 gaps[i] = np.abs(factors[i] * unique).max()
                 # Of variables in other units, none is free for sure.
-                is_usual = gaps[i] > self.tolerance or (factors[i] == 1.0).all()
-                is_sure = is_usual and min(off, errors[i] / least) < self.tolerance
-                if faint[i] or (is_far[i] and not is_sure):
+                is_sure = not faint[i] if gaps[i] > self.tolerance else (factors[i] == 1.0).all()
+                if is_far[i] and not (min(off, errors[i] / least) < self.tolerance and is_sure):
                     steps[i] = gaps[i] = np.nan
                     residuals[i] = np.inf
                     judge[i] = NOBODY
