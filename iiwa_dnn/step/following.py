@@ -214,7 +214,7 @@ def _take_chunk(
     """
     n = q.size
     dt = periods.dt
-    if own.mode == own.next_mode and _is_sent_again(own, n):
+    if _is_sent_again(own, n):
         own.waiting = 0
         return
     p = q.copy()
@@ -255,7 +255,7 @@ def _take_chunk(
 def _is_sent_again(own: FollowState, n: int) -> bool:
     """Test whether the waiting samples of n joints are the last ones of the chunk's."""
     passed = own.count - own.waiting
-    if passed < 0:
+    if passed < 0 or own.mode != own.next_mode:
         return False
     others = 0
     for j in range(own.waiting):

@@ -76,10 +76,7 @@ def begin_step(plan: ArmPlan, memory: Vector, inputs: ArmInput) -> None:
     if tracks(plan):
         _measure(arm, inputs)
     else:
-        stated = inputs.dt + inputs.elapsed
-        unstated = arm.reasons[Reason.PERIOD_REFUSED] != 0.0 or stated == 0.0
-        moves = largest_entry(motion_of(plan, arm).last) > 0.0
-        _update_positions(plan, arm, inputs.q, unstated and moves and settings.longest > 0.0)
+        _update_positions(plan, arm, inputs.q, _is_unstated(plan, arm, inputs))
         _take_samples(plan, arm, inputs)
     if arm.reason != Reason.NONE:
         arm.reasons[arm.reason] = 1.0
@@ -213,6 +210,14 @@ def _correct_last_period(arm: ArmState, motion: MotionState, elapsed: float) -> 
 
 
 @compiled
+def _is_unstated(plan: ArmPlan, arm: ArmState, inputs: ArmInput) -> bool:
+    """Test whether it is unknown how long a command that moved the arm was held."""
+    if plan.settings.longest == 0.0 or largest_entry(motion_of(plan, arm).last) == 0.0:
+        return False
+    return arm.reasons[Reason.PERIOD_REFUSED] != 0.0 or inputs.dt + inputs.elapsed == 0.0
+
+
+@compiled
 def _update_positions(plan: ArmPlan, arm: ArmState, measured: Vector, unstated: bool) -> None:
     """Set the commanded positions to the measured ones, where these count.
 
@@ -224,7 +229,7 @@ def _update_positions(plan: ArmPlan, arm: ArmState, measured: Vector, unstated: 
         plan: Layout of the step.
         arm: The arm.
         measured: Measured joint positions [rad], (n,), or longer.
-        unstated: Whether it is unknown how long a command that moved the arm was held.
+        unstated: The result of `_is_unstated`.
     """
     settings = plan.settings
     q = arm.measured

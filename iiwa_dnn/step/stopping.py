@@ -38,7 +38,7 @@ LONGER = 1.6
 TRIES = 6
 """Largest number of motions to rest that are tried for a command."""
 
-SHORT = 0.1
+BRIEF = 0.1
 """Time of a stored motion to rest up to which longer ones are tried, for each command [s]."""
 
 STRETCH = 1.01
@@ -262,10 +262,10 @@ def periods_to_rest(plan: ControlPlan, instant: Instant, dq: Vector, tries: int)
         if yielding.lengthens[refusing] == 0.0:
             if periods == grown:
                 return np.inf
-        elif periods == grown or periods * dt < SHORT:
+        elif periods <= max(grown, BRIEF / dt):
             grown = math.ceil(LONGER * periods)
         # What is left of the stored motion most likely is enough.
-        periods = stored if k == 0 and stored > grown else grown
+        periods = max(stored, grown) if k == 0 else grown
         if limits.cubic:
             periods = rated_periods(dq, before, limits, dt, periods, vary)
     return np.inf

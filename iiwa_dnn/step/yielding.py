@@ -44,7 +44,7 @@ from iiwa_dnn.step.log import NOT_CONVERGED, SOLVED, StepLog, note_active, note_
 from iiwa_dnn.step.plan import ControlPlan, Instant
 from iiwa_dnn.step.policies import Action, ProgramKind
 from iiwa_dnn.step.stopping import (
-    SHORT,
+    BRIEF,
     TRIES,
     least_periods,
     next_velocity,
@@ -448,7 +448,7 @@ def _make_stoppable(
     brake = np.zeros(x.size)
     left = _brake(limits, plan, instant, log, brake)
     # Near a long stored motion, what is left of it is enough; a short one may have to grow.
-    tries = 2 if instant.motion.stopping_periods * plan.timing.dt > SHORT else TRIES
+    tries = 2 if instant.motion.stopping_periods * plan.timing.dt > BRIEF else TRIES
     fraction = 1.0
     for _ in range(HALVINGS):
         for i in range(dof):
