@@ -62,9 +62,12 @@ def make_environment() -> None:
     run([PYTHON, "-c", MODEL, str(iiwa_dnn.load_robot("fr3").path), FOLDER / "fr3.xml"])
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def server() -> Iterator[subprocess.Popen[bytes]]:
-    """Start a server that judges limits and the connection, and kill it in the end."""
+    """Start a server that judges limits and the connection, and kill it in the end.
+
+    One a test: the arm stands where the test before has left it, and other commands are lost.
+    """
     pytest.importorskip("pylibfranka")
     FOLDER.mkdir(parents=True, exist_ok=True)
     with (FOLDER / "server.log").open("wb") as log:
