@@ -54,6 +54,10 @@ GENTLE = 0.02
 """Time in which an offset's acceleration builds up, at least [s]: jerk is felt, and saves little.
 """
 
+JUMP = 2.0
+"""Acceleration between samples of a stream, relative to the limit, above which they jump: samples
+that are too quick to be followed are no jump, whose offset would fade slowly."""
+
 OTHER = 1e-9
 """Difference of a command from the request above which the virtual joint begins anew [rad/s]."""
 
@@ -386,7 +390,7 @@ def _take_sample(
         p = own.next_positions[i]
         mean = (p - own.goal[i]) / sampling
         accel = limits.acceleration[i]
-        change = accel * sampling * own.misses[i]
+        change = JUMP * accel * sampling * own.misses[i]
         seam = 0.0
         a = 0.0
         w = own.pace[i]

@@ -319,6 +319,35 @@ def test_a_joint_that_begins_late_catches_up_with_a_motion_near_the_limits(dt):
     assert off[late > 4.0].max() < 0.02
 
 
+@pytest.mark.parametrize("share", [1.0, 1.3, 2.0])
+def test_a_stream_that_is_too_quick_is_followed_better_than_its_positions_alone(share):
+    """Its samples were taken as jumps, whose offsets fade slowly: 180 ms behind, not 60."""
+    shield, start = make()
+    dt = shield.dt
+    time = np.sqrt(10.0 / np.sqrt(3.0) * 0.5 / (10.0 * share))  # peaks take `share` of 10 rad/s^2
+
+    def motion(t):
+        u = np.interp(np.maximum(t, 0.0) / time % 4.0, np.arange(5), [0.0, 1.0, 1.0, 2.0, 2.0])
+        return moves(start, 0.2 + u * time, time=time)  # rests between
+
+    found = []
+    for lead in ({}, {"lead": 1}):
+        shield.reset(start)
+        path = [start]
+        for k in range(600):
+            new = k % 3 == 0 or not lead
+            own = {"position": motion(3 * (k // 3) * dt)[0], **lead} if new else {}
+            path.append(path[-1] + dt * shield.step(path[-1], **own).dq)
+        assert broken(shield, path) == []
+        path = np.array(path)
+        found.append(
+            (lag_of(path, dt, motion)[0], np.abs(path - motion(np.arange(601) * dt)).max())
+        )
+    (lag, off), (following, passed) = found
+    assert following < lag - 0.02
+    assert passed < off
+
+
 def test_stream_that_stops_dead_comes_back_and_a_rest_is_not_passed():
     """What a lead costs: docs/policies.md."""
     shield, start = make()
