@@ -109,6 +109,18 @@ def test_an_arm_that_its_motors_just_hold_leaves(seed: int) -> None:
     assert np.abs(arm - q).max() > 0.5
 
 
+def test_what_nearly_takes_all_torque_to_be_held_is_no_rest_of_an_arm_that_moved_before() -> None:
+    """One that swings through such a posture drifted from it, by 20 to 45 mrad."""
+    q, _ = nearly_held(3, 0.995)
+    rest = np.zeros(7)
+    program = d.Scheme(limits=[HELD]).program(PANDA)
+    motion = Motion(rest, rest, 1.0, DT, False, False, False)
+    moved = 1e-6 * np.eye(7)[1]
+    for last, before, agrees in ((rest, rest, True), (rest, moved, False), (moved, rest, False)):
+        step = program.step_at(q, last, before, np.zeros((0, 18)), DT, 0.0, np.zeros(0))
+        assert keeps_torque(step, HELD.constants(PANDA).numbers, motion) == agrees
+
+
 def test_rows_that_no_command_reaches_are_idle() -> None:
     """By the acceleration limits of the scheme, which may be wider than the robot's."""
     start = d.Configuration(PANDA, PANDA.start_posture())
