@@ -26,6 +26,7 @@ from iiwa_dnn.schemes.layout import ProgramLayout
 from iiwa_dnn.schemes.names import LimitNames
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.periods import checked_longest, constant_periods
+from iiwa_dnn.schemes.separation import Separation
 from iiwa_dnn.step.fallback import FALLBACK_BUDGET, Yielding
 from iiwa_dnn.step.plan import ControlPlan, PathColumn, Paths
 from iiwa_dnn.step.yielding import BRAKE
@@ -119,6 +120,7 @@ class ControlLayout:
         if yielding.lengthens.any():
             _check_lengthening(limits, longest)
         if longest is not None:
+            _check_varying(program, longest)
             # No period may carry a joint beyond its position limit.
             limits.gain = min(limits.gain, 1.0 / longest)
 
@@ -139,6 +141,20 @@ def _check_lengthening(limits: MotionConstants, longest: float | None) -> None:
         raise InvalidInputError("limits", problem, limits.acceleration)
     if longest is not None:
         problem = "is no part of what TorqueLimits promise: their control period is constant"
+        raise InvalidInputError("longest_period", problem, longest)
+
+
+def _check_varying(program: ProgramLayout, longest: float) -> None:
+    """Refuse control periods that vary where a stop may then take longer than its test counts on.
+
+    Raises:
+        InvalidInputError: Jerks are limited beside people.
+    """
+    if program.joint_limits.cubic and program.places_of(Separation):
+        problem = (
+            "with jerk limits is no part of what is promised beside people: a stop may take longer"
+            " than its test counts on; drop one, as by with_limits(jerk=numpy.inf)"
+        )
         raise InvalidInputError("longest_period", problem, longest)
 
 

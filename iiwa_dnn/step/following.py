@@ -64,6 +64,12 @@ OTHER = 1e-9
 ROUNDING = 1e-9
 """Relative excess over a limit that counts as rounding."""
 
+DRIFT = 0.02
+"""Part of a sample's delay by which the clock of a stream is corrected: clocks drift."""
+
+ASTRAY = 2.0
+"""Sampling periods by which a sample may come early or late; beyond, a clock has jumped."""
+
 SLOWEST = 0.5
 """Longest sampling period of a stream [s]; after a longer pause it goes on with the one before."""
 
@@ -344,8 +350,8 @@ def _shift_speed(own: FollowState, limits: MotionConstants, i: int, by: float, d
 
 @compiled
 def _is_silent(own: FollowState, now: float) -> bool:
-    """Test whether a stream's next sample is overdue for the first time."""
-    due = own.stamp + own.offset + SILENCE * own.sampling
+    """Test whether a stream's next sample is overdue, by clock and arrival, for the first time."""
+    due = max(own.stamp + own.offset, own.times[Knot.FIRST]) + SILENCE * own.sampling
     return own.sampling > 0.0 and not own.is_silent and now > due
 
 
@@ -381,6 +387,10 @@ def _take_sample(
         return
     own.sampling = sampling
     age = now - own.offset - t
+    if abs(age) > ASTRAY * sampling:
+        own.offset = now - t
+        age = 0.0
+    own.offset += DRIFT * age
     span = min(max(2.0 * sampling - age, sampling), 3.0 * sampling)
     ahead = age + span - delay
     moves = 0

@@ -14,8 +14,8 @@ from iiwa_dnn.qp.layout import copied
 SHORTEST = 1e-9
 """Least time between two samples [s]."""
 
-LONGEST = 1e9
-"""Largest time of a sample [s]."""
+LONGEST = 1e10
+"""Largest time of a sample [s]: seconds since 1970 are 2e9."""
 
 ALONE = 19
 """Single numbers of a `FollowState`."""

@@ -215,6 +215,10 @@ def test_settings_that_have_no_meaning_are_refused() -> None:
         Shield(ROBOT, people=2)
     with pytest.raises(InvalidInputError, match="contact_speed"):
         made(contact_speed=0.25, longest_period=0.002)
+    # Stops took up to 1.4 times as long as their test counts on, and hands met links at 3 mm/s.
+    jerky = ROBOT.with_limits(jerk=500.0)
+    with pytest.raises(InvalidInputError, match="longest_period: with jerk limits"):
+        Shield(jerky, people=1, field=2.5, longest_period=0.002)
     with pytest.raises(InvalidInputError, match="velocity"):
         Sphere([1, 0, 0], 0.1, speed=1.0, velocity=[2.0, 0, 0])
     with pytest.raises(InvalidInputError, match="error"):

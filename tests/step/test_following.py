@@ -348,6 +348,41 @@ def test_a_stream_that_is_too_quick_is_followed_better_than_its_positions_alone(
     assert passed < off
 
 
+@pytest.mark.parametrize(
+    ("stamp", "arrival", "most"),
+    [
+        (lambda t: 1.8e9 + t, lambda t: t, 0.012),  # seconds since 1970: they were not finite
+        (lambda t: t * (1.0 - 3e-3), lambda t: t, 0.02),  # a slow clock: 0.9 rad at last
+        (lambda t: t, lambda t: t + 0.03 * (t > 2.0), 0.04),  # 0.4 rad
+        (lambda t: t + 1.0 * (t > 2.0), lambda t: t, 0.03),  # 1.1 rad
+    ],
+    ids=["day", "drift", "later", "jump"],
+)
+def test_a_stream_is_followed_by_clocks_that_drift_and_jump(stamp, arrival, most):
+    shield, start = make()
+    dt = shield.dt
+
+    def motion(t):
+        t = np.maximum(np.atleast_1d(t), 0.0)
+        swing = 0.27 * np.sin(3.77 * t) * np.minimum(t / 1.5, 1.0)
+        return start + swing[:, np.newaxis]
+
+    path = [start]
+    k = 0
+    for i in range(1200):
+        own = {}
+        if i * dt >= arrival(k / RATE) - 1e-9:
+            own = {"position": motion(k / RATE)[0], "time": stamp(k / RATE), "lead": 1}
+            k += 1
+        command = shield.step(path[-1], **own)
+        assert "request not finite" not in command.reasons
+        path.append(path[-1] + dt * command.dq)
+    assert broken(shield, path) == []
+    times = np.arange(len(path)) * dt
+    off = np.abs(np.array(path) - motion(times - 1.0 / RATE)).max(axis=1)
+    assert off[(times > 1.0) & (abs(times - 2.4) > 0.5)].max() < most
+
+
 def test_stream_that_stops_dead_comes_back_and_a_rest_is_not_passed():
     """What a lead costs: docs/policies.md."""
     shield, start = make()

@@ -372,14 +372,15 @@ class Drive:
     def _advance(self, t: float, elapsed: float) -> tuple[str, float]:
         """Begin a period; return what is wrong with the last one, or "", and its length [s].
 
-        That of a clock that has jumped is not known.
+        That of a clock that has jumped is not known: the arm is believed to have moved for a usual
+        one, but what was seen of people is as old as the clock says.
         """
         dt = self.shield.dt
         longest = self.shield.tables.longest_period or self._timeout
         late = "" if 0.0 < elapsed <= longest else f"period not within {longest:g} s"
         length = elapsed if 0.0 < elapsed <= self._timeout else dt
         self._following.advance(t, length, length if self._following.forgets else dt)
-        return late, length
+        return late, max(length, elapsed)
 
     def _begin(self, t: float) -> str:
         """Begin with the velocity that the arm has; return why that is not possible, or ""."""

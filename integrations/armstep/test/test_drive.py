@@ -190,6 +190,26 @@ def test_an_arm_that_is_not_seen_or_does_not_follow_brakes(
     assert breaches(np.array(arm.path), arm.shield.dt, *ROBOT.limits) == []
 
 
+def test_after_a_stall_people_are_as_old_as_the_clock_says(tmp_path: Path) -> None:
+    """They were as old as a usual period had made them, and arms that went on met them."""
+    robot = ROBOT.with_limits(jerk=np.inf)
+    about = {"people": 1, "field": 9.0, "people_speed": 1.6, "longest_period": 0.05}
+    made = iiwa_dnn.Shield(robot, 0.02, [], **about)
+    iiwa_dnn.export.tables(made, tmp_path / "people.json")
+    drive = Drive(armstep.Shield(tmp_path / "people.json"))
+    q = robot.start_posture()
+    left = []
+    for k in range(60):
+        t = 0.02 * k + 0.9 * (k == 59)
+        drive.see(t, q)
+        if drive.has_begun and k < 59:
+            drive.shield.see(people=[[4.0, 0.0, 0.3, 4.0, 0.0, 0.3, 0.1]], age=0.0)
+        command = drive.step(t, 0.02 + 0.9 * (k == 59), {"dq": np.zeros(robot.dof)})
+        left += [command.margin.separation] if drive.has_begun else []
+    assert left[-2] - left[-1] == pytest.approx(1.6 * 0.92, abs=0.04)
+    assert "period" in drive.fault
+
+
 def test_servos_in_degrees_wait_for_one_that_is_stuck(tables: Path) -> None:
     names = [f"motor_{k}" for k in range(ROBOT.dof)]
     joints = Joints(names, math.radians(1.0))
