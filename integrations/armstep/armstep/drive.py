@@ -296,7 +296,7 @@ class Drive:
     def reset(self) -> None:
         """Forget why the arm is held, and begin anew; until then the last command goes on."""
         self.held = ""
-        self.has_begun = False
+        self.has_begun = self._is_unsure = False
 
     @property
     def is_at_rest(self) -> bool:
@@ -357,7 +357,8 @@ class Drive:
             elapsed = self.shield.dt
             blind = blind or self._begin(t)
         self.worst = max(self.worst, elapsed)
-        self.fault = self.held or fault or late or blind or idle
+        unsure = "nobody was seen since the clock jumped" if self._is_unsure else ""
+        self.fault = self.held or fault or late or unsure or blind or idle
         self.error = None
         if self.has_begun:
             try:
@@ -367,20 +368,25 @@ class Drive:
                 self.fault = f"{error}"
                 self.command = self._answer(t, elapsed, {}, blind)
             self._following.command(self.command.dq)
+            # A shield that begins anew has seen nobody yet.
+            if self._is_unsure and self.is_at_rest:
+                self.has_begun = self._is_unsure = False
         return self.command
 
     def _advance(self, t: float, elapsed: float) -> tuple[str, float]:
         """Begin a period; return what is wrong with the last one, or "", and its length [s].
 
-        That of a clock that has jumped is not known: the arm is believed to have moved for a usual
-        one, but what was seen of people is as old as the clock says.
+        That of a clock that has jumped is not known, nor how old is what was seen of people.
         """
         dt = self.shield.dt
         longest = self.shield.tables.longest_period or self._timeout
         late = "" if 0.0 < elapsed <= longest else f"period not within {longest:g} s"
         length = elapsed if 0.0 < elapsed <= self._timeout else dt
         self._following.advance(t, length, length if self._following.forgets else dt)
-        return late, max(length, elapsed)
+        tables = self.shield.tables
+        if length != elapsed and (tables.people or tables.bodies):
+            self._is_unsure = True
+        return late, length
 
     def _begin(self, t: float) -> str:
         """Begin with the velocity that the arm has; return why that is not possible, or ""."""
