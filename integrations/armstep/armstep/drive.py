@@ -275,6 +275,9 @@ class Drive:
             raise InputError("velocity needs a shield with a longest_period")
         if not takes_velocity and tables.delay:
             raise InputError("positions need a shield without a delay")
+        self._watches = bool(tables.people or tables.bodies)
+        if self._watches and not takes_velocity:  # whose periods all count as the shield's
+            raise InputError("people and bodies with a speed need velocity")
         self.shield = shield
         self.joints = joints or Joints(tables.joint_names)
         count = len(tables.joint_names)
@@ -383,9 +386,7 @@ class Drive:
         late = "" if 0.0 < elapsed <= longest else f"period not within {longest:g} s"
         length = elapsed if 0.0 < elapsed <= self._timeout else dt
         self._following.advance(t, length, length if self._following.forgets else dt)
-        tables = self.shield.tables
-        if length != elapsed and (tables.people or tables.bodies):
-            self._is_unsure = True
+        self._is_unsure |= self._watches and length != elapsed
         return late, length
 
     def _begin(self, t: float) -> str:

@@ -196,6 +196,8 @@ def test_after_a_stall_nobody_was_seen(tmp_path: Path) -> None:
     about = {"people": 1, "field": 9.0, "people_speed": 1.6, "longest_period": 0.05}
     made = iiwa_dnn.Shield(robot, 0.02, [], **about)
     iiwa_dnn.export.tables(made, tmp_path / "people.json")
+    with pytest.raises(armstep.InputError, match="need velocity"):
+        Drive(armstep.Shield(tmp_path / "people.json"), takes_velocity=False)
     drive = Drive(armstep.Shield(tmp_path / "people.json"))
     q = robot.start_posture()
     path = [q]

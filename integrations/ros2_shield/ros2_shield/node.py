@@ -129,9 +129,6 @@ class ShieldNode(Node):
             raise RefusedError(f"parameter body_names: the shield has no body {sorted(unknown)}")
         if self._recorded and (self._radii.any() or self._bodies):
             raise RefusedError("parameter record: a recording keeps no frames of people")
-        if not self._takes_velocity and (self._radii.any() or self._bodies):
-            problem = "people and bodies need velocity: positions count each period as the shield's"
-            raise RefusedError(f"parameter command: {problem}")
         about = (self._takes_velocity, self._set["timeout"], self._set["following_error"])
         try:
             self._drive = armstep.Drive(shield, *about)
