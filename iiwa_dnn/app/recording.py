@@ -56,6 +56,9 @@ LACK = 1e-4
 """Time between judged distances [s], and what they may lack [m]."""
 
 
+JUDGED = ("request_cost", "motion_limits", "collision_avoidance")
+"""Parts of tables that are judged, or limit nothing; the report names the others."""
+
 COLUMNS = ("", "judged", "worst", "at most", "where", "samples beyond")
 """Columns of the report."""
 
@@ -230,11 +233,14 @@ def replayed(
         table.append(each.row())
     figure.savefig(place / "recording.png", dpi=120)
     findings = [" ".join(row) for row in table if row[0] == "found"]
+    parts = tables["numbers"]["plan"]["step"]["arrays"]["constants"]
+    others = [part.replace("_", " ") for part in parts if part not in JUDGED]
     reasons = Counter(REASONS[code] or "none" for code in rows["reason"])
     about = {
         "tables": f"{tables['name']}, {tables['digest']}, of {robot.name}",
         "steps": f"{len(rows)} in {rows['time'][-1] - rows['time'][0]:.1f} s",
         "reasons": ", ".join(f"{word} {count}" for word, count in reasons.most_common()),
+        "not judged": ", ".join(others) or "none of its limits",
         "machine": f"{head['machine']}, {head['versions']}",
     }
     text = [f"# Recording of {tables['name']}", *(f"- {k}: {each}" for k, each in about.items())]

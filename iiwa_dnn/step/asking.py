@@ -37,11 +37,11 @@ from iiwa_dnn.step.stopping import least_periods
 def separation_of(plan: ArmPlan, memory: Vector) -> Vector3:
     """Find the nearest link and body, as `nearest_body`, where an arm's last command starts from.
 
-    Without bodies of bounded speed the separation is inf.
+    Without bodies of bounded speed the separation is inf; of an arm that has not begun, NaN.
     """
     arm = arm_state(plan, memory)
     if plan.separation < 0 or not arm.has_begun:
-        return np.inf, 0.0, 0.0
+        return np.inf if arm.has_begun else np.nan, 0.0, 0.0
     base = plan.step.arrays
     q = motion_of(plan, arm).q
     jacobian = np.empty((q.size, 6))
@@ -57,8 +57,13 @@ def separation_of(plan: ArmPlan, memory: Vector) -> Vector3:
 
 @compiled
 def margin_of(plan: ArmPlan, memory: Vector) -> tuple[float, float]:
-    """Compute the `Margin` of an arm at the joint positions that its last command starts from."""
+    """Compute the `Margin` of an arm at the joint positions that its last command starts from.
+
+    Of an arm that has not begun it is NaN.
+    """
     arm = arm_state(plan, memory)
+    if not arm.has_begun:
+        return np.nan, np.nan
     q = motion_of(plan, arm).q
     limits = motion_constants(plan.step.arrays)
     joint = np.inf
@@ -101,10 +106,13 @@ def frame_at(plan: ArmPlan, q: Vector, placement: Vector, jacobian: Matrix) -> N
 
 @compiled
 def torque_of(plan: ArmPlan, memory: Vector) -> float:
-    """Compute the `torque_margin` of an arm's last command; inf without limits of torques."""
+    """Compute the `torque_margin` of an arm's last command; inf without limits of torques.
+
+    Of an arm that has not begun it is NaN.
+    """
     arm = arm_state(plan, memory)
     if plan.torque < 0 or not arm.has_begun:
-        return np.inf
+        return np.inf if arm.has_begun else np.nan
     motion = motion_of(plan, arm)
     constants = block_constants(plan.step.arrays, plan.torque)
     return torque_margin(constants, motion.q, motion.before, motion.last, arm.period)

@@ -11,7 +11,7 @@ import pytest
 
 from helpers_commands import call
 from helpers_export import needs, use_armstep
-from iiwa_dnn import Configuration, Shield, Sphere, export, load_robot
+from iiwa_dnn import Configuration, Shield, Sphere, TipSpeedLimit, export, load_robot
 from iiwa_dnn.app.recording import read_recording
 
 pytestmark = needs("gcc")
@@ -88,6 +88,7 @@ def test_lag_a_limit_late_cycles_and_a_near_pair_are_found_where_they_are(
     for line, words in zip(found, expected, strict=faults):
         assert line.startswith(f"found {words}")
     report = (tmp_path / "day1" / "report.md").read_text(encoding="utf-8")
+    assert "- not judged: none of its limits\n" in report
     assert ("Sphere 1 and panda_" in report) == faults or "lack of distance" in report
     with zipfile.ZipFile(tmp_path / "day1.zip") as own:
         assert {"day1/report.md", "day1/recording.png", "day1/head.json"} < {*own.namelist()}
@@ -100,6 +101,7 @@ def test_periods_that_vary_delays_and_silence_are_judged_as_they_were(
     armstep = use_armstep()
     late = 8
     shield = Shield(ROBOT, DT, [], longest_period=0.02, delay=late * DT)
+    shield.limits = (*shield.limits, TipSpeedLimit(3.0))
     clock, path = [0.0], [START] * (late + 1)
     random = np.random.default_rng(0)
     made = armstep.Shield(export.tables(shield, tmp_path / "arm.json"))
@@ -115,6 +117,8 @@ def test_periods_that_vary_delays_and_silence_are_judged_as_they_were(
     found, _ = capsys.readouterr().out.splitlines()
     assert found.startswith("found steps without positions 1 0 2.")
     assert " 20, " in found
+    report = (tmp_path / "day2" / "report.md").read_text(encoding="utf-8")
+    assert "- not judged: tip speed limit\n" in report
 
 
 def test_the_ring_keeps_the_last_chunks_whole(tables: Path, tmp_path: Path) -> None:

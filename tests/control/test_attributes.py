@@ -342,6 +342,7 @@ def test_rates_of_the_limits_count_where_a_position_is_approached() -> None:
 
 def test_the_margins_of_many_arms_are_arrays() -> None:
     shields = d.Shields(ROBOT, 5, dt=DT, obstacles=[BALL])
+    assert all(np.isnan(each).all() for each in shields.margin())  # nobody knows where they are
     q = START + 0.1 * np.random.default_rng(0).standard_normal((5, 7))
     shields.step(q, np.zeros((5, 7)))
     found = shields.margin()

@@ -1,6 +1,7 @@
 """Bodies of bounded speed: at rest before contact, whatever the sensor says later."""
 
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -105,6 +106,29 @@ def test_shields_answer_as_a_shield_does() -> None:
     many.step(q, np.tile(REQUEST, (2, 1)), people=[[people], None], age=0.0)
     one, other = many.margin().separation  # of the second arm the frame is older
     assert one > other + 0.05
+
+
+def test_the_core_knows_the_separation_of_a_controller_too(tmp_path: Path) -> None:
+    shield = made(longest_period=None)
+    scheme = iiwa_dnn.DoubleIndicator()
+    limits = [*scheme.limits, *shield.limits[-1:]]
+    path = iiwa_dnn.Heart(period=10.0)
+    q = ROBOT.start_posture()
+    reference = path.anchored(iiwa_dnn.Configuration(ROBOT, q))
+    controller = iiwa_dnn.Controller(
+        ROBOT, iiwa_dnn.Scheme(scheme.costs, scheme.tasks, limits), reference
+    )
+    found = []
+    for own, asked in ((shield, np.zeros(7)), (controller, 0.0)):
+        arm = in_armstep(own, tmp_path)
+        core = import_module("armstep._library").ONE
+        given = (arm.tables.arm, arm._memory.ctypes, np.empty(arm.tables.scratch).ctypes)
+        assert np.isnan(core.armstep_separation(*given))
+        arm.see(np.array([[0.9, 0.0, 0.4, 0.9, 0.3, 0.9, 0.1]]), 0.0)
+        arm.step(q, asked)
+        found.append(core.armstep_separation(*given))
+    assert 0.0 < found[0] < 1.0
+    assert found[0] == found[1]
 
 
 def test_the_core_answers_to_the_bit(tmp_path: Path) -> None:

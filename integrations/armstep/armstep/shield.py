@@ -295,6 +295,8 @@ class _Shields(Arms[Answer]):
         """Take joint positions as the next samples of streams."""
         if position is None or lead not in (0, 1, 2):
             raise InputError("time, lead: belong to a position, and a lead is 0, 1 or 2")
+        if time is not None and not np.isfinite(time):
+            raise InputError(f"time: must be finite, not {time!r}")
         rows = pointed("position", position, self._shape).reshape(self.count, -1)
         for i, memory in self._each(given):
             stamp = ONE.armstep_time(self.tables.arm, memory) if time is None else time

@@ -258,7 +258,7 @@ ARMSTEP_API enum armstep_status armstep_frame(
 /* the least separation of an arm's links from people, less the one to keep, INFINITY without; */
 ARMSTEP_API double armstep_separation(const struct armstep *arm, const double *memory, double *scratch);
 
-/* the least part of a torque limit that a shield's command leaves, with either payload, INFINITY without; */
+/* the least part of a torque limit that its command leaves, with either payload, INFINITY without; */
 ARMSTEP_API double armstep_torque(const struct armstep *arm, const double *memory, double *scratch);
 
 /* time of a shield's motion to rest from its command; */

@@ -570,8 +570,8 @@ double armstep_separation(const struct armstep *arm, const double *memory, doubl
     struct arena own_arena = arena_of(arm, scratch);
     struct arena *const arena = &own_arena;
     (void)arena;
-    if (!is_shield(arm) || !has_begun(arm, memory)) {
-        return INFINITY;
+    if (!has_begun(arm, memory)) {
+        return NAN;
     }
     return @separation_of@plan_of(arm), numbers_of(arm, memory)).at[0];
 }
@@ -581,8 +581,8 @@ double armstep_torque(const struct armstep *arm, const double *memory, double *s
     struct arena own_arena = arena_of(arm, scratch);
     struct arena *const arena = &own_arena;
     (void)arena;
-    if (!is_shield(arm) || !has_begun(arm, memory)) {
-        return INFINITY;
+    if (!has_begun(arm, memory)) {
+        return NAN;
     }
     return @torque_of@plan_of(arm), numbers_of(arm, memory));
 }
