@@ -9,8 +9,9 @@ import pinocchio as pin
 import pytest
 
 import iiwa_dnn
+from benchmarks.hostile import contenders
 from benchmarks.hostile.arms import FOLDER, Arm, urdf
-from benchmarks.hostile.contenders import ADAPTERS, Contender, drive
+from benchmarks.hostile.contenders import ADAPTERS, Contender, drive, setup_of
 from benchmarks.hostile.families import FAMILIES, smooth
 from benchmarks.hostile.judges import Run, judge
 
@@ -54,7 +55,15 @@ def beside(run: Run, arm: Arm, gap: float) -> Run:
     return run._replace(centers=centers)
 
 
-PLANTED: dict[str, Any] = {
+def between(run: Run, arm: Arm) -> Run:
+    """Let a sphere pass the arm between two steps, no nearer at either than it has to be."""
+    near = beside(run, arm, 0.015).centers[STEPS // 2, 0]
+    centers = run.centers.copy()
+    centers[STEPS // 2 : STEPS // 2 + 2, 0] = near + np.outer([-0.2, 0.2], [1.0, 0.0, 0.0])
+    return run._replace(centers=centers)
+
+
+BREAKS: dict[str, Any] = {
     "velocity": lambda run, arm: spiked(run, arm, 2, 1.001),
     "acceleration": lambda run, arm: spiked(run, arm, 3, 1.01),
     "jerk": lambda run, arm: spiked(run, arm, 4, 1.5),
@@ -63,33 +72,56 @@ PLANTED: dict[str, Any] = {
         q=run.q - 1e-3 + (arm.limits[0] - run.q.min(axis=0))
     ),
     "distance": lambda run, arm: beside(run, arm, 0.018),
+    "a moment's distance": between,
     "contact": lambda run, arm: beside(run, arm, -0.001),
     "torque": lambda run, arm: integrated(
         run, run.dq * np.where(np.arange(STEPS) == 200, 40, 1)[:, None]
     ),
-    "late": lambda run, arm: run._replace(q=np.vstack([run.q[:1]] * 20 + [run.q[:-20]])),
-    "flat": lambda run, arm: run._replace(q=run.q[0] + 0.8 * (run.q - run.q[0])),
+    "unasked motion": lambda run, arm: run._replace(
+        wanted=np.where(np.arange(STEPS)[:, None] < 50, run.wanted, np.nan)
+    ),
 }
-"""Breaks by their names."""
+"""Breaks of what is promised, by the last words of their names."""
+
+FLAWS: dict[str, tuple[Any, str, float]] = {
+    "late": (lambda run: run._replace(q=np.vstack([run.q[:1]] * 20 + [run.q[:-20]])), "lag", 40.0),
+    "flat": (lambda run: run._replace(q=run.q[0] + 0.8 * (run.q - run.q[0])), "amplitude", 0.8),
+    "elsewhere": (lambda run: run._replace(q=run.q + 0.01), "error", 10.0),
+    "frozen": (lambda run: integrated(run, 0.0 * run.dq), "frozen", 1.0),
+    "slow": (lambda run: run._replace(seconds=100.0 * run.seconds), "p50", 1e3),
+    "slow at times": (
+        lambda run: run._replace(seconds=run.seconds * (1 + 9 * (np.arange(STEPS) % 20 == 7))),
+        "p99",
+        100.0,
+    ),
+}
+"""What is promised nowhere: how a run becomes so, the score that says it, and its value."""
 
 
 @pytest.mark.parametrize("name", ARMS)
-@pytest.mark.parametrize("planted", PLANTED)
+@pytest.mark.parametrize("planted", BREAKS)
 def test_a_planted_break_is_found_and_nothing_without_one(name: str, planted: str) -> None:
     arm = Arm(name)
     clean = admissible(arm)
     has_person, has_payload = planted == "contact", planted == "torque"
     before = judge(arm, clean, has_person, 0.0)
-    after = judge(arm, PLANTED[planted](clean, arm), has_person, 0.0)
+    after = judge(arm, BREAKS[planted](clean, arm), has_person, 0.0)
     assert before.broken(has_person, has_payload) == []
+    assert planted.endswith(tuple(after.broken(has_person, has_payload)))
+
+
+@pytest.mark.parametrize("flaw", FLAWS)
+def test_a_flaw_is_seen_in_its_score(flaw: str) -> None:
+    arm = Arm(ARMS[0])
+    clean = admissible(arm)
+    make, score, value = FLAWS[flaw]
+    before, after = (judge(arm, run, False, 0.0) for run in (clean, make(clean)))
+    assert after.broken(False, False) == []
+    assert getattr(after, score) == pytest.approx(value, rel=0.03)
     assert abs(before.lag) < 0.1
     assert before.amplitude == pytest.approx(1.0, abs=1e-9)
-    if planted == "late":
-        assert after.lag == pytest.approx(40.0, abs=1.0)
-    elif planted == "flat":
-        assert after.amplitude == pytest.approx(0.8, abs=1e-3)
-    else:
-        assert planted.split()[-1] in after.broken(has_person, has_payload)
+    assert before.error < 1e-9
+    assert before.frozen < 0.1
 
 
 @pytest.mark.parametrize("name", ARMS)
@@ -130,24 +162,36 @@ def test_kinematics_torques_and_distances_are_those_of_pinocchio_and_coal(name: 
                 assert found[k, c, 0] == pytest.approx(result.min_distance, abs=1e-6)
 
 
-def test_a_filter_of_ones_own_is_added_in_ten_lines_and_its_end_is_told(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        ("1 / 0", "ZeroDivisionError"),
+        ("time.sleep(9.0)", "no answer in 1 s"),
+        ("np.full(7, np.nan)", "is no velocity of 7 joints"),
+        ("np.zeros(6)", "is no velocity of 7 joints"),
+    ],
+)
+def test_a_filter_of_ones_own_is_added_in_ten_lines_and_its_end_is_told(
+    answer: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     file = tmp_path / "mine.py"
     file.write_text(
+        "import time\n"
         "import numpy as np\n"
         "from benchmarks.hostile.serve import serve\n"
         "def make(setup):\n"
         "    def act(state, request, dt):\n"
-        "        if state['t'] > 0.1:\n"
-        "            raise ValueError('enough')\n"
-        "        return np.zeros(7)\n"
+        "        return np.zeros(7) if state['t'] < 0.1 else " + answer + "\n"
         "    return act\n"
         "serve(make)\n",
         encoding="utf-8",
     )
     contender = Contender(file)
+    contender.tell(setup_of(Arm("iiwa7"), DT, np.zeros((0, 3)), np.zeros(0)))
+    monkeypatch.setattr(contenders, "PATIENCE", 1.0)
     run = drive(contender, Arm("iiwa7"), FAMILIES["jumps"], 0, 100)
     contender.close()
-    assert "enough" in run.problem
+    assert words in run.problem
     assert judge(Arm("iiwa7"), run, False, 0.0).broken(False, False) == ["no answer"]
 
 
@@ -155,7 +199,8 @@ def test_the_clamp_breaks_rates_and_the_shield_nothing() -> None:
     arm = Arm("iiwa7")
     for name, broken in (("clamp", {"acceleration", "jerk"}), ("shield", set())):
         contender = Contender(ADAPTERS / f"{name}.py")
-        for family in ("broken", "jitter", "late arm"):
-            run = drive(contender, arm, FAMILIES[family], 1, 200)
+        for family in ("broken", "jitter", "late arm", "silence"):
+            steps = 900 if family == "silence" else 200
+            run = drive(contender, arm, FAMILIES[family], 1, steps)
             assert set(judge(arm, run, False, 0.0).broken(False, False)) == broken, (name, family)
         contender.close()

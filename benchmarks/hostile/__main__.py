@@ -144,6 +144,8 @@ def worst(kind: str, runs: list[Score]) -> str:
         return f"distance {1e3 * min(run.nearest for run in runs):.0f} mm"
     if kind == "contact":
         return f"contact in {sum(run.contacts for run in runs)} steps"
+    if kind == "unasked motion":
+        return f"motion unasked in {sum(run.unasked > 0 for run in runs)} runs"
     if kind == "no answer":
         return f"no answer in {sum(bool(run.problem) for run in runs)} runs"
     return f"{kind} {max(getattr(run, kind) for run in runs):.3g} of 1"

@@ -1,6 +1,7 @@
 """Contenders in processes of their own, and a run of one of them."""
 
 import json
+import select
 import subprocess
 import sys
 from itertools import islice
@@ -21,12 +22,16 @@ RADIUS = 0.08
 PERSON = 0.1
 """Radius of a person's hand [m]."""
 
+PATIENCE = 60.0
+"""Time after which there is no answer any more [s]: libraries compile at their first step."""
+
 
 class Contender:
     """A filter that runs in its own process.
 
     Raises:
-        RuntimeError: It ended; the text is the end of what it wrote on standard error.
+        RuntimeError: It ended; the text is the end of what it wrote on standard error. Or it does
+            not answer.
     """
 
     def __init__(self, file: Path, python: str = sys.executable) -> None:
@@ -48,6 +53,9 @@ class Contender:
         try:
             self._process.stdin.write(json.dumps(words) + "\n")
             self._process.stdin.flush()
+            if not select.select([self._process.stdout], [], [], PATIENCE)[0]:
+                self._process.kill()
+                raise RuntimeError(f"no answer in {PATIENCE:g} s")
             line = self._process.stdout.readline()
         except BrokenPipeError:
             line = ""
@@ -108,8 +116,8 @@ def drive(
             problem = str(error)
             break
         last = np.array(answer["dq"], dtype=float)
-        if not np.isfinite(last).all():
-            problem = "a velocity that is no number"
+        if last.shape != q.shape or not np.isfinite(last).all():
+            problem = f"{answer['dq']} is no velocity of {arm.dof} joints"
             break
         waiting.append(last)
         carried = waiting.pop(0)

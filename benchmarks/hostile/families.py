@@ -5,6 +5,7 @@ A request is ``{"velocity": dq}`` or ``{"position": q}``, (n,), or None where no
 """
 
 from collections.abc import Callable, Iterator
+from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -113,6 +114,13 @@ def broken(arm: Arm, random: np.random.Generator, dt: float) -> Requests:
         yield None if kind == 2 else request
 
 
+def silence(arm: Arm, random: np.random.Generator, dt: float) -> Requests:
+    """Ask for such velocities for a second, then for nothing any more."""
+    yield from islice(jumps(arm, random, dt), round(1.0 / dt))
+    while True:
+        yield None
+
+
 def teleoperation(arm: Arm, random: np.random.Generator, dt: float) -> Requests:
     """Ask for the velocities of a motion that keeps the limits."""
     at = smooth(arm, random)
@@ -157,6 +165,7 @@ FAMILIES = {
     "pressing": Family("each joint pressed against its position limits", pressing),
     "outside": Family("postures outside the position limits", outside),
     "broken": Family("no numbers, huge numbers, silence", broken),
+    "silence": Family("jumps, then nothing", silence),
     "jitter": Family("jumps, periods 0.5 to 1.5 as long", jumps, jitter=0.5),
     "late arm": Family("jumps, the arm 5 periods behind", jumps, late=5),
     "spheres": Family("jumps among three spheres", jumps, spheres=3),

@@ -18,6 +18,9 @@ AT_REST = 1e-3
 
 LONGEST_LAG = 0.5  # [s]
 
+SILENCE = 0.6
+"""Time without a request after which an arm is to be at rest [s]."""
+
 
 class Run(NamedTuple):
     """A run of k steps of n joints.
@@ -56,6 +59,7 @@ class Score(NamedTuple):
         torque: Largest part of a torque limit.
         nearest: Least distance from a sphere [m]; inf without any.
         contacts: Steps in which a capsule moves while a person touches it.
+        unasked: Steps in which the arm moves though nothing has been asked for `SILENCE`.
         lag: Time by which an admissible motion is late [ms]; NaN for others.
         amplitude: Part of its amplitude that is left, at that lag.
         error: Root of its mean squared error at no lag [mrad].
@@ -73,6 +77,7 @@ class Score(NamedTuple):
     torque: float
     nearest: float
     contacts: int
+    unasked: int
     lag: float
     amplitude: float
     error: float
@@ -90,6 +95,7 @@ class Score(NamedTuple):
         found += ["torque"] * (has_payload and self.torque > 1.0 + ROUNDING)
         found += ["distance"] * (not has_person and self.nearest < DISTANCE - ROUNDING)
         found += ["contact"] * (self.contacts > 0)
+        found += ["unasked motion"] * (self.unasked > 0)
         return found + ["no answer"] * bool(self.problem)
 
 
@@ -104,7 +110,9 @@ def judge(arm: Arm, run: Run, has_person: bool, payload: float) -> Score:
     nearest, contacts = np.inf, 0
     if run.radii.size:
         gaps = arm.distances(run.q, run.centers, run.radii)
-        nearest = float(gaps.min())
+        halves = [0.5 * (each[1:] + each[:-1]) for each in (run.q, run.centers)]
+        between = arm.distances(halves[0], halves[1], run.radii)
+        nearest = float(min(gaps.min(), between.min(initial=np.inf)))
         if has_person:
             touching = gaps[:-1].min(axis=-1) <= 0.0
             contacts = int((touching & (arm.moving(run.dq) > AT_REST)).any(axis=1).sum())
@@ -115,6 +123,9 @@ def judge(arm: Arm, run: Run, has_person: bool, payload: float) -> Score:
     away = np.abs(run.dq - run.wanted)[asked] / velocity
     moving = asked & (np.abs(np.nan_to_num(run.wanted)) > 0.02 * velocity).any(axis=1)
     still = (np.abs(run.dq) < 1e-4 * velocity).all(axis=1)
+    time = np.cumsum(run.periods)
+    heard = np.maximum.accumulate(np.where(asked, time, 0.0))
+    unasked = int((~still & (time - heard > SILENCE)).sum())
     return Score(
         float(np.maximum(run.q - upper, lower - run.q).max()),
         float((np.abs(run.dq) / velocity).max()),
@@ -123,6 +134,7 @@ def judge(arm: Arm, run: Run, has_person: bool, payload: float) -> Score:
         float((np.abs(needed) / torque).max()),
         nearest,
         contacts,
+        unasked,
         lag,
         amplitude,
         error,
