@@ -242,6 +242,50 @@ def visit() -> Figure:
     return made
 
 
+# A policy's samples ----------------------------------------------------------------------------
+
+
+@figure
+def following() -> Figure:
+    """Draw a second of each kind of request for the same samples of a policy at 30 Hz."""
+    robot = iiwa_dnn.load_robot("so101").with_limits(acceleration=10.0, jerk=200.0)
+    dt, sampling, joint = 0.01, 1.0 / 30.0, 1
+    begin = robot.start_posture()
+    swing = np.eye(robot.dof)[joint]
+    wanted = lambda t: 0.12 * (1.0 - np.cos(7.0 * t)) * (t > 0.0)  # noqa: E731
+    seams = 0.03 * np.random.default_rng(2).standard_normal(40)  # of chunks [rad]
+    t = dt * np.arange(400)
+    kinds = ("position=", "stream, lead=1", "stream, lead=2", "chunks", "chunks with seams")
+    colors = (GREY, ORANGE, PURPLE, BLUE, GREEN)
+    made, axes = panels(len(kinds), 1.05, sharex=True, sharey=True)
+    for kind, color, panel in zip(kinds, colors, axes, strict=True):
+        shield = iiwa_dnn.Shield(robot, dt, [])
+        q, path, sample, samples = begin, [begin], -1, []
+        for now in t:
+            own: Any = {}
+            if int(now / sampling + 1e-9) > sample:
+                sample += 1
+                due = sample * sampling
+                seam = seams[sample // 8] if kind == kinds[-1] else 0.0
+                samples.append((due, wanted(due) + seam))
+                if kind.startswith("chunks") and sample % 8 == 0:
+                    times = due + sampling * np.arange(16)
+                    chunk = begin + np.outer(wanted(times) + seam, swing)
+                    shield.follow(times, chunk, now=now)
+                elif not kind.startswith("chunks"):
+                    own = {"position": begin + wanted(due) * swing}
+                    own |= {"time": due, "lead": int(kind[-1])} if kind[-1].isdigit() else {}
+            q = shield.step(q, **own).next_q
+            path.append(q)
+        panel.plot(*np.transpose(samples), ".", color=RED, ms=4)
+        panel.plot(t, np.array(path)[:-1, joint] - begin[joint], color=color, label=kind)
+        put_legend(panel, 1)
+    axes[0].set(xlim=(2.0, 3.0), ylim=(-0.06, 0.3))
+    axes[2].set_ylabel("joint 2 [rad], samples red")
+    axes[-1].set_xlabel("time [s]")
+    return made
+
+
 # Noise -----------------------------------------------------------------------------------------
 
 GAINS = tuple(np.geomspace(2.0, 800.0, 9))

@@ -120,10 +120,15 @@ def torque_of(plan: ArmPlan, memory: Vector) -> float:
 
 @compiled
 def stopping_time_of(plan: ArmPlan, memory: Vector) -> float:
-    """Compute the time of the stopping motion from an arm's last command [s]."""
+    """Compute the time of the stopping motion from an arm's last command [s].
+
+    It is that of the stored motion; where none is stored, joints alone decide how long it takes.
+    """
     arm = arm_state(plan, memory)
     motion = motion_of(plan, arm)
     dt = motion.spacing
-    limits = motion_constants(plan.step.arrays)
-    periods = least_periods(motion.last, motion.before, limits, dt, False)
+    periods = motion.stopping_periods
+    if periods == 0.0:
+        limits = motion_constants(plan.step.arrays)
+        periods = least_periods(motion.last, motion.before, limits, dt, False)
     return dt * max(periods, 1.0 if largest_entry(motion.last) > 0.0 else 0.0)

@@ -270,6 +270,7 @@ def test_no_request_takes_a_command_or_a_motion_to_rest_beyond_the_torques(
             motion = motion_of(command.layout.plan, command.state)
             periods = motion.stopping_periods
             assert periods > 0.0
+            assert command.stopping_time == periods * dt  # joints alone would take less
             rest = np.array(q)
             x, before = np.array(v), np.array(motion.before)
             b = np.zeros(7)
