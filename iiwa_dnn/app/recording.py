@@ -24,7 +24,7 @@ from iiwa_dnn.results.report import markdown_table
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import coal_geometry, collision_model
 from iiwa_dnn.robot.meetings import TOUCH
-from iiwa_dnn.robot.obstacles import make_obstacles
+from iiwa_dnn.robot.obstacles import Capsule, make_obstacles
 
 LATE = 1.5
 """Control periods from which on a cycle is late."""
@@ -190,11 +190,17 @@ def _distances(tables: dict[str, Any], rows: Any, time: Any, robot: Robot) -> Se
     pairs = [(i, k, overlap + beyond if overlap else 0.0) for i, k, overlap in model.pairs(robot)]
     geometry = coal_geometry(robot, model, pairs)
     rest = []
+    # A box stands for a link beside another link alone: its corners are outside of it.
+    moved = [
+        i
+        for i, (_, shape) in enumerate(model.bodies)
+        if isinstance(shape, Capsule) and geometry.geometryObjects[i].parentJoint
+    ]
     for k, each in enumerate(obstacles, first):
         shape, place = each.box.grown(each.thickness)
         rest.append(place)
         geometry.addGeometryObject(pin.GeometryObject(names[k], 0, place, shape))
-        for i in [i for i in range(first) if geometry.geometryObjects[i].parentJoint]:
+        for i in moved:
             geometry.addCollisionPair(pin.CollisionPair(k, i))
             pairs.append((k, i, 0.0))
     stride = max(1, round(SPARSE / tables["dt"]))

@@ -11,8 +11,9 @@ import pytest
 
 from helpers_commands import call
 from helpers_export import needs, use_armstep
-from iiwa_dnn import Configuration, Shield, Sphere, TipSpeedLimit, export, load_robot
-from iiwa_dnn.app.recording import read_recording
+from iiwa_dnn import Box, Configuration, Shield, Sphere, TipSpeedLimit, export, load_robot
+from iiwa_dnn.app.recording import _distances, read_recording
+from iiwa_dnn.robot.collision import collision_model
 
 pytestmark = needs("gcc")
 
@@ -119,6 +120,28 @@ def test_periods_that_vary_delays_and_silence_are_judged_as_they_were(
     assert " 20, " in found
     report = (tmp_path / "day2" / "report.md").read_text(encoding="utf-8")
     assert "- not judged: tip speed limit\n" in report
+
+
+def test_boxes_that_stand_for_links_beside_links_are_not_judged_beside_obstacles() -> None:
+    robot = load_robot("iiwa7_dual")
+    model = collision_model(robot)
+    box = next(each for each in model.bodies if isinstance(each.shape, Box))
+    capsule = next(each.shape for each in model.capsules if each.link == box.link)
+    q = robot.start_posture()
+    link = Configuration(robot, q).frame(box.link)
+    shape, place = box.shape.box.grown(0.0)
+    signs = 1.0 - 2.0 * np.indices((2, 2, 2)).reshape(3, 8).T
+    corners = [place.act(sign * shape.halfSide) - capsule.b for sign in signs]
+    corner = max(corners, key=lambda each: each[2])  # away from the link before
+    away = (capsule.radius + 0.0201 + 0.05) / np.linalg.norm(corner)
+    ball = Sphere((link.position + link.rotation @ (capsule.b + away * corner)).tolist(), 0.05)
+    scene = {"distance": 0.02, "obstacles": [ball.settings()]}
+    rows = np.zeros(2, [("measured", float, 14), ("places", float, (1, 3))])
+    rows["measured"] = q
+    tables = {"dt": DT, "scene": scene, "obstacle_names": ["Sphere 1"]}
+    found = _distances(tables, rows, np.zeros(2), robot)
+    assert (found.value < 0.0).all()
+    assert found.words[0].endswith(f"Sphere 1 and {box.link}")
 
 
 def test_the_ring_keeps_the_last_chunks_whole(tables: Path, tmp_path: Path) -> None:
