@@ -10,6 +10,7 @@ import pytest
 
 import iiwa_dnn
 from benchmarks.hostile import contenders
+from benchmarks.hostile.__main__ import main
 from benchmarks.hostile.arms import FOLDER, Arm, urdf
 from benchmarks.hostile.contenders import ADAPTERS, Contender, drive, setup_of
 from benchmarks.hostile.families import FAMILIES, smooth
@@ -193,6 +194,19 @@ def test_a_filter_of_ones_own_is_added_in_ten_lines_and_its_end_is_told(
     contender.close()
     assert words in run.problem
     assert judge(Arm("iiwa7"), run, False, 0.0).broken(False, False) == ["no answer"]
+
+
+def test_what_cannot_begin_and_how_a_failure_is_played_again_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "none.py"
+    file.write_text("x = 1\n", encoding="utf-8")
+    about = ["--families", "jumps", "--arms", "iiwa7", "--seeds", "3", "--steps", "40"]
+    monkeypatch.setattr("sys.argv", ["hostile", str(file), "clamp", *about])
+    assert main() == 1
+    said = capsys.readouterr().err
+    assert "none could not begin: it ended without an answer" in said
+    assert "clamp --families 'jumps' --arms iiwa7 --seeds 3 --steps 40" in said
 
 
 def test_the_clamp_breaks_rates_and_the_shield_nothing() -> None:

@@ -26,7 +26,7 @@ MEDIANS = ("lag", "amplitude", "error", "away", "frozen", "p50", "p99")
 
 
 def main() -> int:
-    """Run the contenders; print a table for each family."""
+    """Run the contenders; print a table for each family. Returns 1 if one could not begin."""
     parser = argparse.ArgumentParser("python -m benchmarks.hostile", description=__doc__)
     known = sorted(file.stem for file in ADAPTERS.glob("*.py"))
     words = f"{', '.join(known)}, or a file; NAME=PYTHON: by another Python (default: all)"
@@ -55,13 +55,14 @@ def main() -> int:
             name: {f: [s._asdict() for s in r] for f, r in x.items()} for name, x in scores.items()
         }
         options.json.write_text(json.dumps(plain), encoding="utf-8")
-    return 0
+    return int(len(scores) < len(options.contenders or known))
 
 
 def measure(file: Path, python: str, options: argparse.Namespace) -> dict[str, list[Score]]:
     """Run a contender through the families; print what breaks. Nothing if it cannot begin."""
     runs: dict[str, list[Score]] = {}
     contender = Contender(file, python)
+    shown = file.stem if file.parent == ADAPTERS else str(file)
     for family in options.families:
         about = FAMILIES[family]
         runs[family] = []
@@ -83,6 +84,7 @@ def measure(file: Path, python: str, options: argparse.Namespace) -> dict[str, l
                 broken = score.broken(about.person, about.payload)
                 if broken:
                     again = f"--families {family!r} --arms {name} --seeds {seed}"
+                    again = f"{shown} {again} --steps {options.steps}"
                     print(f"{file.stem}: {', '.join(broken)}: {again}", file=sys.stderr)
     contender.close()
     return runs

@@ -61,7 +61,7 @@ class Contender:
             line = ""
         if not line:
             assert self._process.stderr
-            raise RuntimeError(self._process.stderr.read()[-400:])
+            raise RuntimeError(self._process.stderr.read()[-400:] or "it ended without an answer")
         answer: dict[str, Any] = json.loads(line)
         return answer
 

@@ -14,6 +14,8 @@ from iiwa_dnn.step.samples import SHORTEST, FollowState, Mode
 SAMPLES = 64
 """Largest number of samples of a chunk, where none is stated; a stream takes four."""
 
+AHEAD = 600.0
+"""Time from now on up to which a chunk may reach [s]; beyond, its times are of another clock."""
 
 KEEPS = {"time": Mode.TIME, "path": Mode.PATH}
 """Modes of a chunk by what it keeps."""
@@ -39,6 +41,21 @@ def checked_times(times: ArrayLike, most: int) -> Vector:
         problem = f"must rise: {t[k + 1]:g} s comes after {t[k]:g} s"
         raise InvalidInputError("times", problem, times)
     return t
+
+
+def check_clock(times: Vector, now: float) -> None:
+    """Refuse times (m,) of a chunk that are most likely on another clock, or in ms.
+
+    Args:
+        times: They, on the arm's clock [s].
+        now: Present time on it [s].
+
+    Raises:
+        InvalidInputError: They reach farther than `AHEAD`.
+    """
+    if times[-1] - now > AHEAD:
+        problem = f"reach {times[-1] - now:g} s ahead: state now= for another clock, and seconds"
+        raise InvalidInputError("times", problem, times)
 
 
 def stream_mode(kind: Request, lead: int | None, samples: int) -> int:

@@ -17,6 +17,7 @@ from iiwa_dnn.references import Reference
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.collision import TOO_NEAR, collision_model, unwatched_links
 from iiwa_dnn.robot.meetings import CLEARANCE
+from iiwa_dnn.robot.obstacles import names_of
 from iiwa_dnn.robot.robot import model_limits
 from iiwa_dnn.schemes import Limit, OrientationTask, PoseTask, Scheme, TorqueLimits
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
@@ -39,7 +40,10 @@ FAR_ABOVE = 10.0
 """Ratio of a limit to that of the robot's file, or of a tool to the arm, above which a warning is
 given."""
 FURTHEST = 1.0
-"""Least distance above which a warning is given [m]."""
+REMOTE = 100.0
+NEAR = 3.0
+"""Least distance, way to an obstacle and way to a payload's center above which a warning is given
+[m]."""
 LONGEST = {"timeout": 10.0, "delay": 1.0}
 """Times of a shield above which a warning is given [s]."""
 DOUBLINGS = 16
@@ -169,9 +173,18 @@ def _unit_warnings(program: ProgramLayout) -> Iterator[str]:
     tip = float(np.linalg.norm(robot.model.frames[robot.tip_id].placement.translation))
     if tip > max(FAR_ABOVE * float(robot.lengths.sum()), 1.0):
         yield f"the tip is {tip:g} m from its joint: is the tool in mm?"
-    for part in program.limits:
-        if isinstance(part, CollisionAvoidance) and part.distance > FURTHEST:
-            yield f"a distance of {part.distance:g} m is long: is it in mm?"
+    avoidances = [part for part in program.limits if isinstance(part, CollisionAvoidance)]
+    lengths = [("a distance", part.distance, FURTHEST) for part in avoidances]
+    names = [name for part in avoidances for name in names_of(part.obstacles)]
+    obstacles = [each for part in avoidances for each in part.obstacles]
+    for name, each in zip(names, obstacles, strict=True):
+        lengths.append((f"the way to {name}", float(np.linalg.norm(each.box.center)), REMOTE))
+    if robot.payload is not None:
+        center = float(np.linalg.norm(robot.payload.center, axis=1).max())
+        lengths.append(("the way to the payload's center", center, NEAR))
+    for what, length, most in lengths:
+        if length > most:
+            yield f"{what} of {length:g} m is long: is it in mm?"
 
 
 def long_times(times: Mapping[str, float]) -> Iterator[str]:

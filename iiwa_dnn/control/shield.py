@@ -32,7 +32,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.trigonometry import LARGEST
 from iiwa_dnn.control.arm_layout import ArmLayout, Margin, lay_out_arm, own_movers, reasons_of, see
-from iiwa_dnn.control.chunks import KEEPS, SAMPLES, checked_times, stream_mode
+from iiwa_dnn.control.chunks import KEEPS, SAMPLES, check_clock, checked_times, stream_mode
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import ACTION_OF, periods_of_step
 from iiwa_dnn.control.desk import finish_step
@@ -556,6 +556,7 @@ class Shield(checks.Whole):
         """Keep the samples of a chunk, if there are any, for the next steps."""
         if chunk.times.size == 0:
             return
+        check_clock(chunk.times, self.time)
         kept = self._kept
         plan = self.layout(kept.frame).plan
         memory = kept.memory.copy()

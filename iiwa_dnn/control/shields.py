@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.arm_layout import ArmLayout
-from iiwa_dnn.control.chunks import KEEPS, checked_times, stream_mode
+from iiwa_dnn.control.chunks import KEEPS, check_clock, checked_times, stream_mode
 from iiwa_dnn.control.many import ManyArms
 from iiwa_dnn.control.requests import one_request
 from iiwa_dnn.control.shield import Shield, check_held, place
@@ -20,6 +20,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.periods import stated_periods
 from iiwa_dnn.step.memory import ArmInput, follow_arm, motion_of, scale_speed
+from iiwa_dnn.step.samples import Mode
 
 
 class ShieldsCommand(NamedTuple):
@@ -206,6 +207,8 @@ class Shields(ManyArms):
             clock = float(layout.state(memory).time)
             own = np.full(1, clock) if times is None else times
             own = own + (0.0 if now is None else clock - now)
+            if mode < Mode.STREAM:
+                check_clock(own, clock)
             follow_arm(layout.plan, memory, own, points[i].reshape(own.size, -1), mode)
 
     def scale_speed(self, scale: float, mask: ArrayLike | None = None) -> None:

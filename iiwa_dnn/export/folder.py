@@ -38,6 +38,9 @@ STEPS = 500
 VECTORS = "vectors.csv"
 """File that every export holds: steps of a run."""
 
+RESERVED = ("armstep", "compare", "example", "main")
+"""Names of other files of a folder, and of a program's function."""
+
 _POSE = np.repeat([1.0, 0.0], [12, 6])
 """1 for the numbers of a target's pose, 0 for those of its velocities."""
 
@@ -141,6 +144,8 @@ def _checked_name(name: str) -> str:
     if keyword.iskeyword(name):
         problem = f"must be no keyword of Python, as {name!r} is: no module can be imported by it"
         raise InvalidInputError("name", problem, name)
+    if name in RESERVED:
+        raise InvalidInputError("name", f"must be none of {', '.join(RESERVED)}", name)
     if c_word(name) != name:
         raise InvalidInputError("name", f"must be no word of C, as {name!r} is", name)
     return name

@@ -4,8 +4,9 @@ A reference gets the program, in units near 1, and nothing of the network's stat
 only where its own KKT residual is small. If the one that was asked has no such answer, a second one
 is asked. A proof judges instead (`iiwa_dnn.qp.proof`) where neither is believed, where an answer
 disagrees, and where the program is so flat that a point with the reference's residual may be far
-from the solution. Where nothing is proven, as of programs with several solutions, a reference that
-is not at the same point judges only if its residual says that it is near one; it does not blame if
+from the solution. It begins with the reference's point; one that begins with the answer may clear
+it, never blame. Where nothing is proven, as of programs with several solutions, a reference that is
+not at the same point judges only if its residual says that it is near one; it does not blame if
 some variable's own curvature may be rounding. The agreement names the judge, or nobody.
 
 "proof" stands among the references for a proof of the answer itself, which asks no solver.
@@ -34,7 +35,7 @@ from iiwa_dnn.qp.agreement import (
 )
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.proof import NOT_CONVEX, enclose_solution, prove_point
+from iiwa_dnn.qp.proof import NOT_CONVEX, enclose_solution, prove_point, touching_point
 from iiwa_dnn.qp.reference_solvers import reference_solver
 
 PROOF = "proof"
@@ -163,7 +164,17 @@ class CrossCheck:
             center, radius, _, reason = enclose_solution(qp, references[i])
             step = x[i] - factors[i] * center
             off = (factors[i] * radius).max()
-            if reason != NOT_CONVEX and off < abs(np.abs(step).max() - self.tolerance):
+            if not _decides(step, off, reason, self.tolerance):
+                # A solution beside the answer clears it, whatever others there are.
+                own = touching_point(qp, x[i] / factors[i])
+                center, radius, _, own_reason = enclose_solution(qp, own)
+                own_step = x[i] - factors[i] * center
+                own_off = (factors[i] * radius).max()
+                if own_reason != NOT_CONVEX and np.abs(own_step).max() + own_off < self.tolerance:
+                    step = own_step
+                    off = own_off
+                    reason = own_reason
+            if _decides(step, off, reason, self.tolerance):
                 steps[i] = step
                 gaps[i] = np.abs(step).max()
                 residuals[i] = 0.0
@@ -206,6 +217,11 @@ class CrossCheck:
                     residuals[i] = min(residuals[i], tolerance)
                     judge[i] = code
         return residuals, judge
+
+
+def _decides(step: Vector, radius: float, reason: str, tolerance: float) -> bool:
+    """Test whether an enclosure of a solution says on which side of a tolerance an answer is."""
+    return reason != NOT_CONVEX and radius < abs(float(np.abs(step).max()) - tolerance)
 
 
 def references() -> list[str]:

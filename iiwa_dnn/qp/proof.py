@@ -62,6 +62,8 @@ _TINY = 1e-290
 _SLIGHT = 1e-6
 """Multiplier of a row of length 1, relative to the largest, up to which it is not active at the
 beginning."""
+_TOUCH = 1e-9
+"""Slack of a row up to which a point touches it, relative to its limit and its length."""
 _FRACTION = 0.9
 """Fraction of the smallest eigenvalue that is shown as the curvature."""
 
@@ -227,6 +229,27 @@ def enclose_solution(qp: QP, point: Vector) -> tuple[Vector, Vector, IntVector, 
         active[leaving] = False
     upper, lower = np.split(active[p + m :].astype(np.int64), 2)
     return center, radius, np.concatenate([upper - lower, active[p : p + m]]), reason
+
+
+@np.errstate(all="ignore")
+def touching_point(qp: QP, x: Vector) -> Vector:
+    """Return x (n,) with multipliers, (2 n + m + p,): of least squares, of what it touches.
+
+    Of an x that is not finite they are 0.
+    """
+    n, m, p = qp.sizes
+    if not np.isfinite(x).all():
+        return np.concatenate([x, np.zeros(p + m + n)])
+    rows = _Rows(qp)
+    slack = np.abs(rows.limits - rows.rows @ x)
+    length = np.linalg.norm(rows.rows, axis=1)
+    touched = np.flatnonzero(
+        rows.equal | (rows.usable & (slack <= _TOUCH * (np.abs(rows.limits) + length)))
+    )
+    multipliers = np.zeros(len(rows.rows))
+    multipliers[touched] = np.linalg.pinv(rows.rows[touched].T) @ -(rows.S @ x + qp.q)
+    upper, lower = np.split(multipliers[p + m :], 2)
+    return np.concatenate([x, multipliers[: p + m], upper - lower])
 
 
 def _independent(rows: _Rows, active: Mask) -> NDArray[np.intp]:

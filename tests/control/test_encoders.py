@@ -199,6 +199,8 @@ def test_a_joint_from_outside_of_its_range_comes_to_rest_at_its_limit(
         ("timeout of 100 s is long: is it in ms", ROBOT, {"timeout": 100.0}),
         ("delay of 10 s is long: is it in ms", ROBOT, {"delay": 10.0, "dt": 0.05}),
         ("distance of 20 m is long: is it in mm", ROBOT, {"obstacles": [], "distance": 20.0}),
+        ("way to Sphere 1 of 640", ROBOT, {"obstacles": [d.Sphere([400.0, 0.0, 500.0], 50.0)]}),
+        ("payload's center of 100 m is", ROBOT.with_payload(0.1, [0.0, 0.0, 100.0]), {}),
         ("tool in mm", ROBOT.with_tool([0.0, 0.0, 120.0, 0.0, 0.0, 0.0]), {}),
     ],
 )

@@ -463,7 +463,7 @@ def test_without_a_reference_the_vectors_follow_a_figure(tmp_path: Path) -> None
     assert np.ptp(rows[:, 10]) > 1e-3
 
 
-@pytest.mark.parametrize("name", ["a-b", "class", "A", "1a", "double"])
+@pytest.mark.parametrize("name", ["a-b", "class", "A", "1a", "double", "main"])
 def test_a_name_that_is_none_of_c_is_refused(name: str, tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match="name: must be"):
         c99(drawing()[0], tmp_path / "none", name=name)

@@ -108,6 +108,31 @@ def test_a_wrong_answer_along_a_slight_curvature_is_a_disagreement(curvature: fl
         assert verdict(check, qp, np.array([1.0, 1.0])) == "agrees"
 
 
+def test_a_right_answer_that_a_reference_is_far_from_is_cleared_by_a_proof_of_its_own() -> None:
+    """A reference with a residual of 4e-12 blamed it by 1.6: multipliers of 2^-31 of the cost."""
+    heavy = np.array(
+        [
+            [230, 141, -217, -76, 101, 185, -188],
+            [141, 695, -81, 399, 293, -202, 46],
+            [-217, -81, 508, -66, 12, -212, 270],
+            [-76, 399, -66, 498, 193, -339, 40],
+            [101, 293, 12, 193, 451, -112, -204],
+            [185, -202, -212, -339, -112, 579, -26],
+            [-188, 46, 270, 40, -204, -26, 467],
+        ]
+    )  # of rank 5
+    x = np.array([-8, -11, -21, -1, 8, 3, 3]) / 16.0
+    lower = np.array([-48, -82, -52, -22, -53, -20, 3]) / 16.0
+    upper = np.array([-8, 20, 14, 21, 42, 51, 41]) / 16.0
+    P = 2.0**21 * heavy + 0.25 * np.eye(7)
+    q = -P @ x - np.array([0.5, 0.0, 0.0, 0.0, 0.0, 0.0, -0.1875])
+    G = np.array([[-1, -2, 3, 4, 1, -3, 4]]) / 4.0
+    qp = QP(P, q, G=G, h=[0.34375], lb=lower, ub=upper)
+    check = CrossCheck()
+    assert verdict(check, qp, x) == "agrees"
+    assert check.check(qp, x).judge[0, 0] == 2
+
+
 @pytest.mark.parametrize("solver", ["proxqp", "osqp", "daqp"])
 def test_a_right_answer_in_units_that_are_far_apart_is_not_blamed(solver: str) -> None:
     """All numbers are whole times powers of two, so the answer is exact, and the only one."""

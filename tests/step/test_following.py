@@ -204,6 +204,15 @@ def test_wrong_chunks_change_nothing():
         shield.follow([0.0, 0.2, 0.1], np.tile(q, (3, 1)))
     with pytest.raises(iiwa_dnn.InvalidInputError, match="must be 1 to 64"):
         shield.follow(np.arange(65.0), np.tile(q, (65, 1)))
+    other = 1.7e9 + np.arange(3.0)  # a clock that counts from 1970; a preview never ended
+    for chunk in (shield.follow, shield.preview):
+        with pytest.raises(iiwa_dnn.InvalidInputError, match="s ahead: state now= for another"):
+            chunk(other, np.tile(q, (3, 1)))
+    shield.follow(other, np.tile(q, (3, 1)), now=1.7e9)
+    many = iiwa_dnn.Shields(shield, 2)
+    with pytest.raises(iiwa_dnn.InvalidInputError, match="s ahead"):
+        many.follow(other, np.tile(q, (2, 3, 1)))
+    shield, q = make()
     with pytest.raises(iiwa_dnn.InvalidInputError, match="positions"):
         shield.follow([0.0, 1.0], np.zeros((2, 1)))
     with pytest.raises(iiwa_dnn.InvalidInputError, match="keep"):

@@ -46,6 +46,9 @@ TURN = 0.5
 DAMPING = 0.1
 """Ratio of the damping of a step to the squared error."""
 
+AHEAD = 600.0
+"""Time from now on up to which a chunk may reach [s]; beyond, its times are of another clock."""
+
 TICK = 1e-9
 """Time that counts as rounding [s]."""
 
@@ -288,7 +291,10 @@ class _Shields(Arms[Answer]):
         points = pointed("positions", positions, (*self._many, t.size, self._shape[-1]))
         rows = points.reshape(self.count, t.size, self._shape[-1])
         for i, memory in self._each(given):
-            ahead = 0.0 if now is None else ONE.armstep_time(self.tables.arm, memory) - now
+            clock = ONE.armstep_time(self.tables.arm, memory)
+            ahead = 0.0 if now is None else clock - now
+            if t.size and t[-1] + ahead - clock > AHEAD:
+                raise InputError("times: state now= for another clock, and seconds")
             self._keep(memory, t + ahead, rows[i], KEEPS.index(keep))
 
     def _pass(self, position: ArrayLike | None, time: float | None, lead: int, given: Any) -> None:

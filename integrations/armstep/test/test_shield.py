@@ -90,6 +90,10 @@ def test_a_preview_is_that_of_python_and_changes_nothing(tmp_path: Any) -> None:
     there = armstep.Shield(export.tables(shield, tmp_path / "arm.json", q0=START))
     with pytest.raises(armstep.InputError, match="needs a step before"):
         there.preview([0.1], [START])
+    with pytest.raises(armstep.InputError, match="state now= for another clock"):
+        there.follow([1.7e9], [START])
+    with pytest.raises(armstep.InputError, match="time: must be finite"):
+        there.step(START, position=START, time=np.nan)
     for made in (shield, there):
         made.step(START, np.zeros(7))
     times = 0.01 + np.arange(20) / 30.0
