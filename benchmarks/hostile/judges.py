@@ -19,7 +19,9 @@ AT_REST = 1e-3
 LONGEST_LAG = 0.5  # [s]
 
 SILENCE = 0.6
-"""Time without a request after which an arm is to be at rest [s]."""
+CREEP = 0.01
+"""Time without a request after which an arm is to be at rest [s], and the part of a velocity limit
+up to which it is."""
 
 
 class Run(NamedTuple):
@@ -125,7 +127,8 @@ def judge(arm: Arm, run: Run, has_person: bool, payload: float) -> Score:
     still = (np.abs(run.dq) < 1e-4 * velocity).all(axis=1)
     time = np.cumsum(run.periods)
     heard = np.maximum.accumulate(np.where(asked, time, 0.0))
-    unasked = int((~still & (time - heard > SILENCE)).sum())
+    creeps = (np.abs(run.dq) > CREEP * velocity).any(axis=1)
+    unasked = int((creeps & (time - heard > SILENCE)).sum())
     return Score(
         float(np.maximum(run.q - upper, lower - run.q).max()),
         float((np.abs(run.dq) / velocity).max()),
