@@ -40,8 +40,8 @@ FAR_ABOVE = 10.0
 """Ratio of a limit to that of the robot's file, or of a tool to the arm, above which a warning is
 given."""
 FURTHEST = 1.0
-REMOTE = 100.0
-NEAR = 3.0
+REMOTE = 150.0
+OUTSTRETCHED = 3.0
 """Least distance, way to an obstacle and way to a payload's center above which a warning is given
 [m]."""
 LONGEST = {"timeout": 10.0, "delay": 1.0}
@@ -181,7 +181,7 @@ def _unit_warnings(program: ProgramLayout) -> Iterator[str]:
         lengths.append((f"the way to {name}", float(np.linalg.norm(each.box.center)), REMOTE))
     if robot.payload is not None:
         center = float(np.linalg.norm(robot.payload.center, axis=1).max())
-        lengths.append(("the way to the payload's center", center, NEAR))
+        lengths.append(("the way to the payload's center", center, OUTSTRETCHED))
     for what, length, most in lengths:
         if length > most:
             yield f"{what} of {length:g} m is long: is it in mm?"
